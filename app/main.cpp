@@ -1,0 +1,5 @@
+#include <lamella/lamella.hpp>
+
+int main() {
+    return 0;
+}

@@ -1,0 +1,25 @@
+# One interface target that every target of this project links privately: language, warnings, sanitizers.
+# It is never exported: nothing here reaches a consumer.
+
+add_library(lamella_options INTERFACE)
+target_compile_features(lamella_options INTERFACE cxx_std_20)
+target_compile_options(
+    lamella_options
+    INTERFACE -Wall
+              -Wextra
+              -Wpedantic
+              -Wshadow
+              -Wconversion
+              -Wno-sign-conversion
+              -Wnon-virtual-dtor
+              -Woverloaded-virtual
+              # The same bits on every processor: a*b+c is never fused (docs/conventions.md).
+              -ffp-contract=off)
+if(LAMELLA_WERROR)
+    target_compile_options(lamella_options INTERFACE -Werror)
+endif()
+if(LAMELLA_SANITIZE)
+    target_compile_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE} -fno-omit-frame-pointer
+                                                     -fno-sanitize-recover=all)
+    target_link_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE})
+endif()

@@ -1,0 +1,91 @@
+#pragma once
+
+// Layers: what planes yield. Flat points plus offsets, immutable and cheap to share.
+
+#include "lamella/core/point.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// A fixed array of points whose memory is shared: copies of it, and other arrays cut from the same block,
+/// keep the block alive.
+class PointArray {
+  public:
+    PointArray() = default;
+    explicit PointArray(std::vector<Point2> points);
+    PointArray(std::shared_ptr<const void> owner, const Point2* first, std::size_t count)
+        : owner_(std::move(owner)), points_(first, count) {}
+
+    [[nodiscard]] std::span<const Point2> span() const noexcept { return points_; }
+    [[nodiscard]] const Point2* data() const noexcept { return points_.data(); }
+    [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
+    [[nodiscard]] bool empty() const noexcept { return points_.empty(); }
+    const Point2& operator[](std::size_t i) const noexcept { return points_[i]; }
+    [[nodiscard]] auto begin() const noexcept { return points_.begin(); }
+    [[nodiscard]] auto end() const noexcept { return points_.end(); }
+
+    /// What keeps the memory alive.
+    [[nodiscard]] const std::shared_ptr<const void>& owner() const noexcept { return owner_; }
+
+  private:
+    std::shared_ptr<const void> owner_;
+    std::span<const Point2> points_;
+};
+
+/// What one plane yields.
+///
+/// Contours are stored one after the other in `points`; contour i has the points [offsets[i], offsets[i +
+/// 1]). The first `rings` of them are closed rings (the first point is not repeated at the end), the others
+/// are open chains: the traces of defects. A layer with two rings of 4 and 3 points and a chain of 2 has
+///     points.size() == 9, offsets == {0, 4, 7, 9}, rings == 2.
+/// A layer without contours has offsets == {0}.
+///
+/// Material lies to the left of the direction of a contour: outer rings run counter-clockwise, holes
+/// clockwise.
+struct Layer {
+    std::uint64_t index = 0; ///< in the whole plan, also when only a part of it was sliced
+    double z = 0;            ///< where it was cut
+    double bottom = 0;       ///< the slab of material that it stands for: bottom <= z <= top
+    double top = 0;
+    PointArray points;
+    std::vector<std::uint64_t> offsets{0};
+    std::size_t rings = 0;
+
+    [[nodiscard]] std::size_t contours() const noexcept { return offsets.size() - 1; }
+    [[nodiscard]] std::size_t open_chains() const noexcept { return contours() - rings; }
+    [[nodiscard]] bool closed(std::size_t i) const noexcept { return i < rings; }
+    [[nodiscard]] double thickness() const noexcept { return top - bottom; }
+    [[nodiscard]] std::span<const Point2> contour(std::size_t i) const noexcept {
+        return points.span().subspan(offsets[i], offsets[i + 1] - offsets[i]);
+    }
+};
+
+/// Layers in ascending z.
+using LayerStack = std::vector<Layer>;
+
+/// Collects contours in any order and makes a layer of them (see `normal_form`).
+class LayerBuilder {
+  public:
+    /// Appends a point to the contour under construction.
+    void add_point(const Point2& p) { points_.push_back(p); }
+    /// Ends the contour under construction. One without points is forgotten.
+    void end_contour(bool closed);
+    /// The layer, in normal form, with index, z, bottom and top as given. The builder is empty afterwards.
+    [[nodiscard]] Layer finish(std::uint64_t index, double z, double bottom, double top);
+    [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
+
+  private:
+    struct End {
+        std::size_t offset;
+        bool closed;
+    };
+    std::vector<Point2> points_;
+    std::vector<End> ends_;
+};
+
+} // namespace lamella

@@ -1,0 +1,31 @@
+#pragma once
+
+// Areas and lengths of contours.
+
+#include "lamella/contour/layer.hpp"
+
+#include <cstddef>
+#include <span>
+
+namespace lamella {
+
+/// Signed area in mm^2: positive for a counter-clockwise ring. Computed about the ring's first point, so that
+/// a ring far from the origin loses no digits. O(n).
+[[nodiscard]] double ring_area(std::span<const Point2> ring) noexcept;
+
+/// Length in mm, for a ring including the way back to the first point.
+[[nodiscard]] double contour_length(std::span<const Point2> contour, bool closed) noexcept;
+
+struct LayerMeasure {
+    std::size_t contours = 0; ///< rings and chains
+    std::size_t holes = 0;    ///< clockwise rings
+    std::size_t open_chains = 0;
+    std::size_t points = 0;
+    double area_mm2 = 0; ///< of the rings, holes subtracted
+    double perimeter_mm = 0;
+};
+
+/// O(points).
+[[nodiscard]] LayerMeasure measure(const Layer& layer) noexcept;
+
+} // namespace lamella

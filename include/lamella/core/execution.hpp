@@ -1,0 +1,39 @@
+#pragma once
+
+// How a long computation runs: on how many threads, who is told, and how it is stopped.
+
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+
+namespace lamella {
+
+/// The stages of the way from a file to slice files, in the order in which they run.
+enum class Stage { read, weld, link, slice, polygon, write };
+
+/// The stage's name as users meet it in progress lines and statistics, such as "link".
+[[nodiscard]] const char* stage_name(Stage stage) noexcept;
+
+/// How far a stage has come. `done` never falls within a stage and reaches `total` at its end; the unit is
+/// the stage's own (bytes, triangles or layers).
+struct Progress {
+    Stage stage = Stage::read;
+    std::uint64_t done = 0;
+    std::uint64_t total = 0;
+};
+
+/// Handed to every long computation. Results never depend on it: any number of threads gives the same bytes.
+struct Execution {
+    /// Threads to use; 0 means one per processor available to this process.
+    unsigned threads = 0;
+
+    /// Called now and then (some ten to a hundred times per stage), from one thread at a time, but not always
+    /// the same one. May throw: the computation stops and the exception reaches the caller.
+    std::function<void(const Progress&)> progress = {};
+
+    /// When a stop is requested the computation ends with Error{ErrorKind::cancelled} within a fraction of a
+    /// second.
+    std::stop_token cancel = {};
+};
+
+} // namespace lamella

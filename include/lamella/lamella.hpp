@@ -1,0 +1,34 @@
+#pragma once
+
+// The door. In calling order: read, weld, inspect, plan, slice, measure, check, write.
+//
+//     #include <lamella/lamella.hpp>
+//
+//     const lamella::MeshFile part = lamella::read_mesh("part.stl");
+//     const lamella::Box3 box = lamella::bounding_box(part.mesh);
+//     const lamella::Plan plan = lamella::plan_uniform(box.min.z, box.max.z, {.layer_height = 0.1});
+//     const lamella::LayerStack layers = lamella::slice(part.mesh, plan);
+//     lamella::write_layers("part.cli", lamella::layer_format("", "part.cli"), layers,
+//                           {.box = box, .layers = layers.size(), .bottom = layers.front().bottom});
+//
+// Lengths are millimetres. Failures are lamella::Error. Nothing here prints, exits or keeps global state.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/inspect.hpp"
+#include "lamella/mesh/shapes.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/mesh/triangle_soup.hpp"
+#include "lamella/pipeline/verify.hpp"
+#include "lamella/polygon/crossings.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/read/mesh_file.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
+#include "lamella/write/layer_writer.hpp"
+#include "lamella/write/mesh_writer.hpp"

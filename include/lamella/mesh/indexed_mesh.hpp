@@ -1,0 +1,44 @@
+#pragma once
+
+// Triangles that share their vertices by index.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lamella {
+
+/// Vertices (#V by 3, double) and triangles (#T by 3, indices into the vertices, counter-clockwise seen from
+/// outside). Sharing is taken at its word: two vertices with equal coordinates are still two vertices.
+/// At most 2^32 - 1 vertices and 2^32 - 1 triangles; functions that would need more throw Error{limit}.
+struct IndexedMesh {
+    std::vector<Point3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Joins equal corners of a soup: exactly, without a tolerance, with -0 equal to +0, after the placement.
+/// Vertices are numbered in the order of their first occurrence, so the locality of the file is kept, and
+/// triangle i of the soup is triangle i of the mesh. The result is the same for any number of threads.
+/// Expected O(n); hostile input costs O(n log n). Throws Error{limit} beyond 2^32 - 1 vertices or triangles.
+[[nodiscard]] IndexedMesh weld(const TriangleSoup& soup, const Execution& execution = {});
+
+/// Throws Error{input} naming the first triangle whose index is out of range or the first vertex that is not
+/// finite. Everything else in this library takes a mesh that passes.
+void check(const IndexedMesh& mesh);
+
+/// The box of all vertices. Empty for a mesh without vertices.
+[[nodiscard]] Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution = {});
+
+/// Signed volume in mm^3, as for a soup. The same bits as for the soup it was welded from.
+[[nodiscard]] double volume(const IndexedMesh& mesh, const Execution& execution = {});
+
+/// The mapped mesh. Where the map mirrors, triangles are turned so that they stay counter-clockwise seen from
+/// outside.
+[[nodiscard]] IndexedMesh transformed(IndexedMesh mesh, const Transform& map);
+
+} // namespace lamella

@@ -1,0 +1,62 @@
+#pragma once
+
+// Test bodies made from a few numbers: closed, oriented, the same bytes on every machine.
+
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include <cstdint>
+
+namespace lamella {
+
+/// The order in which a sheet's triangles stand in the file. It decides how long the lists of the paper's
+/// algorithms get; see SheetShape.
+enum class TriangleOrder {
+    wall,    ///< around each hole, the two triangles of each wall quad together
+    split,   ///< all lower triangles of all walls, then all upper ones: the paper's worst case
+    shuffle, ///< random, from a seed
+};
+
+/// The paper's worst case: a flat sheet with a square grid of round holes (King, Rennie, Bennett 2021, Figs.
+/// 5, 12 to 15). h holes of k segments have exactly 4 h (k + 1) + 12 triangles: a constrained triangulation
+/// of top and bottom without added vertices, and two triangles per wall quad.
+struct SheetShape {
+    unsigned holes = 100;  ///< a square number
+    unsigned segments = 0; ///< per hole; 0 takes the paper's: 256 for 100 holes, else 512
+    double size_mm = 0;    ///< edge length; 0 takes the paper's: 256 for 100 holes, else 250
+    double thickness_mm = 3;
+    TriangleOrder order = TriangleOrder::wall;
+    std::uint64_t seed = 1; ///< for TriangleOrder::shuffle
+};
+
+/// Throws Error{usage} when the shape is impossible (holes not square, fewer than 3 segments, sizes not
+/// positive).
+[[nodiscard]] TriangleSoup make_sheet(const SheetShape& shape);
+
+/// A chess rook as in the paper's Fig. 6: 31.75 x 31.75 x 53.15 mm, hollow crown with battlements, about
+/// 93,930 triangles.
+[[nodiscard]] TriangleSoup make_rook();
+
+/// A lattice of struts: a cubic grid of cells, each node joined to its neighbours by struts of round section,
+/// all of it one closed surface without inner walls. Throws Error{usage} for impossible sizes.
+struct LatticeShape {
+    unsigned cells_x = 12;
+    unsigned cells_y = 12;
+    unsigned cells_z = 12;
+    double cell_mm = 4.5;
+    double strut_mm = 1.2; ///< diameter of a strut, smaller than the cell
+    unsigned detail = 4;   ///< triangles grow with its square
+};
+[[nodiscard]] TriangleSoup make_lattice(const LatticeShape& shape);
+
+[[nodiscard]] TriangleSoup make_box(double x_mm, double y_mm, double z_mm);
+/// Subdivided icosahedron: 20 * 4^level triangles, level 0 to 11.
+[[nodiscard]] TriangleSoup make_sphere(double radius_mm, unsigned level);
+[[nodiscard]] TriangleSoup make_torus(double ring_radius_mm, double tube_radius_mm, unsigned ring_segments,
+                                      unsigned tube_segments);
+[[nodiscard]] TriangleSoup make_cylinder(double radius_mm, double height_mm, unsigned segments);
+
+/// The same triangles in random order (the corners of each keep their order). The same seed gives the same
+/// order on every machine.
+[[nodiscard]] TriangleSoup shuffled(const TriangleSoup& soup, std::uint64_t seed);
+
+} // namespace lamella

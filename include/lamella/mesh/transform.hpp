@@ -1,0 +1,48 @@
+#pragma once
+
+// Affine maps: placing a part, its unit, and the direction in which it is sliced.
+
+#include "lamella/core/point.hpp"
+
+#include <array>
+
+namespace lamella {
+
+/// p' = linear * p + offset, in double. The default is the identity. `linear` is row-major: linear[r][c].
+struct Transform {
+    std::array<std::array<double, 3>, 3> linear{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    std::array<double, 3> offset{0, 0, 0};
+
+    [[nodiscard]] Point3 operator()(const Point3& p) const noexcept {
+        const auto row = [&](int r) {
+            return linear[r][0] * p.x + linear[r][1] * p.y + linear[r][2] * p.z + offset[r];
+        };
+        // Adding zero keeps -0 out of the mesh: it would not weld to +0.
+        return {row(0) + 0.0, row(1) + 0.0, row(2) + 0.0};
+    }
+
+    /// Negative when the map mirrors.
+    [[nodiscard]] double determinant() const noexcept;
+
+    friend bool operator==(const Transform&, const Transform&) = default;
+};
+
+/// First `inner`, then `outer`.
+[[nodiscard]] Transform compose(const Transform& outer, const Transform& inner) noexcept;
+
+/// Throws Error{usage} when the map flattens (determinant 0) or is not finite.
+[[nodiscard]] Transform inverse(const Transform& map);
+
+[[nodiscard]] Transform translation(double x, double y, double z) noexcept;
+[[nodiscard]] Transform scaling(double x, double y, double z) noexcept;
+
+/// Right-handed rotation about a coordinate axis ('x', 'y' or 'z') by degrees. Multiples of 90 degrees are
+/// exact: no rounded sine moves a flat face off its plane. Throws Error{usage} for another axis.
+[[nodiscard]] Transform rotation(char axis, double degrees);
+
+/// The rotation that turns `direction` (any length, not zero) to +z, so that slicing the mapped mesh is
+/// slicing along `direction`. Coordinate axes give exact maps. Throws Error{usage} for a zero or non-finite
+/// direction.
+[[nodiscard]] Transform upright(const Point3& direction);
+
+} // namespace lamella

@@ -1,0 +1,93 @@
+#pragma once
+
+// Triangles as STL files hold them: corners in single precision, nothing shared.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/transform.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// A corner as the file stores it.
+struct Point3f {
+    float x = 0;
+    float y = 0;
+    float z = 0;
+
+    friend bool operator==(const Point3f&, const Point3f&) = default;
+};
+
+/// Three corners, counter-clockwise seen from outside.
+using Triangle3f = std::array<Point3f, 3>;
+using Triangle3 = std::array<Point3, 3>;
+
+/// An immutable view of n triangles with equal spacing in memory, that keeps its memory alive. It is cheap to
+/// copy. A memory-mapped binary STL file is such a view (spacing 50 bytes) without any copying.
+///
+/// A soup may carry a placement: an affine map that is applied to each corner, in double, when it is read.
+/// Corners are finite. Equal corners are meant to be the same vertex, with -0 equal to +0.
+class TriangleSoup {
+  public:
+    TriangleSoup() = default;
+
+    /// A soup that owns its triangles.
+    explicit TriangleSoup(std::vector<Triangle3f> triangles);
+
+    /// A view of `count` triangles of nine consecutive floats; the i-th starts at `first + i * stride` (no
+    /// alignment needed). `owner` keeps that memory alive as long as any copy of the soup.
+    TriangleSoup(std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
+                 std::size_t count)
+        : owner_(std::move(owner)), first_(first), stride_(stride), count_(count) {}
+
+    [[nodiscard]] std::size_t size() const noexcept { return count_; }
+    [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
+
+    /// Triangle i as stored: no placement, but with -0 turned into +0.
+    [[nodiscard]] Triangle3f stored(std::size_t i) const noexcept {
+        Triangle3f t;
+        std::memcpy(&t, first_ + i * stride_, sizeof t);
+        for (Point3f& p : t)
+            p = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+        return t;
+    }
+
+    /// Triangle i with the placement applied, still counter-clockwise seen from outside when the placement
+    /// mirrors.
+    [[nodiscard]] Triangle3 placed(std::size_t i) const noexcept;
+
+    [[nodiscard]] const Transform& placement() const noexcept { return placement_; }
+    [[nodiscard]] bool has_placement() const noexcept { return has_placement_; }
+
+    /// The same triangles under a further map (applied after the present placement). Shares the memory.
+    [[nodiscard]] TriangleSoup transformed(const Transform& map) const;
+
+    /// Where the triangles lie: for code that streams over them.
+    [[nodiscard]] const std::byte* data() const noexcept { return first_; }
+    [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
+
+  private:
+    std::shared_ptr<const void> owner_;
+    const std::byte* first_ = nullptr;
+    std::size_t stride_ = sizeof(Triangle3f);
+    std::size_t count_ = 0;
+    Transform placement_ = {};
+    bool has_placement_ = false;
+    bool mirrored_ = false;
+};
+
+/// The box of all corners, placement applied. Empty for an empty soup. O(n), parallel.
+[[nodiscard]] Box3 bounding_box(const TriangleSoup& soup, const Execution& execution = {});
+
+/// Signed volume in mm^3: positive when closed and counter-clockwise seen from outside (divergence theorem;
+/// meaningless for a mesh that is not closed). O(n), parallel, the same bits for any number of threads.
+[[nodiscard]] double volume(const TriangleSoup& soup, const Execution& execution = {});
+
+} // namespace lamella

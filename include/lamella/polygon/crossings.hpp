@@ -1,0 +1,32 @@
+#pragma once
+
+// Contours of a layer that cross one another or themselves.
+
+#include "lamella/contour/layer.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace lamella {
+
+/// Segment `segment_a` of contour `contour_a` (from its point of that number to the next) crosses segment
+/// `segment_b` of `contour_b` at about `at`.
+struct Crossing {
+    std::uint64_t contour_a = 0;
+    std::uint64_t segment_a = 0;
+    std::uint64_t contour_b = 0;
+    std::uint64_t segment_b = 0;
+    Point2 at;
+};
+
+struct Crossings {
+    std::uint64_t count = 0;     ///< all of them
+    std::vector<Crossing> first; ///< the first few, ordered by (contour_a, segment_a, contour_b, segment_b)
+};
+
+/// Counts pairs of segments that cross properly: each has its ends strictly on both sides of the other.
+/// Contours that touch in a point or along a piece do not cross. Decided exactly, on the points as they are.
+/// Expected O(n) for segments of similar length (a grid); `keep` bounds Crossings::first.
+[[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16);
+
+} // namespace lamella

@@ -1,0 +1,34 @@
+#pragma once
+
+// Reading slice files back.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+struct LayerFile {
+    std::string path;
+    std::string format;  ///< "cli", "cli-ascii" or "svg"
+    std::string label;   ///< the part's name, where the file has one
+    double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
+    LayerStack layers;
+    std::vector<std::string> warnings; ///< one line each: what was odd and what was made of it
+};
+
+/// Reads a slice file: Common Layer Interface (binary or ASCII) or layered SVG, by its content. "-" reads
+/// standard input. Layers come in normal form and in ascending z; what the format does not say is made from
+/// what it does (a Common Layer Interface layer knows its top: its cut is taken half-way up). Throws
+/// Error{input} with file, byte or line, what was found and what was expected.
+[[nodiscard]] LayerFile read_layers(const std::string& path, const Execution& execution = {});
+
+/// The same from bytes in memory; `name` stands for the path in errors.
+[[nodiscard]] LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,
+                                    const Execution& execution = {});
+
+} // namespace lamella

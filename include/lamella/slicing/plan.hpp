@@ -1,0 +1,62 @@
+#pragma once
+
+// Plans: where a mesh is cut. And the one rule of what "above a plane" means.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// Where within its slab of material a layer is cut.
+enum class SliceAt { bottom, middle, top };
+
+/// Which side a vertex that lies exactly on a plane belongs to; see docs/conventions.md, "The rule of the
+/// plane". Nothing ever lies on a plane:
+///                          v.z < z   v.z == z   v.z > z
+///     section_above         below     below      above     the layer is the section of what is just above z
+///     section_below         below     above      above     the layer is the section of what is just below z
+enum class PlaneRule { section_above, section_below };
+
+struct PlannedLayer {
+    std::uint64_t index = 0; ///< in the whole plan, kept when only a part of it is sliced
+    double z = 0;            ///< where the mesh is cut
+    double bottom = 0;       ///< the slab of material: bottom <= z <= top
+    double top = 0;
+};
+
+/// The planes of one job, in strictly ascending z.
+struct Plan {
+    std::vector<PlannedLayer> layers;
+    PlaneRule rule = PlaneRule::section_above;
+};
+
+/// Layers of one height, the first one possibly of another. Lengths in mm.
+struct UniformLayers {
+    double layer_height = 0.1;
+    std::optional<double> first_layer_height; ///< default: layer_height
+    SliceAt slice_at = SliceAt::middle;
+    /// Keep only the layers whose cut lies in [first, second]; absolute z.
+    std::optional<std::pair<double, double>> z_range;
+    /// Keep only the layers with index in [first, second).
+    std::optional<std::pair<std::uint64_t, std::uint64_t>> index_range;
+};
+
+/// Layers of material stacked from z_min: layer i fills [z_min + i h, z_min + (i + 1) h] and exists when its
+/// cut meets the part. So a last layer that is not full is kept when it is cut at the bottom, kept when cut
+/// in the middle if it is more than half full, and dropped when cut at the top; a remainder below a
+/// thousandth of the layer height counts as nothing. Heights are z_first + i * h, never a running sum.
+///
+/// Throws Error{usage} when a height is not a positive finite number, when no layer is left, or when there
+/// would be more than 2^31 - 2 layers.
+[[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers);
+
+/// Cuts at exactly these z. Layer i is cut at z[i]; its slab reaches half-way to its neighbours (for slice_at
+/// middle), from the cut to the next cut (bottom), or from the previous cut to this one (top); the outermost
+/// slabs continue with the neighbouring thickness. Throws Error{usage} when the list is empty, not strictly
+/// ascending or not finite, naming the first offender.
+[[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle);
+
+} // namespace lamella

@@ -1,0 +1,88 @@
+#pragma once
+
+// Mesh and plan in, layers out.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/triangle_soup.hpp"
+#include "lamella/slicing/plan.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+namespace lamella {
+
+/// Either kind of mesh, borrowed for the duration of a call.
+class MeshRef {
+  public:
+    MeshRef(const TriangleSoup& soup) : soup_(&soup) {} // NOLINT(google-explicit-constructor)
+    MeshRef(const IndexedMesh& mesh) : mesh_(&mesh) {}  // NOLINT(google-explicit-constructor)
+
+    [[nodiscard]] const TriangleSoup* soup() const noexcept { return soup_; }
+    [[nodiscard]] const IndexedMesh* mesh() const noexcept { return mesh_; }
+    [[nodiscard]] std::size_t triangles() const noexcept {
+        return soup_ != nullptr ? soup_->size() : mesh_->triangles.size();
+    }
+
+  private:
+    const TriangleSoup* soup_ = nullptr;
+    const IndexedMesh* mesh_ = nullptr;
+};
+
+/// What a slicing run did; the statistics of the program are made from it.
+struct SliceReport {
+    double link_seconds = 0;  ///< ranks and cut graph
+    double slice_seconds = 0; ///< walk and points
+    std::uint64_t layers = 0;
+    std::uint64_t contours = 0;
+    std::uint64_t open_chains = 0;
+    std::uint64_t points = 0;
+};
+
+/// Receives layers while slicing goes on. It is called once for every layer, from several threads at once and
+/// in any order: the place for work that can run in parallel, such as formatting. The function it returns (or
+/// an empty one) is called later, one at a time and in ascending z: the place for what must be in order, such
+/// as writing. Either may throw: slicing stops and the exception reaches the caller.
+using LayerSink = std::function<std::function<void()>(Layer&&)>;
+
+/// One algorithm from mesh and plan to layers.
+struct Engine {
+    std::string_view name;    ///< as in `--engine`
+    std::string_view summary; ///< one line for help texts
+    std::string_view source;  ///< the publication it follows, or ""
+    void (*run)(const MeshRef& mesh, const Plan& plan, const LayerSink& sink, const Execution& execution,
+                SliceReport& report);
+};
+
+/// All engines; the first is the default.
+[[nodiscard]] std::span<const Engine> engines() noexcept;
+
+/// Throws Error{usage} that lists the names there are.
+[[nodiscard]] const Engine& engine(std::string_view name);
+
+/// Slices into memory: one layer per plane of the plan, in order, each in normal form, empty where the plane
+/// misses the mesh. On a closed, consistently oriented mesh every contour is a ring, whatever the
+/// coordinates. Elsewhere what cannot be closed is kept as open chains.
+///
+/// Default engine: O(triangles + points + c log c) for c contours in a layer, on all threads; the same bytes
+/// for any number of threads and any order of the triangles. Throws Error{limit} beyond 2^32 / 3 triangles
+/// with a cut, Error{cancelled}, and what the progress function throws.
+[[nodiscard]] LayerStack slice(const MeshRef& mesh, const Plan& plan, const Execution& execution = {},
+                               SliceReport* report = nullptr, const Engine& with = engines().front());
+
+/// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
+/// flight (some 64 MB per thread, or two layers per thread where single layers are larger). Layers that the
+/// sink has let go of take no memory.
+void slice_to(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution = {},
+              SliceReport* report = nullptr, const Engine& with = engines().front());
+
+/// The area of the section at each plane of the plan, in mm^2, straight from the triangles: no linking, no
+/// contours. For closed meshes it equals the area of the layers, whichever engine made them: the check that
+/// `lamella verify --mesh` and the tests rest on. O(triangles + points).
+[[nodiscard]] std::vector<double> section_areas(const MeshRef& mesh, const Plan& plan,
+                                                const Execution& execution = {});
+
+} // namespace lamella

@@ -1,0 +1,82 @@
+#pragma once
+
+// Writing slice files: Common Layer Interface and SVG.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/point.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// What the head of a slice file says, known before the first layer is.
+struct LayerFileInfo {
+    Box3 box;                 ///< of the part, mm; never empty
+    std::uint64_t layers = 0; ///< how many will follow
+    double bottom = 0;        ///< of the first layer
+    std::string label = "part";
+};
+
+struct LayerWriteOptions {
+    /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
+    /// the ASCII and the short binary form; the long binary form keeps single precision.
+    double units_mm = 0.001;
+    /// Common Layer Interface, binary: 16-bit coordinates; Error{usage} where they do not fit.
+    bool short_form = false;
+    /// Layered SVG: write slic3r:z as Slic3r 1.x does (slicing height times 1e-6).
+    bool slic3r_legacy_z = false;
+};
+
+struct LayerFormat {
+    std::string_view name;      ///< as in `--format`
+    std::string_view extension; ///< with the dot; "" when the format is only chosen by name
+    std::string_view summary;   ///< one line for help texts, quantisation included
+    bool directory = false;     ///< writes one file per layer into a directory
+};
+
+/// cli, cli-ascii, svg, svg-layers.
+[[nodiscard]] std::span<const LayerFormat> layer_formats() noexcept;
+
+/// By name; by extension of the path where the name is empty. Throws Error{usage} that lists what there is.
+[[nodiscard]] const LayerFormat& layer_format(std::string_view name, const std::string& path);
+
+/// Writes one slice file. Layers must arrive in ascending z. Nothing appears at the path before `finish`:
+/// data go to a temporary name in the same folder, which is removed when the writer is destroyed unfinished.
+/// "-" writes standard output.
+class LayerWriter {
+  public:
+    LayerWriter() = default;
+    LayerWriter(const LayerWriter&) = delete;
+    LayerWriter& operator=(const LayerWriter&) = delete;
+    virtual ~LayerWriter() = default;
+
+    /// Formats a layer. May be called for several layers at once, from any threads, in any order. The
+    /// function it returns writes the result; those must be called one at a time in ascending z (see
+    /// LayerSink).
+    [[nodiscard]] virtual std::function<void()> prepare(const Layer& layer) = 0;
+
+    /// Ends the file and gives it its name. Throws Error{output} when anything could not be written, and
+    /// leaves nothing behind. To be called once, after the last layer.
+    virtual void finish() = 0;
+
+    /// Bytes written so far.
+    [[nodiscard]] virtual std::uint64_t bytes() const noexcept = 0;
+};
+
+/// Throws Error{output} when the file cannot be created there, Error{usage} for impossible options.
+[[nodiscard]] std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path,
+                                                             const LayerFormat& format,
+                                                             const LayerFileInfo& info,
+                                                             const LayerWriteOptions& options = {});
+
+/// Writes a whole stack. Formats on one thread; slicing to a file in parallel is `slice_to` with
+/// LayerWriter::prepare as the sink.
+void write_layers(const std::string& path, const LayerFormat& format, std::span<const Layer> layers,
+                  const LayerFileInfo& info, const LayerWriteOptions& options = {});
+
+} // namespace lamella

@@ -1,0 +1,49 @@
+#include "core/pages.hpp"
+
+#include <sys/mman.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+
+namespace lamella {
+
+namespace {
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+}
+
+Pages::Pages(std::size_t bytes) {
+    if (bytes == 0)
+        return;
+    bytes_ = bytes;
+    if (bytes < huge_page) {
+        data_ = std::calloc(1, bytes);
+        if (data_ == nullptr)
+            throw std::bad_alloc();
+        return;
+    }
+    // A whole huge page of slack lets the data start on one; what lies before it is given back.
+    if (bytes > ~std::size_t{0} - 2 * huge_page)
+        throw std::bad_alloc();
+    const std::size_t mapped = bytes + huge_page;
+    void* base =
+        mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (base == MAP_FAILED)
+        throw std::bad_alloc();
+    const auto address = reinterpret_cast<std::uintptr_t>(base);
+    const std::uintptr_t aligned = (address + huge_page - 1) & ~(huge_page - 1);
+    if (aligned != address)
+        munmap(base, aligned - address);
+    data_ = reinterpret_cast<void*>(aligned); // NOLINT(performance-no-int-to-ptr): alignment of a mapping
+    bytes_ = mapped - (aligned - address);
+    madvise(data_, bytes_, MADV_HUGEPAGE); // a wish; without huge pages all still works
+}
+
+Pages::~Pages() {
+    if (bytes_ >= huge_page)
+        munmap(data_, bytes_);
+    else
+        std::free(data_);
+}
+
+} // namespace lamella

@@ -1,0 +1,54 @@
+#pragma once
+
+// Large uninitialised arrays. Fresh memory in 4 KB pages costs more than all the arithmetic of slicing, so
+// big arrays are asked for in pages of 2 MB, and only the pages that are touched are ever there.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+namespace lamella {
+
+/// A block of anonymous memory, zero where it was never written. Throws std::bad_alloc.
+class Pages {
+  public:
+    Pages() = default;
+    explicit Pages(std::size_t bytes);
+    ~Pages();
+    Pages(Pages&& other) noexcept
+        : data_(std::exchange(other.data_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
+    Pages& operator=(Pages&& other) noexcept {
+        std::swap(data_, other.data_);
+        std::swap(bytes_, other.bytes_);
+        return *this;
+    }
+
+    [[nodiscard]] void* data() const noexcept { return data_; }
+
+  private:
+    void* data_ = nullptr;
+    std::size_t bytes_ = 0;
+};
+
+/// An array of trivial values on such a block, all zero bytes at first.
+template <class T>
+class PageArray {
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+  public:
+    PageArray() = default;
+    explicit PageArray(std::size_t size) : pages_(size * sizeof(T)), size_(size) {}
+
+    [[nodiscard]] T* data() const noexcept { return static_cast<T*>(pages_.data()); }
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    T& operator[](std::size_t i) const noexcept { return data()[i]; }
+    [[nodiscard]] std::span<T> span() const noexcept { return {data(), size_}; }
+
+  private:
+    Pages pages_;
+    std::size_t size_ = 0;
+};
+
+} // namespace lamella
