@@ -1,1 +1,42 @@
+# What `cmake --install` lays down, so that find_package(lamella) and pkg-config find it wherever the tree is
+# moved.
 
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lamella)
+set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+install(TARGETS lamella EXPORT lamella-targets)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lamella DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# A static library leaves it to its user to link what it needs; a shared one has done so itself.
+get_target_property(library_type lamella TYPE)
+if(library_type STREQUAL "STATIC_LIBRARY")
+    set(LAMELLA_IS_STATIC TRUE)
+    set(pc_requires "Requires: expat")
+    set(pc_libs "-llamella -pthread")
+else()
+    set(LAMELLA_IS_STATIC FALSE)
+    set(pc_requires "Requires.private: expat")
+    set(pc_libs "-llamella\nLibs.private: -pthread")
+endif()
+
+configure_package_config_file(
+    ${PROJECT_SOURCE_DIR}/cmake/lamella-config.cmake.in ${PROJECT_BINARY_DIR}/lamella-config.cmake
+    INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/lamella-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/lamella-config.cmake ${PROJECT_BINARY_DIR}/lamella-config-version.cmake
+        DESTINATION ${package_dir})
+
+file(RELATIVE_PATH pc_to_prefix /prefix/${pkgconfig_dir} /prefix)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/lamella.pc.in ${PROJECT_BINARY_DIR}/lamella.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/lamella.pc DESTINATION ${pkgconfig_dir})
+
+if(TARGET lamella_app)
+    file(RELATIVE_PATH bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
+    set_target_properties(lamella_app PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib})
+    install(TARGETS lamella_app)
+endif()

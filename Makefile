@@ -1,0 +1,91 @@
+# The short way to everything. Each target works on a Debian 12 that has only git, make, and root or sudo; the
+# build itself is CMake's (CMakePresets.json).
+
+PREFIX ?= /usr/local
+JOBS := $(shell nproc)
+CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
+THREADED := ^(core|mesh|contour|read|slicing|polygon|pipeline)$$
+SOURCES = $(shell find app bench examples include src tests -name '*.[ch]pp' 2>/dev/null)
+
+# A compiler cache is used where there is one.
+ifneq ($(shell command -v ccache),)
+export CMAKE_CXX_COMPILER_LAUNCHER := ccache
+endif
+
+help:  ## this list
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
+
+packages:  ## install the Debian packages that a build needs
+	@tools/install_packages.sh tools/packages.txt
+
+build: packages  ## build the program: build/lamella
+	cmake --preset release
+	cmake --build build --target lamella_app
+
+demo: build  ## make, slice and verify two parts; pictures and slice files are left in out/
+	@tools/demo.sh build/lamella out
+
+test: packages  ## build everything and run the tests: a few minutes
+	cmake --preset release -D LAMELLA_LARGE_TESTS=OFF
+	cmake --build build
+	$(CTEST) --test-dir build
+
+test-all: test-large test-asan test-tsan test-fuzz test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
+
+# Each of these is a part of test-all.
+packages-all: packages
+	@tools/install_packages.sh tools/packages-all.txt
+
+test-large: packages-all
+	cmake --preset release -D LAMELLA_LARGE_TESTS=ON
+	cmake --build build
+	$(CTEST) --test-dir build --label-regex large
+
+test-asan: packages-all
+	cmake --preset asan-ubsan
+	cmake --build build-asan
+	$(CTEST) --test-dir build-asan
+
+test-tsan: packages-all
+	cmake --preset tsan
+	cmake --build build-tsan
+	$(CTEST) --test-dir build-tsan --label-regex '$(THREADED)'
+
+test-fuzz: packages-all
+	cmake --preset fuzz
+	cmake --build build-fuzz
+	$(CTEST) --test-dir build-fuzz
+
+test-shared: packages-all
+	cmake --preset shared
+	cmake --build build-shared --target lamella_app lamella_example_slice_part
+	$(CTEST) --test-dir build-shared --label-regex '^house$$'
+
+bench: packages  ## build and run the benchmarks (bench/README.md)
+	@tools/install_packages.sh tools/packages-bench.txt
+	cmake --preset bench
+	cmake --build build-bench
+	bench/run.sh build-bench
+
+format:  ## lay out the sources by .clang-format
+	@tools/install_packages.sh tools/packages-lint.txt
+	clang-format -i $(SOURCES)
+
+format-check:  ## fail where `make format` would change something
+	@tools/install_packages.sh tools/packages-lint.txt
+	clang-format --dry-run --Werror $(SOURCES)
+
+lint: packages  ## static analysis by .clang-tidy
+	@tools/install_packages.sh tools/packages-lint.txt
+	cmake --preset release
+	run-clang-tidy -quiet -j $(JOBS) -p build
+
+install: build  ## install to PREFIX (default /usr/local)
+	cmake --install build --prefix '$(PREFIX)'
+
+clean:  ## remove what was built
+	rm -rf build build-* out
+
+.NOTPARALLEL:
+.PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
+        bench format format-check lint install clean

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""Checks the floors of the house (docs/architecture.md) against every #include of the sources.
+
+usage: tools/check_floors.py [ROOT]
+
+Prints one line for each include that breaks a rule and exits with 1 if there is any.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+# The floors, lowest first. A room may include itself and what ROOMS allows it, which lies on floors below.
+FLOORS = [
+    ["core"],
+    ["mesh", "contour", "container"],
+    ["read", "slicing", "polygon"],
+    ["write"],
+    ["pipeline"],
+]
+
+# What a room may include besides itself, and in the comment what it may not although it lies below.
+ROOMS = {
+    "core": [],
+    "mesh": ["core"],
+    "contour": ["core"],
+    "container": ["core"],
+    "read": ["core", "container", "mesh", "contour"],
+    "slicing": ["core", "mesh", "contour"],  # not container: engines never touch files
+    "polygon": ["core", "contour"],  # not mesh: layers, whoever made them
+    "write": ["core", "container", "mesh", "contour", "polygon"],  # not slicing, not read: any layers
+    "pipeline": ["core", "container", "mesh", "contour", "read", "slicing", "polygon", "write"],
+}
+
+# Third-party headers of the library: each is visible in one source, text formatting in all of them.
+THIRD_PARTY = {
+    "expat.h": "src/container/xml.cpp",
+    "xxhash.h": "src/contour/normal_form.cpp",
+}
+THIRD_PARTY_ANYWHERE = {"fmt"}
+
+# One file pair per engine in src/slicing. Only the table of engines knows them.
+ENGINES = ["sweep"]
+ENGINE_TABLE = "src/slicing/engine_table.cpp"
+
+STANDARD = set(
+    """algorithm any array atomic barrier bit bitset cassert cctype cerrno cfenv cfloat charconv chrono
+    cinttypes climits clocale cmath codecvt compare complex concepts condition_variable coroutine csetjmp
+    csignal cstdarg cstddef cstdint cstdio cstdlib cstring ctime cuchar cwchar cwctype deque exception
+    execution filesystem format forward_list fstream functional future initializer_list iomanip ios iosfwd
+    iostream istream iterator latch limits list locale map memory memory_resource mutex new numbers numeric
+    optional ostream queue random ranges ratio regex scoped_allocator semaphore set shared_mutex
+    source_location span sstream stack stdexcept stop_token streambuf string string_view strstream
+    syncstream system_error thread tuple type_traits typeindex typeinfo unordered_map unordered_set utility
+    valarray variant vector version""".split()
+)
+
+# The operating system and the processor: sources of the library may see them, its public headers may not.
+SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|[a-z0-9]+intrin|unistd|fcntl|sched|pthread|poll|signal|"
+                    r"spawn|dirent|dlfcn|cpuid|malloc|errno|limits|stdlib|stdint)(\.h)?$")
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:<([^>\n]+)>|"([^"\n]+)")', re.MULTILINE)
+COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+
+
+class House:
+    def __init__(self, root):
+        self.root = Path(root).resolve()
+        self.findings = []
+
+    def check(self):
+        self.check_table()
+        for folder in ["include", "src", "app", "bench", "examples", "python", "tests"]:
+            for path in sorted((self.root / folder).rglob("*")):
+                if path.suffix in (".hpp", ".cpp", ".h", ".inc"):
+                    self.check_file(path)
+        return self.findings
+
+    def check_table(self):
+        floor = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
+        for room, below in ROOMS.items():
+            for other in below:
+                if floor[other] >= floor[room]:
+                    self.findings.append(f"check_floors: {room} may not be allowed {other}: not on a floor below")
+
+    def check_file(self, path):
+        name = path.relative_to(self.root).as_posix()
+        # Comments keep their line breaks, so that line numbers stay right.
+        text = COMMENT.sub(lambda m: "\n" * m.group().count("\n"), path.read_text(encoding="utf-8"))
+        for match in INCLUDE.finditer(text):
+            line = text.count("\n", 0, match.start()) + 1
+            angled, quoted = match.groups()
+            complaint = self.judge(name, angled, quoted)
+            if complaint:
+                self.findings.append(f"{name}:{line}: {complaint}")
+
+    def judge(self, name, angled, quoted):
+        target = self.resolve(name, angled or quoted, quoted is not None)
+        if target is None:
+            if quoted is not None:
+                return f'"{quoted}" is no file of this project; other headers are included with <>'
+            return self.judge_foreign(name, angled)
+        return self.judge_own(name, target)
+
+    def resolve(self, name, header, quoted):
+        """The file of this project that an include means, relative to the root, or None."""
+        places = ["include", "src", "tests"] if quoted else ["include"]
+        if quoted:
+            places.insert(0, str(Path(name).parent))
+        for place in places:
+            candidate = (self.root / place / header).resolve()
+            if candidate.is_file() and candidate.is_relative_to(self.root):
+                return candidate.relative_to(self.root).as_posix()
+        return None
+
+    def judge_foreign(self, name, header):
+        if header in STANDARD or not name.startswith(("include/", "src/")):
+            return None
+        if name.startswith("include/"):
+            return f"public headers need only the standard library, not <{header}>"
+        if SYSTEM.match(header):
+            return None
+        library = header.split("/")[0]
+        if library in THIRD_PARTY_ANYWHERE:
+            return None
+        home = THIRD_PARTY.get(library)
+        if home is None:
+            return f"<{header}> belongs to no library that tools/check_floors.py knows"
+        if name != home:
+            return f"<{header}> may be visible in {home} only"
+        return None
+
+    def judge_own(self, name, target):
+        public = target.startswith("include/lamella/")
+        user, used = room_of(name), room_of(target)
+        parts = name.split("/")
+
+        if target.startswith("tests/"):
+            return None if parts[0] == "tests" else "only tests may include what belongs to the tests"
+        if parts[0] in ("include", "src"):
+            if user == "door":
+                return None if public else "the door shows public headers only"
+            if used == "door":
+                return "the door is for those outside; include the header of the room"
+            if parts[0] == "include" and not public:
+                return f"a public header may not include the private {target}"
+            if used != user and used not in ROOMS[user]:
+                return f"{user} may not include {target}: {used} is not below it"
+            return self.judge_engine(name, target)
+        if public or not target.startswith("src/"):
+            return None
+        if parts[0] == "tests" and user in ROOMS:
+            if used == user or used in ROOMS[user]:
+                return None
+            return f"tests of {user} may not open {target}: {used} is not below it"
+        return f"only public headers may be included here, not {target}"
+
+    def judge_engine(self, name, target):
+        if not target.startswith("src/slicing/"):
+            return None
+        used, user = Path(target).stem, Path(name).stem
+        if used in ENGINES and used != user and name != ENGINE_TABLE:
+            return f"only {ENGINE_TABLE} may include the engine {target}"
+        return None
+
+
+def room_of(name):
+    """The room that a path belongs to: "core", ..., "door", or None outside the library and its tests."""
+    parts = name.split("/")
+    if parts[0] == "include":
+        return parts[2] if len(parts) > 3 else "door"
+    if parts[0] in ("src", "tests") and len(parts) > 2:
+        return parts[1]
+    return None
+
+
+def main(arguments):
+    root = arguments[1] if len(arguments) > 1 else Path(__file__).resolve().parent.parent
+    findings = House(root).check()
+    for finding in findings:
+        print(finding)
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))

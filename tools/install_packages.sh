@@ -1,0 +1,32 @@
+#!/bin/sh
+# Installs the Debian packages of the given lists, skipping those that are there.
+# usage: tools/install_packages.sh LIST...
+set -eu
+
+if ! command -v dpkg-query >/dev/null 2>&1; then
+    echo "install_packages: this is not a Debian system; please install what these lists name: $*" >&2
+    exit 0
+fi
+
+missing=
+for package in $(sed 's/#.*//' "$@"); do
+    status=$(dpkg-query --show --showformat '${db:Status-Status}' "$package" 2>/dev/null) || status=absent
+    [ "$status" = installed ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+if [ "$(id -u)" -eq 0 ]; then
+    as_root=
+elif command -v sudo >/dev/null 2>&1; then
+    as_root=sudo
+else
+    echo "install_packages: missing packages, and neither root nor sudo to install them." >&2
+    echo "Please run as root: apt-get install --no-install-recommends$missing" >&2
+    exit 1
+fi
+
+echo "Installing:$missing"
+$as_root apt-get update --quiet=2
+# Word splitting is meant: one argument per package.
+# shellcheck disable=SC2086
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install --quiet=2 --yes --no-install-recommends $missing
