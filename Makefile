@@ -23,7 +23,7 @@ build: packages  ## build the program: build/lamella
 	cmake --build build --target lamella_app
 
 demo: build  ## make, slice and verify two parts; pictures and slice files are left in out/
-	@tools/demo.sh build/lamella out
+	@python3 tools/demo.py build/lamella out
 
 test: packages  ## build everything and run the tests: a few minutes
 	cmake --preset release -D LAMELLA_LARGE_TESTS=OFF
