@@ -46,13 +46,16 @@ class PointArray {
 /// A layer without contours has offsets == {0}.
 ///
 /// Material lies to the left of the direction of a contour: outer rings run counter-clockwise, holes
-/// clockwise.
+/// clockwise. Coordinates are finite, and zero is +0 (a -0 would compare equal and hash differently).
+///
+/// The members may be filled directly: an engine that knows its counts beforehand lets many layers share one
+/// block of points.
 struct Layer {
     std::uint64_t index = 0; ///< in the whole plan, also when only a part of it was sliced
     double z = 0;            ///< where it was cut
     double bottom = 0;       ///< the slab of material that it stands for: bottom <= z <= top
     double top = 0;
-    PointArray points;
+    PointArray points = {};
     std::vector<std::uint64_t> offsets{0};
     std::size_t rings = 0;
 
@@ -71,8 +74,8 @@ using LayerStack = std::vector<Layer>;
 /// Collects contours in any order and makes a layer of them (see `normal_form`).
 class LayerBuilder {
   public:
-    /// Appends a point to the contour under construction.
-    void add_point(const Point2& p) { points_.push_back(p); }
+    /// Appends a point to the contour under construction. -0 becomes +0.
+    void add_point(const Point2& p) { points_.push_back({p.x + 0.0, p.y + 0.0}); }
     /// Ends the contour under construction. One without points is forgotten.
     void end_contour(bool closed);
     /// The layer, in normal form, with index, z, bottom and top as given. The builder is empty afterwards.
@@ -81,8 +84,8 @@ class LayerBuilder {
 
   private:
     struct End {
-        std::size_t offset;
-        bool closed;
+        std::size_t offset = 0; ///< one past the contour's last point
+        bool closed = false;
     };
     std::vector<Point2> points_;
     std::vector<End> ends_;

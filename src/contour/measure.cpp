@@ -1,0 +1,57 @@
+#include "lamella/contour/measure.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace lamella {
+
+double ring_area(std::span<const Point2> ring) noexcept {
+    if (ring.size() < 3)
+        return 0;
+    // A fan of triangles about the first point. Four running sums, added in a fixed order at the end: one
+    // would make each addition wait for the one before it.
+    const Point2 origin = ring.front();
+    std::array<double, 4> twice{};
+    for (std::size_t i = 2; i < ring.size(); ++i) {
+        const double ax = ring[i - 1].x - origin.x;
+        const double ay = ring[i - 1].y - origin.y;
+        const double bx = ring[i].x - origin.x;
+        const double by = ring[i].y - origin.y;
+        twice[i % 4] += ax * by - ay * bx;
+    }
+    return 0.5 * ((twice[0] + twice[1]) + (twice[2] + twice[3]));
+}
+
+double contour_length(std::span<const Point2> contour, bool closed) noexcept {
+    if (contour.size() < 2)
+        return 0;
+    // Not std::hypot: it is many times slower, and squares of millimetres are far from overflow.
+    const auto distance = [](const Point2& a, const Point2& b) {
+        const double dx = b.x - a.x;
+        const double dy = b.y - a.y;
+        return std::sqrt(dx * dx + dy * dy);
+    };
+    std::array<double, 4> sums{};
+    for (std::size_t i = 1; i < contour.size(); ++i)
+        sums[i % 4] += distance(contour[i - 1], contour[i]);
+    if (closed)
+        sums[0] += distance(contour.back(), contour.front());
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+LayerMeasure measure(const Layer& layer) noexcept {
+    LayerMeasure result{
+        .contours = layer.contours(), .open_chains = layer.open_chains(), .points = layer.points.size()};
+    for (std::size_t i = 0; i < layer.contours(); ++i) {
+        const bool closed = layer.closed(i);
+        if (closed) {
+            const double area = ring_area(layer.contour(i));
+            result.area_mm2 += area;
+            result.holes += area < 0 ? 1 : 0;
+        }
+        result.perimeter_mm += contour_length(layer.contour(i), closed);
+    }
+    return result;
+}
+
+} // namespace lamella

@@ -1,0 +1,179 @@
+#include "lamella/contour/normal_form.hpp"
+
+#include "core/pages.hpp"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the content hash reads memory as little-endian");
+static_assert(sizeof(Point2) == 2 * sizeof(double), "points are hashed and compared as bytes");
+
+// Plain comparisons instead of the three-way one: these loops run over every point of every layer.
+bool less(const Point2& a, const Point2& b) {
+    return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+bool same(const Point2& a, const Point2& b) {
+    return a.x == b.x && a.y == b.y;
+}
+
+// The smallest rotation of a ring whose smallest point occurs more than once. Two candidate starts i < j
+// race; after a common run of k points the loser and the k starts behind it are out, because each of them
+// loses to the start that lies as far behind the winner. So the candidates advance by at most 2 n in all.
+std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::size_t first,
+                                           std::size_t second) {
+    const std::size_t n = ring.size();
+    const auto at = [&](std::size_t i) -> const Point2& {
+        return ring[i < n ? i : i - n];
+    };
+    std::size_t i = first;
+    std::size_t j = second;
+    std::size_t k = 0;
+    while (j < n && k < n) {
+        const Point2& a = at(i + k);
+        const Point2& b = at(j + k);
+        if (same(a, b)) {
+            ++k;
+            continue;
+        }
+        if (less(a, b)) {
+            j += k + 1;
+        } else {
+            i = std::max(i + k + 1, j);
+            j = i + 1;
+        }
+        k = 0;
+    }
+    return i;
+}
+
+struct Placement {
+    std::size_t contour;
+    std::size_t start;
+};
+
+// The points of a contour from its start on, as the normal form has them, without moving them.
+class Rotated {
+  public:
+    Rotated(std::span<const Point2> contour, std::size_t start)
+        : head_(contour.subspan(start)), tail_(contour.first(start)) {}
+
+    [[nodiscard]] std::size_t size() const { return head_.size() + tail_.size(); }
+    const Point2& operator[](std::size_t i) const {
+        return i < head_.size() ? head_[i] : tail_[i - head_.size()];
+    }
+    Point2* copy_to(Point2* out) const {
+        out = std::copy(head_.begin(), head_.end(), out);
+        return std::copy(tail_.begin(), tail_.end(), out);
+    }
+
+  private:
+    std::span<const Point2> head_;
+    std::span<const Point2> tail_;
+};
+
+template <class Contour>
+bool before(const Contour& a, const Contour& b) {
+    const std::size_t n = std::min(a.size(), b.size());
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!same(a[i], b[i]))
+            return less(a[i], b[i]);
+    }
+    return a.size() < b.size();
+}
+
+} // namespace
+
+std::size_t smallest_rotation(std::span<const Point2> ring) noexcept {
+    std::size_t best = 0;
+    std::size_t repeat = 0; // a later occurrence of the best point; 0 is none
+    for (std::size_t i = 1; i < ring.size(); ++i) {
+        if (ring[i].x > ring[best].x)
+            continue;
+        if (less(ring[i], ring[best])) {
+            best = i;
+            repeat = 0;
+        } else if (repeat == 0 && same(ring[i], ring[best])) {
+            repeat = i;
+        }
+    }
+    return repeat == 0 ? best : smallest_rotation_with_repeats(ring, best, repeat);
+}
+
+bool stands_before(std::span<const Point2> a, std::span<const Point2> b) noexcept {
+    return before(a, b);
+}
+
+bool in_normal_form(const Layer& layer) noexcept {
+    for (std::size_t i = 0; i < layer.contours(); ++i) {
+        const std::span<const Point2> contour = layer.contour(i);
+        if (i > 0 && i != layer.rings && before(contour, layer.contour(i - 1)))
+            return false;
+        if (layer.closed(i) && smallest_rotation(contour) != 0)
+            return false;
+    }
+    return true;
+}
+
+Layer normal_form(Layer layer) {
+    if (in_normal_form(layer))
+        return layer;
+
+    std::vector<Placement> order(layer.contours());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = {i, layer.closed(i) ? smallest_rotation(layer.contour(i)) : 0};
+    const auto rotated = [&](const Placement& p) {
+        return Rotated(layer.contour(p.contour), p.start);
+    };
+    const auto ordered = [&](const Placement& a, const Placement& b) {
+        return before(rotated(a), rotated(b));
+    };
+    const auto chains = order.begin() + static_cast<std::ptrdiff_t>(layer.rings);
+    std::sort(order.begin(), chains, ordered);
+    std::sort(chains, order.end(), ordered);
+
+    const auto points = std::make_shared<const PageArray<Point2>>(layer.points.size());
+    std::vector<std::uint64_t> offsets;
+    offsets.reserve(layer.offsets.size());
+    offsets.push_back(0);
+    Point2* end = points->data();
+    for (const Placement& p : order) {
+        end = rotated(p).copy_to(end);
+        offsets.push_back(static_cast<std::uint64_t>(end - points->data()));
+    }
+    layer.points = PointArray(points, points->data(), offsets.back());
+    layer.offsets = std::move(offsets);
+    return layer;
+}
+
+bool same_contours(const Layer& a, const Layer& b) noexcept {
+    if (a.rings != b.rings || a.offsets != b.offsets)
+        return false;
+    // Empty arrays may be null pointers, which memcmp must not see.
+    return a.points.empty() || a.points.data() == b.points.data() ||
+           std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Point2)) == 0;
+}
+
+std::uint64_t content_hash(const Layer& layer) noexcept {
+    XXH3_state_t state;
+    XXH3_64bits_reset(&state);
+    const std::array<std::uint64_t, 2> counts{layer.contours(), layer.rings};
+    XXH3_64bits_update(&state, counts.data(), sizeof counts);
+    XXH3_64bits_update(&state, layer.offsets.data() + 1, layer.contours() * sizeof(std::uint64_t));
+    XXH3_64bits_update(&state, layer.points.data(), layer.points.size() * sizeof(Point2));
+    return XXH3_64bits_digest(&state);
+}
+
+} // namespace lamella

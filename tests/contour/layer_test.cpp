@@ -1,0 +1,96 @@
+#include "lamella/contour/layer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+namespace lamella {
+namespace {
+
+void add(LayerBuilder& builder, std::initializer_list<Point2> points, bool closed) {
+    for (const Point2& p : points)
+        builder.add_point(p);
+    builder.end_contour(closed);
+}
+
+TEST(PointArray, KeepsItsMemoryAliveThroughCopies) {
+    PointArray copy;
+    std::weak_ptr<const void> watch;
+    {
+        const PointArray first(std::vector<Point2>{{1, 2}, {3, 4}});
+        watch = first.owner();
+        copy = first;
+    }
+    EXPECT_FALSE(watch.expired());
+    EXPECT_EQ(copy[1], (Point2{3, 4}));
+    copy = {};
+    EXPECT_TRUE(watch.expired());
+}
+
+TEST(PointArray, SharesOneBlockBetweenArraysCutFromIt) {
+    auto block = std::make_shared<std::vector<Point2>>(std::vector<Point2>{{1, 0}, {2, 0}, {3, 0}});
+    const PointArray tail(block, block->data() + 1, 2);
+    block.reset();
+    EXPECT_EQ(tail.size(), 2U);
+    EXPECT_EQ(tail[0].x, 2);
+    EXPECT_EQ(tail[1].x, 3);
+}
+
+TEST(Layer, WithoutContoursHasOneOffset) {
+    const Layer layer;
+    EXPECT_EQ(layer.contours(), 0U);
+    EXPECT_EQ(layer.open_chains(), 0U);
+    EXPECT_TRUE(layer.points.empty());
+}
+
+TEST(LayerBuilder, PutsRingsBeforeChainsAndKeepsTheGivenHeights) {
+    LayerBuilder builder;
+    add(builder, {{0, 0}, {9, 9}}, false);
+    add(builder, {{5, 5}, {6, 5}, {5, 6}}, true);
+    add(builder, {{0, 0}, {4, 0}, {4, 4}, {0, 4}}, true);
+    const Layer layer = builder.finish(7, 0.25, 0.2, 0.3);
+    EXPECT_EQ(layer.index, 7U);
+    EXPECT_EQ(layer.z, 0.25);
+    EXPECT_EQ(layer.bottom, 0.2);
+    EXPECT_EQ(layer.top, 0.3);
+    EXPECT_EQ(layer.rings, 2U);
+    EXPECT_EQ(layer.open_chains(), 1U);
+    EXPECT_EQ(layer.offsets, (std::vector<std::uint64_t>{0, 4, 7, 9}));
+    EXPECT_EQ(layer.contour(2)[1], (Point2{9, 9}));
+}
+
+TEST(LayerBuilder, ForgetsContoursWithoutPointsAndThoseNeverEnded) {
+    LayerBuilder builder;
+    builder.end_contour(true);
+    EXPECT_TRUE(builder.empty());
+    add(builder, {{0, 0}, {1, 0}, {0, 1}}, true);
+    builder.end_contour(false);
+    builder.add_point({8, 8});
+    const Layer layer = builder.finish(0, 0, 0, 0);
+    EXPECT_EQ(layer.contours(), 1U);
+    EXPECT_EQ(layer.points.size(), 3U);
+}
+
+TEST(LayerBuilder, IsEmptyAndReadyAgainAfterwards) {
+    LayerBuilder builder;
+    add(builder, {{0, 0}, {1, 0}, {0, 1}}, true);
+    EXPECT_EQ(builder.finish(0, 0, 0, 0).contours(), 1U);
+    EXPECT_TRUE(builder.empty());
+    EXPECT_EQ(builder.finish(0, 0, 0, 0).contours(), 0U);
+    add(builder, {{2, 0}, {3, 0}, {2, 1}}, true);
+    EXPECT_EQ(builder.finish(0, 0, 0, 0).points[0], (Point2{2, 0}));
+}
+
+TEST(LayerBuilder, TurnsNegativeZeroIntoPositiveZero) {
+    LayerBuilder builder;
+    add(builder, {{-0.0, 0}, {1, -0.0}, {0, 1}}, true);
+    const Layer layer = builder.finish(0, 0, 0, 0);
+    for (const Point2& p : layer.points) {
+        EXPECT_FALSE(std::signbit(p.x));
+        EXPECT_FALSE(std::signbit(p.y));
+    }
+}
+
+} // namespace
+} // namespace lamella
