@@ -69,11 +69,11 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 
 format:  ## lay out the sources by .clang-format
 	@tools/install_packages.sh tools/packages-lint.txt
-	clang-format -i $(SOURCES)
+	@clang-format -i $(SOURCES)
 
 format-check:  ## fail where `make format` would change something
 	@tools/install_packages.sh tools/packages-lint.txt
-	clang-format --dry-run --Werror $(SOURCES)
+	@clang-format --dry-run --Werror $(SOURCES)
 
 lint: packages  ## static analysis by .clang-tidy
 	@tools/install_packages.sh tools/packages-lint.txt

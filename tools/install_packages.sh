@@ -29,4 +29,5 @@ echo "Installing:$missing"
 $as_root apt-get update --quiet=2
 # Word splitting is meant: one argument per package.
 # shellcheck disable=SC2086
-$as_root env DEBIAN_FRONTEND=noninteractive apt-get install --quiet=2 --yes --no-install-recommends $missing
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install --quiet=2 --yes --no-install-recommends \
+    --option Dpkg::Use-Pty=0 $missing >/dev/null

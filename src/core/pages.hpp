@@ -17,6 +17,8 @@ class Pages {
     Pages() = default;
     explicit Pages(std::size_t bytes);
     ~Pages();
+    Pages(const Pages&) = delete;
+    Pages& operator=(const Pages&) = delete;
     Pages(Pages&& other) noexcept
         : data_(std::exchange(other.data_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
     Pages& operator=(Pages&& other) noexcept {
