@@ -41,7 +41,7 @@ THIRD_PARTY_ANYWHERE = {"fmt"}
 
 # One file pair per engine in src/slicing. Only the table of engines knows them.
 ENGINES = ["sweep"]
-ENGINE_TABLE = "src/slicing/engine_table.cpp"
+ENGINE_TABLE = "src/slicing/engines.cpp"
 
 STANDARD = set(
     """algorithm any array atomic barrier bit bitset cassert cctype cerrno cfenv cfloat charconv chrono

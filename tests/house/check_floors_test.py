@@ -21,7 +21,7 @@ SOUND = {
     "src/contour/normal_form.cpp": "#include <xxhash.h>\n#include <fmt/format.h>\n",
     "src/slicing/sweep.hpp": '#include "core/executor.hpp"\n',
     "src/slicing/sweep.cpp": '#include "sweep.hpp"\n',
-    "src/slicing/engine_table.cpp": '#include "slicing/sweep.hpp"\n',
+    "src/slicing/engines.cpp": '#include "slicing/sweep.hpp"\n',
     "src/slicing/cut_graph.hpp": "",
     "src/polygon/grid.hpp": "",
     "app/main.cpp": "#include <lamella/lamella.hpp>\n#include <CLI/CLI.hpp>\n",
@@ -87,7 +87,7 @@ class CheckFloors(unittest.TestCase):
 
     def test_finds_an_engine_that_includes_another(self):
         self.assert_found({"src/slicing/eecc.cpp": '#include "slicing/sweep.hpp"\n'}, "src/slicing/eecc.cpp:1:",
-                          "engine_table.cpp may include the engine")
+                          "engines.cpp may include the engine")
 
     def test_finds_a_room_that_walks_through_the_door(self):
         self.assert_found({"src/slicing/a.cpp": '#include "lamella/lamella.hpp"\n'}, "src/slicing/a.cpp:1:", "door")
