@@ -1,0 +1,65 @@
+#pragma once
+
+// Output that appears whole or not at all.
+
+#include "lamella/core/error.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// The error for a path that could not be written: the path, what the system said (an errno), and what to do
+/// about it, in one line.
+[[nodiscard]] Error output_error(const std::string& path, int system_error);
+
+/// A file that gets its name when it is complete. Until then its bytes are in a file with another name in the
+/// same folder, which is removed with this object. A file of that name that is there already is replaced (and
+/// keeps its permissions); through a symbolic link, the file that the link points to is.
+///
+/// "-" is standard output. That and what is not a regular file (pipes, devices) is written in place, since it
+/// can be neither renamed nor taken back.
+///
+/// For one thread at a time, but for `bytes`. All failures are Error{output}; after one nothing is left
+/// behind and the file takes no more.
+class AtomicFile {
+  public:
+    explicit AtomicFile(std::string path);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    /// Small pieces are collected, large ones are written at once without being copied.
+    void append(std::string_view bytes);
+
+    /// Writes what is left and gives the file its name. To be called once, at the end.
+    void commit();
+
+    /// Bytes appended so far.
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
+    /// As given.
+    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+  private:
+    void open_in_place();
+    void open_temporary();
+    void write_out(std::string_view bytes);
+    void flush();
+    void discard() noexcept;
+    [[noreturn]] void fail(int system_error);
+
+    std::string path_;
+    std::string target_;    ///< path_ with symbolic links followed
+    std::string temporary_; ///< empty when written in place
+    int descriptor_ = -1;
+    bool owns_descriptor_ = true;
+    std::unique_ptr<char[]> buffer_;
+    std::size_t buffered_ = 0;
+    std::atomic<std::uint64_t> bytes_{0};
+};
+
+} // namespace lamella
