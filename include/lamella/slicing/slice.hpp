@@ -48,13 +48,23 @@ struct SliceReport {
 /// as writing. Either may throw: slicing stops and the exception reaches the caller.
 using LayerSink = std::function<std::function<void()>(Layer&&)>;
 
+/// What an engine is given.
+struct SliceJob {
+    const MeshRef& mesh;
+    const Plan& plan;
+    const LayerSink& sink;
+    const Execution& execution;
+    /// How many points may be under way between the engine and the sink's last word on them; 0: any number.
+    std::uint64_t points_in_flight;
+    SliceReport& report;
+};
+
 /// One algorithm from mesh and plan to layers.
 struct Engine {
     std::string_view name;    ///< as in `--engine`
     std::string_view summary; ///< one line for help texts
     std::string_view source;  ///< the publication it follows, or ""
-    void (*run)(const MeshRef& mesh, const Plan& plan, const LayerSink& sink, const Execution& execution,
-                SliceReport& report);
+    void (*run)(const SliceJob& job);
 };
 
 /// All engines; the first is the default.

@@ -1,0 +1,111 @@
+#pragma once
+
+// The cut graph: every mesh edge that at least one plane cuts, linked to its successors. It holds every
+// contour of every layer; a layer's contours are read off by following links, without any search.
+//
+// The thought: with consistent orientation a contour leaves an edge, on every plane that cuts it, through the
+// same triangle: the one in which the edge runs downwards (so that material is on the left). Of that
+// triangle's two other edges one leads on below the middle vertex and the other one above it. King, Rennie
+// and Bennett (2021, section 3.2) use that a neighbour once found stays the neighbour along the edge; here it
+// is found once and for all.
+
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "slicing/edge_cut.hpp"
+#include "slicing/ranks.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace lamella {
+
+/// No node: the mesh ends here (a boundary, or orientation that does not fit).
+constexpr std::uint32_t no_node = 0xFFFFFFFF;
+
+/// One cut edge; `Ends` identifies and locates its two end vertices, the lower one first.
+///
+/// On plane i with first <= i < last a contour runs through the edge, and on to the node next(i).
+template <class Ends>
+struct CutNode {
+    Ends ends;
+    std::uint32_t next_low;  ///< the successor on planes below `split`; no_node where the contour ends
+    std::uint32_t next_high; ///< the successor from plane `split` on
+    std::uint32_t split; ///< the rank of the triangle's middle vertex; `first` when there is one successor
+    std::uint32_t first : 31;  ///< the rank of the lower end
+    std::uint32_t entered : 1; ///< some node leads here
+    std::uint32_t last;        ///< the rank of the upper end; a node with last == first is not in use
+    std::uint32_t triangle;    ///< that the contour leaves through; meaningful when next_low is a node
+
+    [[nodiscard]] std::uint32_t next(std::uint32_t plane) const noexcept {
+        return plane < split ? next_low : next_high;
+    }
+    [[nodiscard]] bool left() const noexcept { return next_low != no_node; }
+    [[nodiscard]] bool alive(std::uint32_t plane) const noexcept { return first <= plane && plane < last; }
+};
+
+/// Ends of an edge of an STL file: the coordinates themselves. Equal coordinates are the same vertex, so no
+/// weld is needed on the way from an STL file to layers.
+struct FloatEnds {
+    Point3f low, high;
+    friend bool operator==(const FloatEnds&, const FloatEnds&) = default;
+};
+
+/// The same for a soup with a placement.
+struct DoubleEnds {
+    Point3 low, high;
+    friend bool operator==(const DoubleEnds&, const DoubleEnds&) = default;
+};
+
+/// Ends of an edge of an indexed mesh, whose sharing is taken at its word.
+struct IndexEnds {
+    std::uint32_t low, high;
+    friend bool operator==(const IndexEnds&, const IndexEnds&) = default;
+};
+
+static_assert(sizeof(CutNode<FloatEnds>) == 48 && sizeof(CutNode<IndexEnds>) == 32);
+
+template <class Ends>
+struct CutGraph {
+    /// Some of the nodes in [0, count) are not in use (last == first).
+    PageArray<CutNode<Ends>> nodes;
+    std::uint32_t count = 0;
+    /// Of an indexed mesh; must outlive the graph.
+    const Point3* vertices = nullptr;
+    /// Edges with several triangles on one side, whose triangles were paired by geometry.
+    std::uint64_t nonmanifold_edges = 0;
+
+    [[nodiscard]] Point3 low(const Ends& ends) const noexcept { return point(ends.low); }
+    [[nodiscard]] Point3 high(const Ends& ends) const noexcept { return point(ends.high); }
+
+    [[nodiscard]] EdgeCut cut(std::uint32_t node, PlaneRule rule) const noexcept {
+        const Ends& ends = nodes[node].ends;
+        return rule == PlaneRule::section_above ? EdgeCut(point(ends.low), point(ends.high))
+                                                : EdgeCut(point(ends.high), point(ends.low));
+    }
+
+  private:
+    [[nodiscard]] Point3 point(const Point3f& p) const noexcept { return {p.x, p.y, p.z}; }
+    [[nodiscard]] Point3 point(const Point3& p) const noexcept { return p; }
+    [[nodiscard]] Point3 point(std::uint32_t vertex) const noexcept { return vertices[vertex]; }
+};
+
+/// Builds the cut graph in one pass over the triangles. Triangles that no plane cuts and triangles with two
+/// equal corners are dropped on sight. An edge with more than one triangle on a side (non-manifold) becomes
+/// one node for each pair of an arriving and a leaving triangle; they are paired by their geometry around the
+/// edge, so that contours bound one wedge of material each and never cross there, whatever the order of the
+/// triangles.
+///
+/// Expected O(triangles), parallel; a hostile file costs O(n log n). Throws Error{limit} when the nodes
+/// cannot be numbered in 32 bits (beyond 2^32 / 3 triangles), Error{cancelled}.
+[[nodiscard]] CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks,
+                                                  Executor& executor, ProgressMeter& progress);
+/// For a soup with a placement.
+[[nodiscard]] CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks,
+                                                          Executor& executor, ProgressMeter& progress);
+[[nodiscard]] CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks,
+                                                  Executor& executor, ProgressMeter& progress);
+
+} // namespace lamella

@@ -1,0 +1,192 @@
+#pragma once
+
+// Edges with more than two triangles: which arriving triangle goes with which leaving one.
+//
+// Around such an edge, seen from above, lie the traces of its triangles as rays. A contour arrives along one
+// ray and leaves along another with the material on its left. So going counter-clockwise a leaving ray opens
+// a wedge of material and an arriving ray closes one: like brackets, an arrival is paired with the nearest
+// open leaving ray before it. Wedges of separate bodies that touch in the edge stay separate, and no two
+// contours cross there.
+
+#include "slicing/cut_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <tuple>
+#include <vector>
+
+namespace lamella {
+
+namespace edge_pairing {
+
+/// The trace of one triangle at the edge.
+struct Ray {
+    bool arrives;
+    float angle;            ///< monotone in the true angle, in [0, 4); rounded, so that coplanar rays tie
+    Point3 third;           ///< the triangle's corner off the edge
+    std::uint32_t triangle; ///< tells identical triangles apart
+    std::uint32_t node;     ///< arriving: that the contour arrives at; leaving: whose links it follows
+};
+
+/// The direction from the edge to the third corner, projected along the edge into a horizontal plane.
+inline float ray_angle(const Point3& low, const Point3& high, const Point3& third) {
+    const double dz = high.z - low.z;
+    const double up = third.z - low.z;
+    const double x = (third.x - low.x) * dz - up * (high.x - low.x);
+    const double y = (third.y - low.y) * dz - up * (high.y - low.y);
+    const double size = std::abs(x) + std::abs(y);
+    if (!(size > 0))
+        return 0; // all three corners on a line: no direction
+    const double slope = x / size;
+    return static_cast<float>(y >= 0 ? 1 - slope : 3 + slope);
+}
+
+/// Counter-clockwise; at the same angle wedges close before others open, and identical triangles nest, so
+/// that every copy of a duplicated body is linked to itself.
+inline bool before(const Ray& a, const Ray& b) {
+    if (a.angle != b.angle)
+        return a.angle < b.angle;
+    if (a.arrives != b.arrives)
+        return a.arrives;
+    const auto key = [](const Ray& r) {
+        return std::tuple(r.third.x, r.third.y, r.third.z, r.triangle);
+    };
+    return a.arrives ? key(b) < key(a) : key(a) < key(b);
+}
+
+/// The pairs (arriving, leaving) as indices into the sorted rays; what stays over is left out.
+inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<Ray>& rays) {
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    std::vector<std::size_t> open;
+    std::vector<std::size_t> unmatched;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!rays[i].arrives) {
+            open.push_back(i);
+        } else if (!open.empty()) {
+            pairs.emplace_back(i, open.back());
+            open.pop_back();
+        } else {
+            unmatched.push_back(i);
+        }
+    }
+    // Once more around: wedges that lie across the angle zero.
+    for (const std::size_t i : unmatched) {
+        if (open.empty())
+            break;
+        pairs.emplace_back(i, open.back());
+        open.pop_back();
+    }
+    return pairs;
+}
+
+} // namespace edge_pairing
+
+/// Deals the links of nodes with equal ends out anew. `crowded` names every such node at least once; nodes
+/// not in use are passed over. Returns the number of edges. O(nodes of the graph), and only called when there
+/// are any.
+template <class Ends>
+std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_t> crowded,
+                                 Executor& executor) {
+    using edge_pairing::Ray;
+    using Node = CutNode<Ends>;
+
+    const auto ends_order = [&](std::uint32_t a, std::uint32_t b) {
+        return std::memcmp(&graph.nodes[a].ends, &graph.nodes[b].ends, sizeof(Ends));
+    };
+    std::sort(crowded.begin(), crowded.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const int order = ends_order(a, b);
+        return order != 0 ? order < 0 : a < b;
+    });
+    crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());
+
+    const auto third = [&](const Ends& edge, const Ends& other) {
+        const bool low_is_shared = other.low == edge.low || other.low == edge.high;
+        return low_is_shared ? graph.high(other) : graph.low(other);
+    };
+
+    // Arriving triangles are known to the nodes before the edge: one pass over all nodes finds them.
+    std::vector<bool> is_crowded(graph.count);
+    for (const std::uint32_t id : crowded)
+        is_crowded[id] = true;
+    std::vector<std::vector<Ray>> found(executor.workers());
+    executor.for_chunks(graph.count, 1U << 16, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+        for (std::uint64_t id = begin; id < end; ++id) {
+            const Node& node = graph.nodes[id];
+            if (node.first == node.last || !node.left())
+                continue;
+            for (const std::uint32_t next : {node.next_low, node.next_high})
+                if (is_crowded[next])
+                    found[worker].push_back(
+                        {true, 0, third(graph.nodes[next].ends, node.ends), node.triangle, next});
+        }
+    });
+    std::vector<Ray> arrivals;
+    for (const auto& part : found)
+        arrivals.insert(arrivals.end(), part.begin(), part.end());
+    const auto by_node = [](const Ray& a, const Ray& b) {
+        return a.node < b.node;
+    };
+    std::sort(arrivals.begin(), arrivals.end(), by_node);
+
+    std::uint64_t edges = 0;
+    std::vector<Ray> rays;
+    std::vector<Node> links;
+    for (std::size_t begin = 0; begin < crowded.size();) {
+        std::size_t end = begin + 1;
+        while (end < crowded.size() && ends_order(crowded[begin], crowded[end]) == 0)
+            ++end;
+
+        const Ends edge = graph.nodes[crowded[begin]].ends;
+        rays.clear();
+        links.clear();
+        std::vector<std::uint32_t> spare; // nodes that no contour arrives at, to carry links that stay over
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t id = crowded[i];
+            Node& node = graph.nodes[id];
+            if (node.left()) {
+                rays.push_back({false, 0, third(edge, graph.nodes[node.next_low].ends), node.triangle,
+                                static_cast<std::uint32_t>(links.size())});
+                links.push_back(node);
+            }
+            if (node.entered) {
+                const auto arrival =
+                    std::lower_bound(arrivals.begin(), arrivals.end(), Ray{true, 0, {}, 0, id}, by_node);
+                rays.push_back(*arrival);
+            } else {
+                spare.push_back(id);
+            }
+            node.next_low = node.next_high = no_node;
+        }
+        for (Ray& ray : rays)
+            ray.angle = edge_pairing::ray_angle(graph.low(edge), graph.high(edge), ray.third);
+        std::sort(rays.begin(), rays.end(), edge_pairing::before);
+
+        std::vector<bool> placed(links.size());
+        const auto place = [&](std::uint32_t node, std::uint32_t link) {
+            const Node& from = links[link];
+            Node& to = graph.nodes[node];
+            to.next_low = from.next_low;
+            to.next_high = from.next_high;
+            to.split = from.split;
+            to.triangle = from.triangle;
+            to.last = from.last;
+            placed[link] = true;
+        };
+        for (const auto& [arriving, leaving] : edge_pairing::match(rays))
+            place(rays[arriving].node, rays[leaving].node);
+        for (std::uint32_t link = 0; link < links.size(); ++link) {
+            if (!placed[link]) {
+                place(spare.back(), link);
+                spare.pop_back();
+            }
+        }
+        for (const std::uint32_t id : spare)
+            graph.nodes[id].last = graph.nodes[id].first;
+        ++edges;
+        begin = end;
+    }
+    return edges;
+}
+
+} // namespace lamella

@@ -1,0 +1,160 @@
+#include "lamella/slicing/plan.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::uint64_t max_layers = (std::uint64_t{1} << 31) - 2; // ranks are 31-bit numbers
+
+// What is left of a layer below this share of its height is rounding noise of the file, not material.
+constexpr double negligible = 1e-3;
+
+double fraction(SliceAt at) {
+    switch (at) {
+    case SliceAt::bottom:
+        return 0.0;
+    case SliceAt::middle:
+        return 0.5;
+    case SliceAt::top:
+        return 1.0;
+    }
+    return 0.5;
+}
+
+PlaneRule rule_for(SliceAt at) {
+    return at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
+}
+
+void require_height(double height, const char* what) {
+    if (!(std::isfinite(height) && height > 0))
+        throw Error(ErrorKind::usage, fmt::format("{} is {} mm; it must be a number above 0", what, height));
+}
+
+// Layer i as the stack of slabs defines it, without a look at the part.
+PlannedLayer stacked_layer(std::uint64_t i, double z_min, double first_height, double height, double f) {
+    if (i == 0)
+        return {0, z_min + f * first_height, z_min, z_min + first_height};
+    const double base = z_min + first_height;
+    const auto below = static_cast<double>(i - 1);
+    return {i, base + (below + f) * height, base + below * height, base + (below + 1) * height};
+}
+
+} // namespace
+
+Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
+    const double height = layers.layer_height;
+    const double first_height = layers.first_layer_height.value_or(height);
+    require_height(height, "the layer height");
+    require_height(first_height, "the first layer height");
+    if (!(std::isfinite(z_min) && std::isfinite(z_max) && z_min < z_max))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("the mesh has no height (z from {} to {}), so there is nothing to slice; another "
+                        "slicing direction may have some",
+                        z_min, z_max));
+
+    const double f = fraction(layers.slice_at);
+    const bool at_top = layers.slice_at == SliceAt::top;
+    const auto meets_part = [&](double z) {
+        return at_top ? z <= z_max + negligible * height : z < z_max - negligible * height;
+    };
+
+    // The closed form is exact up to rounding; one step either way mends that.
+    std::uint64_t count = 0;
+    if (meets_part(stacked_layer(0, z_min, first_height, height, f).z)) {
+        const double above_first = z_max - (z_min + first_height) - f * height;
+        const double estimate = std::max(0.0, std::floor(above_first / height) + 2.0);
+        if (estimate > static_cast<double>(max_layers))
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("a layer height of {} mm makes {:.0f} layers of this part ({} mm high); at most "
+                            "{} are possible",
+                            height, estimate, z_max - z_min, max_layers));
+        count = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(estimate));
+        while (count > 1 && !meets_part(stacked_layer(count - 1, z_min, first_height, height, f).z))
+            --count;
+        while (meets_part(stacked_layer(count, z_min, first_height, height, f).z))
+            ++count;
+    }
+    if (count == 0)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("no layer: the first cut, at z = {} mm, misses the part (z from {} to {} mm); "
+                        "choose a layer height below {} mm",
+                        stacked_layer(0, z_min, first_height, height, f).z, z_min, z_max, z_max - z_min));
+
+    std::uint64_t begin = 0;
+    std::uint64_t end = count;
+    if (layers.index_range) {
+        begin = std::min(layers.index_range->first, count);
+        end = std::min(layers.index_range->second, count);
+        if (begin >= end)
+            throw Error(ErrorKind::usage,
+                        fmt::format("the layers {}:{} are none of this part's layers 0:{}",
+                                    layers.index_range->first, layers.index_range->second, count));
+    }
+
+    Plan plan;
+    plan.rule = rule_for(layers.slice_at);
+    plan.layers.reserve(end - begin);
+    for (std::uint64_t i = begin; i < end; ++i) {
+        PlannedLayer layer = stacked_layer(i, z_min, first_height, height, f);
+        if (at_top)
+            layer.z = std::min(layer.z, z_max); // rounding must not lift the last cut off the top face
+        if (layers.z_range && !(layer.z >= layers.z_range->first && layer.z <= layers.z_range->second))
+            continue;
+        if (!plan.layers.empty() && !(plan.layers.back().z < layer.z))
+            throw Error(ErrorKind::usage,
+                        fmt::format("a layer height of {} mm is too small for coordinates around {} mm: "
+                                    "neighbouring cuts fall on the same number",
+                                    height, layer.z));
+        plan.layers.push_back(layer);
+    }
+    if (plan.layers.empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("no cut of this part (z from {} to {} mm) lies in the z range {} "
+                                "to {} mm",
+                                z_min, z_max, layers.z_range->first, layers.z_range->second));
+    return plan;
+}
+
+Plan plan_listed(const std::vector<double>& z, SliceAt slice_at) {
+    if (z.empty())
+        throw Error(ErrorKind::usage, "the list of z holds no number; it must name at least one cut");
+    if (z.size() > max_layers)
+        throw Error(ErrorKind::usage, fmt::format("the list of z holds {} numbers; at most {} are possible",
+                                                  z.size(), max_layers));
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        if (!std::isfinite(z[i]))
+            throw Error(ErrorKind::usage, fmt::format("z number {} of the list is not finite", i + 1));
+        if (i > 0 && !(z[i - 1] < z[i]))
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("z number {} of the list, {}, is not above the one before it, {}; the list must "
+                            "ascend",
+                            i + 1, z[i], z[i - 1]));
+    }
+
+    Plan plan;
+    plan.rule = rule_for(slice_at);
+    plan.layers.resize(z.size());
+    const std::size_t n = z.size();
+    const double first_gap = n > 1 ? z[1] - z[0] : 0.0;
+    const double last_gap = n > 1 ? z[n - 1] - z[n - 2] : 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double below = i > 0 ? z[i] - z[i - 1] : first_gap;
+        const double above = i + 1 < n ? z[i + 1] - z[i] : last_gap;
+        const double f = fraction(slice_at);
+        plan.layers[i] = {i, z[i], z[i] - f * below, z[i] + (1 - f) * above};
+    }
+    return plan;
+}
+
+} // namespace lamella

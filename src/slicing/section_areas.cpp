@@ -1,0 +1,83 @@
+#include "lamella/slicing/slice.hpp"
+
+#include "core/executor.hpp"
+#include "slicing/edge_cut.hpp"
+#include "slicing/ranks.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace lamella {
+
+namespace {
+
+/// Sums twice the area swept from an origin by the directed cut segments of the triangles [begin, end).
+void add_sections(const MeshRef& mesh, const Ranks& ranks, const Point3& origin, std::uint64_t begin,
+                  std::uint64_t end, std::vector<double>& twice) {
+    const bool above = ranks.rule() == PlaneRule::section_above;
+    for (std::uint64_t i = begin; i < end; ++i) {
+        Triangle3 corner;
+        if (mesh.soup() != nullptr) {
+            corner = mesh.soup()->placed(i);
+        } else {
+            for (std::size_t k = 0; k < 3; ++k)
+                corner[k] = mesh.mesh()->vertices[mesh.mesh()->triangles[i][k]];
+        }
+        std::array<std::uint32_t, 3> rank;
+        for (std::size_t k = 0; k < 3; ++k)
+            rank[k] = ranks(corner[k].z);
+        const std::uint32_t first = std::min({rank[0], rank[1], rank[2]});
+        const std::uint32_t last = std::max({rank[0], rank[1], rank[2]});
+        for (std::uint32_t plane = first; plane < last; ++plane) {
+            // The segment leads from the edge that runs downwards to the one that runs upwards: that leaves
+            // the material on the left.
+            Point2 from;
+            Point2 to;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t k1 = (k + 1) % 3;
+                const bool starts_above = rank[k] > plane;
+                const bool ends_above = rank[k1] > plane;
+                if (starts_above == ends_above)
+                    continue;
+                const Point3& low = starts_above ? corner[k1] : corner[k];
+                const Point3& high = starts_above ? corner[k] : corner[k1];
+                const EdgeCut edge = above ? EdgeCut(low, high) : EdgeCut(high, low);
+                (starts_above ? from : to) = edge.at(ranks.z(plane));
+            }
+            twice[plane] += (from.x - origin.x) * (to.y - origin.y) - (from.y - origin.y) * (to.x - origin.x);
+        }
+    }
+}
+
+} // namespace
+
+std::vector<double> section_areas(const MeshRef& mesh, const Plan& plan, const Execution& execution) {
+    const Ranks ranks(plan);
+    Executor executor(execution);
+    const Box3 box = mesh.soup() != nullptr ? bounding_box(*mesh.soup(), execution)
+                                            : bounding_box(*mesh.mesh(), execution);
+    std::vector<double> areas(ranks.count(), 0.0);
+    if (box.empty())
+        return areas;
+    // About the middle of the part, so that a part far from the origin loses no digits.
+    const Point3 origin{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, 0};
+
+    // A fixed number of pieces, added up in their order: the same bits for any number of threads.
+    const std::uint64_t pieces =
+        std::clamp<std::uint64_t>((std::uint64_t{1} << 22) / (areas.size() + 1), 1, 64);
+    const std::uint64_t n = mesh.triangles();
+    const std::uint64_t piece = n / pieces + 1;
+    std::vector<std::vector<double>> parts(pieces);
+    executor.for_chunks(pieces, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t p = begin; p < end; ++p) {
+            parts[p].assign(ranks.count(), 0.0);
+            add_sections(mesh, ranks, origin, std::min(n, p * piece), std::min(n, (p + 1) * piece), parts[p]);
+        }
+    });
+    for (const std::vector<double>& part : parts)
+        for (std::size_t i = 0; i < areas.size(); ++i)
+            areas[i] += part[i] / 2;
+    return areas;
+}
+
+} // namespace lamella

@@ -1,0 +1,56 @@
+#include "lamella/slicing/slice.hpp"
+
+#include "core/executor.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+namespace lamella {
+
+namespace {
+
+// Some 64 MB of points for each thread.
+constexpr std::uint64_t points_in_flight_per_thread = (std::uint64_t{64} << 20) / sizeof(Point2);
+
+void run(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution,
+         std::uint64_t points_in_flight, SliceReport* report, const Engine& with) {
+    SliceReport ours;
+    std::atomic<std::uint64_t> contours{0};
+    std::atomic<std::uint64_t> open_chains{0};
+    std::atomic<std::uint64_t> points{0};
+    const LayerSink counting = [&](Layer&& layer) {
+        contours.fetch_add(layer.contours(), std::memory_order_relaxed);
+        open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
+        points.fetch_add(layer.points.size(), std::memory_order_relaxed);
+        return sink(std::move(layer));
+    };
+    with.run({mesh, plan, counting, execution, points_in_flight, ours});
+    ours.layers = plan.layers.size();
+    ours.contours = contours;
+    ours.open_chains = open_chains;
+    ours.points = points;
+    if (report != nullptr)
+        *report = ours;
+}
+
+} // namespace
+
+LayerStack slice(const MeshRef& mesh, const Plan& plan, const Execution& execution, SliceReport* report,
+                 const Engine& with) {
+    LayerStack stack;
+    stack.reserve(plan.layers.size());
+    const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
+        return [&stack, kept = std::move(layer)]() mutable {
+            stack.push_back(std::move(kept));
+        };
+    };
+    run(keep, mesh, plan, execution, 0, report, with);
+    return stack;
+}
+
+void slice_to(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution,
+              SliceReport* report, const Engine& with) {
+    run(sink, mesh, plan, execution, points_in_flight_per_thread * thread_count(execution), report, with);
+}
+
+} // namespace lamella

@@ -1,0 +1,728 @@
+#include "slicing/sweep.hpp"
+
+#include "contour/least_rotation.hpp"
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "slicing/cut_graph.hpp"
+#include "slicing/ordered_delivery.hpp"
+#include "slicing/point_kernels.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+// The sweep engine
+//
+// Ranks turn heights into integers, the cut graph links every cut edge to its successors (cut_graph.hpp).
+// What is left is to read contours off the graph, slab by slab, each slab by one worker:
+//
+//   Walk.   On plane i start from every node that begins there, and follow `next` until the start is reached.
+//   A
+//           contour without a new node is the continuation of one on the plane before; it is not searched
+//           for.
+//   Run.    The sequence of nodes stays valid up to the first event in it: a node that ends or turns to its
+//   other
+//           successor. All planes up to there are a *run*, served by this one walk.
+//   Measure. For each plane of the run the points are computed, in the cache, only to learn where the ring
+//   starts
+//           in normal form and how many points it keeps.
+//   Write.  When a stretch of planes is complete, the rings of each layer are put in order, their places in
+//   the
+//           layer's array are known, and the points are computed again, straight into their places. To
+//           compute twice is cheaper than to move once: arithmetic on columns in the cache costs a fraction
+//           of a trip to memory.
+//
+// The result is in normal form, so nothing of this order of work can be seen in it.
+
+namespace lamella {
+
+namespace {
+
+/// What the planner knows about a plane: how many nodes are alive on it, and which begin there.
+struct PlaneIndex {
+    std::vector<std::uint64_t> points;  ///< per plane
+    PageArray<std::uint32_t> starts;    ///< nodes ordered by the plane they begin on
+    std::vector<std::uint64_t> offsets; ///< starts of plane p are [offsets[p], offsets[p + 1])
+};
+
+/// A run of planes as the unit of work, and the nodes that are alive on its first plane but began before.
+struct Slab {
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::vector<std::uint32_t> carried;
+};
+
+template <class Ends>
+std::vector<std::uint64_t> count_points(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor,
+                                        std::vector<std::uint64_t>& begins) {
+    std::vector<std::vector<std::int64_t>> begin_counts(executor.workers());
+    std::vector<std::vector<std::int64_t>> end_counts(executor.workers());
+    executor.for_chunks(graph.count, 1U << 15, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+        auto& starting = begin_counts[worker];
+        auto& ending = end_counts[worker];
+        starting.resize(planes + std::size_t{1});
+        ending.resize(planes + std::size_t{1});
+        for (std::uint64_t id = begin; id < end; ++id) {
+            const CutNode<Ends>& node = graph.nodes[id];
+            const bool used = node.first < node.last;
+            starting[node.first] += used;
+            ending[node.last] += used;
+        }
+    });
+    begins.assign(planes, 0);
+    std::vector<std::uint64_t> points(planes, 0);
+    std::int64_t alive = 0;
+    for (std::uint32_t p = 0; p < planes; ++p) {
+        for (unsigned worker = 0; worker < executor.workers(); ++worker) {
+            if (begin_counts[worker].empty())
+                continue;
+            begins[p] += static_cast<std::uint64_t>(begin_counts[worker][p]);
+            alive += begin_counts[worker][p] - end_counts[worker][p];
+        }
+        points[p] = static_cast<std::uint64_t>(alive);
+    }
+    return points;
+}
+
+/// Cuts the planes into slabs of about equal work. A slab pays for walking once over all that is alive on its
+/// first plane, so there are few of them where planes are few and large, and more where that cost is lost
+/// among the planes, to level out what the estimate of the work misses.
+std::vector<Slab> cut_into_slabs(const std::vector<std::uint64_t>& points, unsigned workers,
+                                 std::uint64_t points_in_flight) {
+    constexpr std::uint64_t plane_cost = 64; // in points
+    const std::uint64_t planes = points.size();
+    std::uint64_t work = 0;
+    for (const std::uint64_t p : points)
+        work += p + plane_cost;
+    constexpr std::uint64_t worth_a_thread = 1U << 15;
+    if (work < workers * worth_a_thread)
+        workers = 1;
+    const std::uint64_t slabs =
+        workers == 1 ? 1 : workers * std::clamp<std::uint64_t>(planes / (workers * 32ULL), 1, 4);
+    std::uint64_t target = work / slabs + 1;
+    if (points_in_flight != 0) {
+        // Each worker has one slab under way, and one more may be waiting for its turn.
+        target = std::min(target, std::max<std::uint64_t>(points_in_flight / (workers + 1ULL), 1));
+    }
+    std::vector<Slab> result;
+    std::uint64_t filled = 0;
+    for (std::uint32_t p = 0; p < planes; ++p) {
+        const std::uint64_t cost = points[p] + plane_cost;
+        if (result.empty() || filled + cost / 2 > target) {
+            result.push_back({p, p, {}});
+            filled = 0;
+        }
+        filled += cost;
+        result.back().end = p + 1;
+    }
+    return result;
+}
+
+/// Sorts the nodes by the plane they begin on, and tells each slab which nodes reach into it from below.
+template <class Ends>
+PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::uint64_t points_in_flight,
+                        Executor& executor, std::vector<Slab>& slabs) {
+    PlaneIndex index;
+    std::vector<std::uint64_t> begins;
+    index.points = count_points(graph, planes, executor, begins);
+    slabs = cut_into_slabs(index.points, executor.workers(), points_in_flight);
+
+    index.offsets.assign(planes + std::size_t{1}, 0);
+    for (std::uint32_t p = 0; p < planes; ++p)
+        index.offsets[p + 1] = index.offsets[p] + begins[p];
+    index.starts = PageArray<std::uint32_t>(index.offsets[planes]);
+    std::vector<std::uint32_t> slab_of(planes);
+    for (std::uint32_t s = 0; s < slabs.size(); ++s)
+        std::fill(slab_of.begin() + slabs[s].begin, slab_of.begin() + slabs[s].end, s);
+
+    std::vector<std::uint64_t> fill(index.offsets.begin(), index.offsets.end() - 1);
+    for (std::uint32_t id = 0; id < graph.count; ++id) {
+        const CutNode<Ends>& node = graph.nodes[id];
+        if (node.first >= node.last)
+            continue;
+        index.starts[fill[node.first]++] = id;
+        for (std::uint32_t s = slab_of[node.first] + 1; s < slabs.size() && slabs[s].begin < node.last; ++s)
+            slabs[s].carried.push_back(id);
+    }
+    return index;
+}
+
+/// One contour over the planes that its sequence of nodes serves.
+struct Run {
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::uint32_t size; ///< nodes
+    bool closed;
+    std::uint64_t columns; ///< its EdgeColumns start at 6 * columns
+    std::uint64_t rings;   ///< its Ring on plane p is rings[this + p - begin]
+};
+
+/// One contour on one plane.
+struct Ring {
+    Point2 first;        ///< the point it starts at
+    std::uint32_t start; ///< the index of that point, after repeated points are dropped
+    std::uint32_t count; ///< points kept; 0 when the contour shrank to a point or a line
+    std::uint64_t place; ///< in the layer's array
+};
+
+/// Points of one contour on one plane, in walk order.
+class Scratch {
+  public:
+    void reserve(std::size_t n) {
+        if (x_.size() < n) {
+            x_ = PageArray<double>(n + n / 2);
+            y_ = PageArray<double>(n + n / 2);
+        }
+    }
+    [[nodiscard]] double* x() const noexcept { return x_.data(); }
+    [[nodiscard]] double* y() const noexcept { return y_.data(); }
+    [[nodiscard]] Point2 point(std::size_t i) const noexcept { return {x_[i], y_[i]}; }
+
+    /// Drops points that equal their predecessor. Returns how many are left of n.
+    [[nodiscard]] std::size_t drop_repeats(std::size_t n, bool closed) const noexcept {
+        std::size_t kept = 1;
+        for (std::size_t i = 1; i < n; ++i) {
+            if (x_[i] == x_[kept - 1] && y_[i] == y_[kept - 1])
+                continue;
+            x_[kept] = x_[i];
+            y_[kept] = y_[i];
+            ++kept;
+        }
+        while (closed && kept > 1 && x_[kept - 1] == x_[0] && y_[kept - 1] == y_[0])
+            --kept;
+        return kept;
+    }
+
+  private:
+    PageArray<double> x_;
+    PageArray<double> y_;
+};
+
+/// Whether a ring without repeated points runs to and fro on a line, so that it bounds nothing.
+bool folds_flat(const std::vector<Point2>& ring) {
+    // A point between equal neighbours is the tip of a fold; folding it in leaves two equal points, one of
+    // which goes. A ring that this eats up was a line.
+    std::vector<Point2> rest;
+    for (const Point2& p : ring) {
+        if (!rest.empty() && rest.back() == p)
+            continue;
+        if (rest.size() >= 2 && rest[rest.size() - 2] == p)
+            rest.pop_back();
+        else
+            rest.push_back(p);
+    }
+    std::size_t begin = 0;
+    std::size_t end = rest.size();
+    while (end - begin >= 3) {
+        if (rest[begin] == rest[end - 1] || rest[begin] == rest[end - 2])
+            --end;
+        else if (rest[begin + 1] == rest[end - 1])
+            ++begin;
+        else
+            return false;
+    }
+    return true;
+}
+
+/// Reads the contours of one slab after the other off the graph. Each worker has its own.
+template <class Ends>
+class SlabSweep {
+  public:
+    SlabSweep(const CutGraph<Ends>& graph, const Ranks& ranks, const Plan& plan, const PlaneIndex& index,
+              const Executor& executor, OrderedDelivery& delivery)
+        : graph_(graph), ranks_(ranks), plan_(plan), index_(index), executor_(executor), delivery_(delivery),
+          visited_until_(graph.count), segment_at_(graph.count) {
+        std::uint64_t most = 0;
+        for (const std::uint64_t p : index.points)
+            most = std::max(most, p);
+        // At any time the columns hold what is alive, what died since the last write (bounded by
+        // `stale_enough` and the larger of what was carried and one plane), and one new plane.
+        columns_ = PageArray<double>(EdgeColumns::columns * (4 * most + stale_enough));
+    }
+
+    /// Slabs must come in ascending order.
+    void sweep(const Slab& slab) {
+        slab_ = &slab;
+        rings_of_plane_.assign(slab.end - slab.begin, {});
+        ending_.assign(slab.end - slab.begin + std::size_t{1}, 0);
+        restarts_.assign(slab.end - slab.begin, {});
+        written_ = slab.begin;
+        for (std::uint32_t plane = slab.begin; plane < slab.end; ++plane) {
+            if (executor_.stopping())
+                return;
+            walk_plane(plane);
+            stale_ += ending_[plane + 1 - slab.begin];
+            if (plane + 1 == slab.end || (stale_ >= stale_enough && stale_ >= carried_))
+                write_layers(plane + 1);
+        }
+    }
+
+  private:
+    static constexpr std::uint64_t stale_enough = 1U << 15; // edges; 1.5 MB of columns
+
+    // ------------------------------------------------------------------------------------------------- walk
+
+    /// A walk from one start to where it met the start of a walk, or the end of the mesh.
+    struct Segment {
+        std::uint32_t next; ///< the segment it ran into; no_node: the mesh ended
+        std::uint64_t begin;
+        std::uint64_t end;
+        std::uint32_t valid_until;
+    };
+
+    /// A walk under way.
+    struct Walker {
+        std::uint32_t node;
+        std::uint32_t start;
+        std::uint32_t valid_until;
+        std::uint64_t candidate; ///< the next one to look at
+        std::uint64_t candidates_end;
+        std::vector<std::uint32_t> sequence;
+    };
+
+    /// Several walks at a time hide the memory's latency where nodes lie scattered; one is enough where the
+    /// graph fits the cache.
+    static constexpr std::size_t most_walkers = 12;
+    static constexpr std::uint64_t candidates_per_walker = 64;
+
+    void walk_plane(std::uint32_t plane) {
+        const std::uint32_t* starts = index_.starts.data() + index_.offsets[plane];
+        walk_from(plane, starts, index_.offsets[plane + 1] - index_.offsets[plane]);
+        if (plane == slab_->begin)
+            walk_from(plane, slab_->carried.data(), slab_->carried.size());
+        const std::vector<std::uint32_t> again = std::move(restarts_[plane - slab_->begin]);
+        walk_from(plane, again.data(), again.size());
+        if (!segments_.empty())
+            link_segments(plane);
+    }
+
+    void walk_from(std::uint32_t plane, const std::uint32_t* candidates, std::uint64_t count) {
+        if (count == 0)
+            return;
+        const std::size_t walkers = std::clamp<std::size_t>(count / candidates_per_walker, 1, most_walkers);
+        if (walker_.size() < walkers)
+            walker_.resize(walkers);
+        std::size_t active = 0;
+        for (std::size_t w = 0; w < walkers; ++w) {
+            // Each has its own share of the candidates, so that they are far apart in the file and rarely
+            // meet.
+            walker_[active].candidate = count * w / walkers;
+            walker_[active].candidates_end = count * (w + 1) / walkers;
+            if (set_out(walker_[active], plane, candidates))
+                ++active;
+        }
+        while (active > 1) {
+            for (std::size_t w = 0; w < active;) {
+                if (step(walker_[w], plane) || set_out(walker_[w], plane, candidates))
+                    ++w;
+                else
+                    std::swap(walker_[w], walker_[--active]);
+            }
+        }
+        while (active == 1) {
+            while (step(walker_[0], plane)) {
+            }
+            if (!set_out(walker_[0], plane, candidates))
+                break;
+        }
+    }
+
+    /// Finds the walker's next unvisited candidate. False when there is none.
+    bool set_out(Walker& walker, std::uint32_t plane, const std::uint32_t* candidates) {
+        while (walker.candidate < walker.candidates_end) {
+            const std::uint32_t node = candidates[walker.candidate++];
+            if (visited_until_[node] > plane || !graph_.nodes[node].alive(plane))
+                continue;
+            walker.node = walker.start = node;
+            walker.valid_until = slab_->end;
+            walker.sequence.clear();
+            segment_at_[node] = no_node; // until the walk is over
+            return true;
+        }
+        return false;
+    }
+
+    /// Visits one node. False when the walk is over.
+    bool step(Walker& walker, std::uint32_t plane) {
+        const std::uint32_t id = walker.node;
+        if (visited_until_[id] > plane) {
+            finish(walker, plane, id);
+            return false;
+        }
+        visited_until_[id] = plane + 1;
+        const CutNode<Ends>& node = graph_.nodes[id];
+        walker.sequence.push_back(id);
+        walker.valid_until = std::min(walker.valid_until, node.last);
+        std::uint32_t next = node.next_high;
+        if (plane < node.split) {
+            walker.valid_until = std::min(walker.valid_until, node.split);
+            next = node.next_low;
+        }
+        if (next == no_node) {
+            finish(walker, plane, no_node);
+            return false;
+        }
+        walker.node = next;
+        __builtin_prefetch(&graph_.nodes[next]);
+        return true;
+    }
+
+    void finish(Walker& walker, std::uint32_t plane, std::uint32_t met) {
+        if (met == walker.start) {
+            add_run(plane, walker.valid_until, true, walker.sequence.data(), walker.sequence.size());
+            return;
+        }
+        segment_at_[walker.start] = static_cast<std::uint32_t>(segments_.size());
+        const std::uint64_t begin = pending_.size();
+        pending_.insert(pending_.end(), walker.sequence.begin(), walker.sequence.end());
+        segments_.push_back({met, begin, pending_.size(), walker.valid_until});
+    }
+
+    /// Joins walks that ran into one another. Links are one to one, so a walk can only run into the start of
+    /// another, and at most one runs into each: they form rings and chains of walks.
+    void link_segments(std::uint32_t plane) {
+        std::vector<bool> followed(segments_.size());
+        for (Segment& segment : segments_) {
+            if (segment.next == no_node)
+                continue;
+            segment.next = segment_at_[segment.next];
+            followed[segment.next] = true;
+        }
+        std::vector<bool> done(segments_.size());
+        const auto collect = [&](std::uint32_t head, bool closed) {
+            joined_.clear();
+            std::uint32_t valid_until = slab_->end;
+            for (std::uint32_t s = head; s != no_node && !done[s]; s = segments_[s].next) {
+                done[s] = true;
+                valid_until = std::min(valid_until, segments_[s].valid_until);
+                joined_.insert(joined_.end(),
+                               pending_.begin() + static_cast<std::ptrdiff_t>(segments_[s].begin),
+                               pending_.begin() + static_cast<std::ptrdiff_t>(segments_[s].end));
+            }
+            add_run(plane, valid_until, closed, joined_.data(), joined_.size());
+        };
+        for (std::uint32_t s = 0; s < segments_.size(); ++s)
+            if (!followed[s])
+                collect(s, false);
+        for (std::uint32_t s = 0; s < segments_.size(); ++s)
+            if (!done[s])
+                collect(s, true);
+        segments_.clear();
+        pending_.clear();
+    }
+
+    // ---------------------------------------------------------------------------------------- run and
+    // measure
+
+    void add_run(std::uint32_t plane, std::uint32_t valid_until, bool closed, const std::uint32_t* sequence,
+                 std::size_t size) {
+        Run run{plane, valid_until, static_cast<std::uint32_t>(size), closed, columns_used_, rings_.size()};
+        double* z0 = columns_.data() + EdgeColumns::columns * columns_used_;
+        double* inverse_dz = z0 + size;
+        double* x0 = inverse_dz + size;
+        double* dx = x0 + size;
+        double* y0 = dx + size;
+        double* dy = y0 + size;
+        const PlaneRule rule = ranks_.rule();
+        const bool lasts = valid_until > plane + 1;
+        for (std::size_t i = 0; i < size; ++i) {
+            const EdgeCut cut = graph_.cut(sequence[i], rule);
+            z0[i] = cut.z0;
+            inverse_dz[i] = cut.inverse_dz;
+            x0[i] = cut.x0;
+            dx[i] = cut.dx;
+            y0[i] = cut.y0;
+            dy[i] = cut.dy;
+            if (lasts)
+                visited_until_[sequence[i]] = valid_until;
+        }
+        columns_used_ += size;
+        ending_[valid_until - slab_->begin] += size;
+        if (!closed && valid_until < slab_->end) {
+            // Only a closed contour is sure to go on through a node that begins where its run ends.
+            std::vector<std::uint32_t>& again = restarts_[valid_until - slab_->begin];
+            again.insert(again.end(), sequence, sequence + size);
+        }
+        runs_.push_back(run);
+        rings_.resize(rings_.size() + (valid_until - plane));
+        for (std::uint32_t p = plane; p < valid_until; ++p)
+            measure(run, p);
+    }
+
+    [[nodiscard]] EdgeColumns columns_of(const Run& run) const {
+        return {columns_.data() + EdgeColumns::columns * run.columns, run.size};
+    }
+
+    void measure(const Run& run, std::uint32_t plane) {
+        Ring& ring = rings_[run.rings + plane - run.begin];
+        std::size_t n = run.size;
+        scratch_.reserve(n);
+        kernels_.cut(columns_of(run), ranks_.z(plane), scratch_.x(), scratch_.y());
+        const bool repeats = kernels_.repeats(scratch_.x(), scratch_.y(), n) ||
+                             (run.closed && scratch_.point(0) == scratch_.point(n - 1));
+        if (repeats)
+            n = scratch_.drop_repeats(n, run.closed);
+        ring = {scratch_.point(0), 0, 0, 0};
+        if (n < (run.closed ? 3U : 2U))
+            return;
+        if (run.closed && !find_start(n, repeats, ring))
+            return;
+        ring.count = static_cast<std::uint32_t>(n);
+        rings_of_plane_[plane - slab_->begin].push_back(
+            {ring.first, run.rings + plane - run.begin, run.closed});
+    }
+
+    /// Where the ring of n points in the scratch starts in normal form. False when it is a line.
+    bool find_start(std::size_t n, bool repeats, Ring& ring) {
+        const double* x = scratch_.x();
+        const double* y = scratch_.y();
+        const double least = kernels_.smallest(x, n);
+        std::size_t start = kernels_.find(x, 0, n, least);
+        bool tie = false;
+        for (std::size_t i = kernels_.find(x, start + 1, n, least); i < n;
+             i = kernels_.find(x, i + 1, n, least)) {
+            if (y[i] < y[start]) {
+                start = i;
+                tie = false;
+            } else if (y[i] == y[start]) {
+                tie = true;
+            }
+        }
+        const std::size_t before = start == 0 ? n - 1 : start - 1;
+        const std::size_t after = start + 1 == n ? 0 : start + 1;
+        const bool fold = scratch_.point(before) == scratch_.point(after);
+        if (repeats || tie || fold) {
+            std::vector<Point2> points(n);
+            kernels_.interleave(x, y, n, points.data());
+            if (folds_flat(points))
+                return false;
+            if (tie)
+                start = least_rotation(points);
+        }
+        ring.start = static_cast<std::uint32_t>(start);
+        ring.first = scratch_.point(start);
+        return true;
+    }
+
+    // ------------------------------------------------------------------------------------------------ write
+
+    struct Order {
+        Point2 first;
+        std::uint64_t ring;
+        bool closed;
+    };
+
+    /// Writes and delivers the planes [written_, end), and drops what only they needed.
+    void write_layers(std::uint32_t end) {
+        std::vector<Layer> layers(end - written_);
+        std::vector<std::uint64_t> layer_begin(layers.size());
+        std::uint64_t total = 0;
+        for (std::uint32_t plane = written_; plane < end; ++plane) {
+            Layer& layer = layers[plane - written_];
+            layer_begin[plane - written_] = total;
+            total += lay_out(plane, total, layer);
+        }
+
+        const auto block = std::make_shared<const PageArray<Point2>>(total);
+        for (const Run& run : runs_) {
+            const std::uint32_t last = std::min(run.end, end);
+            for (std::uint32_t plane = std::max(run.begin, written_); plane < last; ++plane) {
+                const Ring& ring = rings_[run.rings + plane - run.begin];
+                if (ring.count != 0)
+                    write_ring(run, plane, ring, block->data() + ring.place);
+            }
+        }
+
+        for (std::uint32_t plane = written_; plane < end; ++plane) {
+            Layer& layer = layers[plane - written_];
+            const PlannedLayer& planned = plan_.layers[plane];
+            layer.index = planned.index;
+            layer.z = planned.z;
+            layer.bottom = planned.bottom;
+            layer.top = planned.top;
+            if (layer.offsets.back() != 0)
+                layer.points =
+                    PointArray(block, block->data() + layer_begin[plane - written_], layer.offsets.back());
+            delivery_.deliver(plane, std::move(layer));
+        }
+        written_ = end;
+        keep_alive_runs(end);
+    }
+
+    /// Puts the contours of a plane in order and gives each its place. Returns the number of points.
+    std::uint64_t lay_out(std::uint32_t plane, std::uint64_t base, Layer& layer) {
+        std::vector<Order>& order = rings_of_plane_[plane - slab_->begin];
+        std::sort(order.begin(), order.end(), [](const Order& a, const Order& b) {
+            return a.closed != b.closed ? a.closed : a.first < b.first;
+        });
+        for (std::size_t i = 0; i + 1 < order.size();) {
+            std::size_t end = i + 1;
+            while (end < order.size() && order[end].closed == order[i].closed &&
+                   order[end].first == order[i].first)
+                ++end;
+            if (end - i > 1)
+                sort_by_sequence(plane, order.begin() + static_cast<std::ptrdiff_t>(i),
+                                 order.begin() + static_cast<std::ptrdiff_t>(end));
+            i = end;
+        }
+        layer.offsets.resize(order.size() + 1);
+        std::uint64_t size = 0;
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            Ring& ring = rings_[order[i].ring];
+            ring.place = base + size;
+            size += ring.count;
+            layer.offsets[i + 1] = size;
+            layer.rings += order[i].closed;
+        }
+        std::vector<Order>().swap(order);
+        return size;
+    }
+
+    /// Contours that start at the same point (they touch there) are ordered by all their points.
+    template <class Iterator>
+    void sort_by_sequence(std::uint32_t plane, Iterator begin, Iterator end) {
+        std::vector<std::pair<std::vector<Point2>, Order>> contours;
+        for (Iterator it = begin; it != end; ++it) {
+            // The run is the last one whose rings do not begin behind this ring.
+            const auto run =
+                std::prev(std::upper_bound(runs_.begin(), runs_.end(), it->ring,
+                                           [](std::uint64_t ring, const Run& r) { return ring < r.rings; }));
+            const Ring& ring = rings_[it->ring];
+            std::vector<Point2> points(ring.count);
+            write_ring(*run, plane, ring, points.data());
+            contours.emplace_back(std::move(points), *it);
+        }
+        std::stable_sort(contours.begin(), contours.end(), [](const auto& a, const auto& b) {
+            return std::lexicographical_compare(a.first.begin(), a.first.end(), b.first.begin(),
+                                                b.first.end());
+        });
+        for (std::size_t i = 0; i < contours.size(); ++i, ++begin)
+            *begin = contours[i].second;
+    }
+
+    void write_ring(const Run& run, std::uint32_t plane, const Ring& ring, Point2* to) {
+        scratch_.reserve(run.size);
+        kernels_.cut(columns_of(run), ranks_.z(plane), scratch_.x(), scratch_.y());
+        if (ring.count != run.size)
+            (void)scratch_.drop_repeats(run.size, run.closed);
+        const std::size_t tail = ring.count - ring.start;
+        kernels_.interleave(scratch_.x() + ring.start, scratch_.y() + ring.start, tail, to);
+        kernels_.interleave(scratch_.x(), scratch_.y(), ring.start, to + tail);
+    }
+
+    /// Moves the runs that go on to the front of the columns, and forgets the others.
+    void keep_alive_runs(std::uint32_t plane) {
+        std::vector<Run> runs;
+        std::vector<Ring> rings;
+        std::uint64_t used = 0;
+        for (const Run& run : runs_) {
+            if (run.end <= plane)
+                continue;
+            const EdgeColumns from = columns_of(run);
+            double* to = columns_.data() + EdgeColumns::columns * used;
+            if (from.data != to)
+                std::copy(from.data, from.data + EdgeColumns::columns * run.size, to);
+            Run kept{plane, run.end, run.size, run.closed, used, rings.size()};
+            const auto ring = rings_.begin() + static_cast<std::ptrdiff_t>(run.rings);
+            rings.insert(rings.end(), ring + (plane - run.begin), ring + (run.end - run.begin));
+            runs.push_back(kept);
+            used += run.size;
+        }
+        runs_ = std::move(runs);
+        rings_ = std::move(rings);
+        columns_used_ = carried_ = used;
+        stale_ = 0;
+        for (std::vector<Order>& order : rings_of_plane_)
+            order.clear();
+        for (const Run& run : runs_) {
+            for (std::uint32_t p = run.begin; p < run.end; ++p) {
+                const Ring& ring = rings_[run.rings + p - run.begin];
+                if (ring.count != 0)
+                    rings_of_plane_[p - slab_->begin].push_back(
+                        {ring.first, run.rings + p - run.begin, run.closed});
+            }
+        }
+    }
+
+    const CutGraph<Ends>& graph_;
+    const Ranks& ranks_;
+    const Plan& plan_;
+    const PlaneIndex& index_;
+    const Executor& executor_;
+    OrderedDelivery& delivery_;
+    const PointKernels& kernels_ = point_kernels();
+
+    const Slab* slab_ = nullptr;
+    PageArray<std::uint32_t> visited_until_; // per node: the plane before which it needs no visit
+    PageArray<std::uint32_t> segment_at_;    // per node that a walk of this plane started at: its segment
+    std::vector<Walker> walker_;
+    std::vector<Segment> segments_;
+    std::vector<std::uint32_t> pending_;
+    std::vector<std::uint32_t> joined_;
+    std::vector<std::vector<std::uint32_t>>
+        restarts_; // per plane of the slab: nodes of chains that end before it
+
+    PageArray<double> columns_;
+    std::uint64_t columns_used_ = 0;
+    std::uint64_t carried_ = 0;
+    std::uint64_t stale_ = 0;
+    std::vector<Run> runs_;
+    std::vector<Ring> rings_;
+    std::vector<std::vector<Order>> rings_of_plane_;
+    std::vector<std::uint64_t> ending_;
+    Scratch scratch_;
+    std::uint32_t written_ = 0;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <class Ends>
+void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& ranks, Executor& executor) {
+    const auto start = Clock::now();
+    ProgressMeter progress(job.execution, Stage::slice, ranks.count());
+    OrderedDelivery delivery(job.sink, executor, progress);
+
+    std::vector<Slab> slabs;
+    const PlaneIndex index = index_planes(graph, ranks.count(), job.points_in_flight, executor, slabs);
+    std::vector<std::unique_ptr<SlabSweep<Ends>>> sweeps(executor.workers());
+    executor.for_chunks(slabs.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned worker) {
+        const bool bounded = job.points_in_flight != 0 && s > executor.workers();
+        if (bounded && !delivery.wait_for(slabs[s - executor.workers()].begin))
+            return;
+        if (!sweeps[worker])
+            sweeps[worker] =
+                std::make_unique<SlabSweep<Ends>>(graph, ranks, job.plan, index, executor, delivery);
+        sweeps[worker]->sweep(slabs[s]);
+    });
+    executor.check_cancelled();
+    progress.finish();
+    job.report.slice_seconds = seconds_since(start);
+}
+
+} // namespace
+
+void run_sweep(const SliceJob& job) {
+    Executor executor(job.execution);
+    const auto start = Clock::now();
+    const Ranks ranks(job.plan);
+    ProgressMeter progress(job.execution, Stage::link, job.mesh.triangles());
+    const auto sweep = [&](const auto& graph) {
+        progress.finish();
+        job.report.link_seconds = seconds_since(start);
+        sweep_graph(job, graph, ranks, executor);
+    };
+    if (job.mesh.mesh() != nullptr)
+        sweep(build_cut_graph(*job.mesh.mesh(), ranks, executor, progress));
+    else if (job.mesh.soup()->has_placement())
+        sweep(build_placed_cut_graph(*job.mesh.soup(), ranks, executor, progress));
+    else
+        sweep(build_cut_graph(*job.mesh.soup(), ranks, executor, progress));
+}
+
+} // namespace lamella
