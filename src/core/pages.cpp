@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace lamella {
@@ -17,9 +18,11 @@ Pages::Pages(std::size_t bytes) {
         return;
     bytes_ = bytes;
     if (bytes < huge_page) {
-        data_ = std::calloc(1, bytes);
+        constexpr std::size_t line = 64;
+        data_ = std::aligned_alloc(line, (bytes + line - 1) / line * line);
         if (data_ == nullptr)
             throw std::bad_alloc();
+        std::memset(data_, 0, bytes);
         return;
     }
     // A whole huge page of slack lets the data start on one; what lies before it is given back.

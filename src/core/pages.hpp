@@ -11,7 +11,8 @@
 
 namespace lamella {
 
-/// A block of anonymous memory, zero where it was never written. Throws std::bad_alloc.
+/// A block of anonymous memory, zero where it was never written, that starts at a multiple of 64 bytes.
+/// Throws std::bad_alloc.
 class Pages {
   public:
     Pages() = default;

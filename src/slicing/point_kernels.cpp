@@ -1,9 +1,11 @@
 #include "slicing/point_kernels.hpp"
 
-#include <cstring>
+#include <limits>
+#include <utility>
 
 // GCC and clang vectors. The width is a template parameter; each instantiation is inlined into a function
-// that is compiled for the instruction set of that width.
+// that is compiled for the instruction set of that width. Vectors are passed by reference only: by value they
+// would need a calling convention of their own.
 
 namespace lamella {
 
@@ -11,136 +13,164 @@ namespace {
 
 template <int width>
 struct Vector {
-    typedef double Doubles __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double))));
-    typedef long long Mask __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double))));
+    typedef double Doubles
+        __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));
 };
 
 template <int width>
-[[gnu::always_inline]] inline typename Vector<width>::Doubles load(const double* from) {
-    typename Vector<width>::Doubles v;
-    std::memcpy(&v, from, sizeof v);
-    return v;
+[[gnu::always_inline]] inline const typename Vector<width>::Doubles& load(const double* from) {
+    return *reinterpret_cast<const typename Vector<width>::Doubles*>(from);
 }
 
 template <int width>
-[[gnu::always_inline]] inline void cut(EdgeColumns edges, double z, double* x, double* y) {
+[[gnu::always_inline]] inline void store(const typename Vector<width>::Doubles& v, double* to) {
+    *reinterpret_cast<typename Vector<width>::Doubles*>(to) = v;
+}
+
+/// The cuts of `width` edges, from edge i on.
+template <int width>
+[[gnu::always_inline]] inline void cut_some(const EdgeColumns& edges, std::size_t i, double z,
+                                            typename Vector<width>::Doubles& x,
+                                            typename Vector<width>::Doubles& y) {
     using V = typename Vector<width>::Doubles;
+    const double* column = edges.data + i;
+    const std::size_t stride = edges.stride();
+    const V one = V{} + 1.0;
+    const V t = (z - load<width>(column)) * load<width>(column + stride);
+    const V s = t < one ? t : one;
+    x = load<width>(column + 2 * stride) + s * load<width>(column + 3 * stride);
+    y = load<width>(column + 4 * stride) + s * load<width>(column + 5 * stride);
+}
+
+/// (before[last], v[0], ..., v[last - 1])
+template <int width, std::size_t... k>
+[[gnu::always_inline]] inline void
+shift_in(const typename Vector<width>::Doubles& before, const typename Vector<width>::Doubles& v,
+         typename Vector<width>::Doubles& shifted, std::index_sequence<k...>) {
+    shifted = __builtin_shufflevector(before, v, (width - 1 + static_cast<int>(k))...);
+}
+
+template <int width>
+[[gnu::always_inline]] inline Survey survey(const EdgeColumns& edges, double z, double* x, double* y) {
+    using V = typename Vector<width>::Doubles;
+    constexpr auto lanes = std::make_index_sequence<width>{};
     const std::size_t n = edges.size;
-    const double* z0 = edges.data;
-    const double* inverse_dz = z0 + n;
-    const double* x0 = inverse_dz + n;
-    const double* dx = x0 + n;
-    const double* y0 = dx + n;
-    const double* dy = y0 + n;
+
+    V least = V{} + std::numeric_limits<double>::infinity();
+    // The least square of a distance between neighbours. (GCC 12 takes vectors apart to compare for equality;
+    // differences it can do, and they are zero for equal points only.)
+    V closest = V{} + 1.0;
+    // NaN is not less than anything: the first point has no predecessor.
+    V x_before = V{} + std::numeric_limits<double>::quiet_NaN();
+    V y_before = x_before;
     std::size_t i = 0;
     for (; i + width <= n; i += width) {
-        const V one = V{} + 1.0;
-        const V t = (z - load<width>(z0 + i)) * load<width>(inverse_dz + i);
-        const V s = t < one ? t : one;
-        const V px = load<width>(x0 + i) + s * load<width>(dx + i);
-        const V py = load<width>(y0 + i) + s * load<width>(dy + i);
-        std::memcpy(x + i, &px, sizeof px);
-        std::memcpy(y + i, &py, sizeof py);
+        V px;
+        V py;
+        V qx;
+        V qy;
+        cut_some<width>(edges, i, z, px, py);
+        store<width>(px, x + i);
+        store<width>(py, y + i);
+        shift_in<width>(x_before, px, qx, lanes);
+        shift_in<width>(y_before, py, qy, lanes);
+        const V gap = (px - qx) * (px - qx) + (py - qy) * (py - qy);
+        closest = gap < closest ? gap : closest;
+        least = px < least ? px : least;
+        x_before = px;
+        y_before = py;
     }
-    for (; i < n; ++i) {
-        const double t = (z - z0[i]) * inverse_dz[i];
-        const double s = t < 1.0 ? t : 1.0;
-        x[i] = x0[i] + s * dx[i];
-        y[i] = y0[i] + s * dy[i];
+    Survey result{std::numeric_limits<double>::infinity(), false};
+    for (int k = 0; k < width; ++k) {
+        result.least_x = least[k] < result.least_x ? least[k] : result.least_x;
+        result.repeats |= !(closest[k] > 0);
     }
-}
-
-template <int width>
-[[gnu::always_inline]] inline double smallest(const double* x, std::size_t n) {
-    using V = typename Vector<width>::Doubles;
-    double least = x[0];
-    std::size_t i = 0;
-    if (n >= 4 * width) {
-        V a = load<width>(x);
-        V b = load<width>(x + width);
-        for (i = 2 * width; i + 2 * width <= n; i += 2 * width) {
-            const V c = load<width>(x + i);
-            const V d = load<width>(x + i + width);
-            a = c < a ? c : a;
-            b = d < b ? d : b;
+    if (i < n) {
+        V px;
+        V py;
+        cut_some<width>(edges, i, z, px, py); // the lanes beyond n compute on padding
+        store<width>(px, x + i);
+        store<width>(py, y + i);
+        for (; i < n; ++i) {
+            result.least_x = x[i] < result.least_x ? x[i] : result.least_x;
+            result.repeats |= i > 0 && x[i] == x[i - 1] && y[i] == y[i - 1];
         }
-        a = b < a ? b : a;
-        for (int k = 0; k < width; ++k)
-            least = a[k] < least ? a[k] : least;
     }
-    for (; i < n; ++i)
-        least = x[i] < least ? x[i] : least;
-    return least;
+    return result;
+}
+
+template <int width, std::size_t... k>
+[[gnu::always_inline]] inline void store_points(const typename Vector<width>::Doubles& x,
+                                                const typename Vector<width>::Doubles& y, double* to,
+                                                std::index_sequence<k...>) {
+    store<width>(__builtin_shufflevector(x, y, (k % 2 * width + k / 2)...), to);
+    store<width>(__builtin_shufflevector(x, y, (k % 2 * width + k / 2 + width / 2)...), to + width);
 }
 
 template <int width>
-[[gnu::always_inline]] inline std::size_t find(const double* x, std::size_t from, std::size_t n,
-                                               double value) {
-    using M = typename Vector<width>::Mask;
+[[gnu::always_inline]] inline void cut(const EdgeColumns& edges, std::size_t begin, std::size_t end, double z,
+                                       Point2* to) {
+    using V = typename Vector<width>::Doubles;
+    std::size_t i = begin;
+    for (; i + width <= end; i += width, to += width) {
+        V px;
+        V py;
+        cut_some<width>(edges, i, z, px, py);
+        store_points<width>(px, py, &to->x, std::make_index_sequence<width>{});
+    }
+    const double* column = edges.data;
+    const std::size_t stride = edges.stride();
+    for (; i < end; ++i, ++to) {
+        const double t = (z - column[i]) * column[i + stride];
+        const double s = t < 1.0 ? t : 1.0;
+        *to = {column[i + 2 * stride] + s * column[i + 3 * stride],
+               column[i + 4 * stride] + s * column[i + 5 * stride]};
+    }
+}
+
+template <int width>
+[[gnu::always_inline]] inline std::size_t find_not_above(const double* x, std::size_t from, std::size_t n,
+                                                         double value) {
+    using V = typename Vector<width>::Doubles;
+    constexpr std::size_t step =
+        16 * width; // to look into the lanes of a vector costs as much as many comparisons
     std::size_t i = from;
-    for (; i + 4 * width <= n; i += 4 * width) {
-        M any = load<width>(x + i) == value;
-        for (int k = 1; k < 4; ++k)
-            any |= load<width>(x + i + k * width) == value;
+    for (; i + step <= n; i += step) {
+        V least = load<width>(x + i);
+        for (std::size_t k = width; k < step; k += width)
+            least = load<width>(x + i + k) < least ? load<width>(x + i + k) : least;
         bool hit = false;
         for (int k = 0; k < width; ++k)
-            hit |= any[k] != 0;
+            hit |= least[k] <= value;
         if (hit)
             break;
     }
-    for (; i < n; ++i)
-        if (x[i] == value)
-            return i;
-    return n;
-}
-
-template <int width>
-[[gnu::always_inline]] inline bool repeats(const double* x, const double* y, std::size_t n) {
-    using M = typename Vector<width>::Mask;
-    std::size_t i = 1;
-    M any{};
-    for (; i + width <= n; i += width)
-        any |=
-            (load<width>(x + i) == load<width>(x + i - 1)) & (load<width>(y + i) == load<width>(y + i - 1));
-    for (int k = 0; k < width; ++k)
-        if (any[k] != 0)
-            return true;
-    for (; i < n; ++i)
-        if (x[i] == x[i - 1] && y[i] == y[i - 1])
-            return true;
-    return false;
-}
-
-[[gnu::always_inline]] inline void interleave(const double* x, const double* y, std::size_t n, Point2* to) {
-    for (std::size_t i = 0; i < n; ++i)
-        to[i] = {x[i], y[i]};
+    while (i < n && x[i] > value)
+        ++i;
+    return i;
 }
 
 // One set of kernels, compiled for one instruction set.
 #define LAMELLA_POINT_KERNELS(name, target, width)                                                           \
     struct name {                                                                                            \
-        target static void cut(EdgeColumns e, double z, double* x, double* y) {                              \
-            lamella::cut<width>(e, z, x, y);                                                                 \
+        target static Survey survey(EdgeColumns edges, double z, double* x, double* y) {                     \
+            return lamella::survey<width>(edges, z, x, y);                                                   \
         }                                                                                                    \
-        target static double smallest(const double* x, std::size_t n) {                                      \
-            return lamella::smallest<width>(x, n);                                                           \
+        target static void cut(EdgeColumns edges, std::size_t begin, std::size_t end, double z,              \
+                               Point2* to) {                                                                 \
+            lamella::cut<width>(edges, begin, end, z, to);                                                   \
         }                                                                                                    \
-        target static std::size_t find(const double* x, std::size_t from, std::size_t n, double value) {     \
-            return lamella::find<width>(x, from, n, value);                                                  \
+        target static std::size_t find_not_above(const double* x, std::size_t from, std::size_t n,           \
+                                                 double value) {                                             \
+            return lamella::find_not_above<width>(x, from, n, value);                                        \
         }                                                                                                    \
-        target static bool repeats(const double* x, const double* y, std::size_t n) {                        \
-            return lamella::repeats<width>(x, y, n);                                                         \
-        }                                                                                                    \
-        target static void interleave(const double* x, const double* y, std::size_t n, Point2* to) {         \
-            lamella::interleave(x, y, n, to);                                                                \
-        }                                                                                                    \
-        static constexpr PointKernels kernels{cut, smallest, find, repeats, interleave};                     \
+        static constexpr PointKernels kernels{survey, cut, find_not_above};                                  \
     }
 
 LAMELLA_POINT_KERNELS(Plain, , 2);
 #if defined(__x86_64__)
 LAMELLA_POINT_KERNELS(Avx2, [[gnu::target("avx2")]], 4);
-LAMELLA_POINT_KERNELS(Avx512, [[gnu::target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")]], 8);
+LAMELLA_POINT_KERNELS(Avx512, [[gnu::target("avx512f,avx512dq,avx512vl")]], 8);
 #endif
 #undef LAMELLA_POINT_KERNELS
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // The inner loops of the sweep: from prepared edges to points. Each exists once as plain code and is compiled
-// for several vector widths; the widest one that the processor has is chosen when the program starts. All
-// give the same bits: the operations of EdgeCut::at, none of them fused or reordered.
+// for several vector widths; the widest one that the processor has is chosen at run time. All give the same
+// bits: the operations of EdgeCut::at, none of them fused or reordered.
 
 #include "lamella/core/point.hpp"
 
@@ -10,26 +10,37 @@
 
 namespace lamella {
 
-/// n edges in walk order as six arrays of n doubles behind one another (see EdgeCut): z0, inverse_dz, x0, dx,
-/// y0, dy.
+/// n edges in walk order, as six columns of doubles (see EdgeCut): z0, inverse_dz, x0, dx, y0, dy. Columns
+/// start at multiples of 64 bytes and are padded to whole multiples; the padding may hold anything finite.
 struct EdgeColumns {
-    const double* data;
+    double* data;
     std::size_t size;
 
     static constexpr std::size_t columns = 6;
+    static constexpr std::size_t lanes = 8; ///< doubles in 64 bytes
+
+    [[nodiscard]] static constexpr std::size_t padded(std::size_t n) noexcept {
+        return (n + lanes - 1) / lanes * lanes;
+    }
+    [[nodiscard]] std::size_t stride() const noexcept { return padded(size); }
+};
+
+/// What is learnt of a contour on one plane while its points are computed.
+struct Survey {
+    double least_x;
+    /// Some point equals the one before it, or is nearer than 1e-150 mm (the last and the first are not
+    /// compared).
+    bool repeats;
 };
 
 struct PointKernels {
-    /// x[i], y[i] = the cut of edge i with the plane z.
-    void (*cut)(EdgeColumns edges, double z, double* x, double* y);
-    /// The smallest x. n >= 1.
-    double (*smallest)(const double* x, std::size_t n);
-    /// The first i in [from, n) with x[i] == value, else n.
-    std::size_t (*find)(const double* x, std::size_t from, std::size_t n, double value);
-    /// Whether any point equals the one before it (not: the first the last).
-    bool (*repeats)(const double* x, const double* y, std::size_t n);
-    /// to[i] = (x[i], y[i]).
-    void (*interleave)(const double* x, const double* y, std::size_t n, Point2* to);
+    /// x[i], y[i] = the cut of edge i with the plane z, for i < edges.size; up to padded(size) values are
+    /// written. x and y start at multiples of 64 bytes. edges.size >= 1.
+    Survey (*survey)(EdgeColumns edges, double z, double* x, double* y);
+    /// to[i - begin] = the cut of edge i with the plane z, for begin <= i < end.
+    void (*cut)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
+    /// The first i in [from, n) with x[i] <= value, else n.
+    std::size_t (*find_not_above)(const double* x, std::size_t from, std::size_t n, double value);
 };
 
 /// The kernels for this processor.

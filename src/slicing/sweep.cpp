@@ -348,7 +348,8 @@ class SlabSweep {
     bool step(Walker& walker, std::uint32_t plane) {
         const std::uint32_t id = walker.node;
         if (visited_until_[id] > plane) {
-            finish(walker, plane, id);
+            if (!walker.sequence.empty()) // else another walk came by before this one took its first step
+                finish(walker, plane, id);
             return false;
         }
         visited_until_[id] = plane + 1;
@@ -419,12 +420,13 @@ class SlabSweep {
     void add_run(std::uint32_t plane, std::uint32_t valid_until, bool closed, const std::uint32_t* sequence,
                  std::size_t size) {
         Run run{plane, valid_until, static_cast<std::uint32_t>(size), closed, columns_used_, rings_.size()};
+        const std::size_t stride = EdgeColumns::padded(size);
         double* z0 = columns_.data() + EdgeColumns::columns * columns_used_;
-        double* inverse_dz = z0 + size;
-        double* x0 = inverse_dz + size;
-        double* dx = x0 + size;
-        double* y0 = dx + size;
-        double* dy = y0 + size;
+        double* inverse_dz = z0 + stride;
+        double* x0 = inverse_dz + stride;
+        double* dx = x0 + stride;
+        double* y0 = dx + stride;
+        double* dy = y0 + stride;
         const PlaneRule rule = ranks_.rule();
         const bool lasts = valid_until > plane + 1;
         for (std::size_t i = 0; i < size; ++i) {
@@ -438,8 +440,8 @@ class SlabSweep {
             if (lasts)
                 visited_until_[sequence[i]] = valid_until;
         }
-        columns_used_ += size;
-        ending_[valid_until - slab_->begin] += size;
+        columns_used_ += stride;
+        ending_[valid_until - slab_->begin] += stride;
         if (!closed && valid_until < slab_->end) {
             // Only a closed contour is sure to go on through a node that begins where its run ends.
             std::vector<std::uint32_t>& again = restarts_[valid_until - slab_->begin];
@@ -458,16 +460,15 @@ class SlabSweep {
     void measure(const Run& run, std::uint32_t plane) {
         Ring& ring = rings_[run.rings + plane - run.begin];
         std::size_t n = run.size;
-        scratch_.reserve(n);
-        kernels_.cut(columns_of(run), ranks_.z(plane), scratch_.x(), scratch_.y());
-        const bool repeats = kernels_.repeats(scratch_.x(), scratch_.y(), n) ||
-                             (run.closed && scratch_.point(0) == scratch_.point(n - 1));
+        scratch_.reserve(EdgeColumns::padded(n));
+        const Survey survey = kernels_.survey(columns_of(run), ranks_.z(plane), scratch_.x(), scratch_.y());
+        const bool repeats = survey.repeats || (run.closed && scratch_.point(0) == scratch_.point(n - 1));
         if (repeats)
             n = scratch_.drop_repeats(n, run.closed);
         ring = {scratch_.point(0), 0, 0, 0};
         if (n < (run.closed ? 3U : 2U))
             return;
-        if (run.closed && !find_start(n, repeats, ring))
+        if (run.closed && !find_start(n, survey.least_x, repeats, ring))
             return;
         ring.count = static_cast<std::uint32_t>(n);
         rings_of_plane_[plane - slab_->begin].push_back(
@@ -475,14 +476,13 @@ class SlabSweep {
     }
 
     /// Where the ring of n points in the scratch starts in normal form. False when it is a line.
-    bool find_start(std::size_t n, bool repeats, Ring& ring) {
+    bool find_start(std::size_t n, double least, bool repeats, Ring& ring) {
         const double* x = scratch_.x();
         const double* y = scratch_.y();
-        const double least = kernels_.smallest(x, n);
-        std::size_t start = kernels_.find(x, 0, n, least);
+        std::size_t start = kernels_.find_not_above(x, 0, n, least);
         bool tie = false;
-        for (std::size_t i = kernels_.find(x, start + 1, n, least); i < n;
-             i = kernels_.find(x, i + 1, n, least)) {
+        for (std::size_t i = kernels_.find_not_above(x, start + 1, n, least); i < n;
+             i = kernels_.find_not_above(x, i + 1, n, least)) {
             if (y[i] < y[start]) {
                 start = i;
                 tie = false;
@@ -495,7 +495,8 @@ class SlabSweep {
         const bool fold = scratch_.point(before) == scratch_.point(after);
         if (repeats || tie || fold) {
             std::vector<Point2> points(n);
-            kernels_.interleave(x, y, n, points.data());
+            for (std::size_t i = 0; i < n; ++i)
+                points[i] = scratch_.point(i);
             if (folds_flat(points))
                 return false;
             if (tie)
@@ -603,13 +604,18 @@ class SlabSweep {
     }
 
     void write_ring(const Run& run, std::uint32_t plane, const Ring& ring, Point2* to) {
-        scratch_.reserve(run.size);
-        kernels_.cut(columns_of(run), ranks_.z(plane), scratch_.x(), scratch_.y());
-        if (ring.count != run.size)
-            (void)scratch_.drop_repeats(run.size, run.closed);
-        const std::size_t tail = ring.count - ring.start;
-        kernels_.interleave(scratch_.x() + ring.start, scratch_.y() + ring.start, tail, to);
-        kernels_.interleave(scratch_.x(), scratch_.y(), ring.start, to + tail);
+        const EdgeColumns edges = columns_of(run);
+        const double z = ranks_.z(plane);
+        if (ring.count == run.size) {
+            kernels_.cut(edges, ring.start, run.size, z, to);
+            kernels_.cut(edges, 0, ring.start, z, to + (run.size - ring.start));
+            return;
+        }
+        scratch_.reserve(edges.stride());
+        kernels_.survey(edges, z, scratch_.x(), scratch_.y());
+        const std::size_t n = scratch_.drop_repeats(run.size, run.closed);
+        for (std::size_t i = 0; i < n; ++i)
+            to[i] = scratch_.point(i + ring.start < n ? i + ring.start : i + ring.start - n);
     }
 
     /// Moves the runs that go on to the front of the columns, and forgets the others.
@@ -623,12 +629,12 @@ class SlabSweep {
             const EdgeColumns from = columns_of(run);
             double* to = columns_.data() + EdgeColumns::columns * used;
             if (from.data != to)
-                std::copy(from.data, from.data + EdgeColumns::columns * run.size, to);
+                std::copy(from.data, from.data + EdgeColumns::columns * from.stride(), to);
             Run kept{plane, run.end, run.size, run.closed, used, rings.size()};
             const auto ring = rings_.begin() + static_cast<std::ptrdiff_t>(run.rings);
             rings.insert(rings.end(), ring + (plane - run.begin), ring + (run.end - run.begin));
             runs.push_back(kept);
-            used += run.size;
+            used += from.stride();
         }
         runs_ = std::move(runs);
         rings_ = std::move(rings);
