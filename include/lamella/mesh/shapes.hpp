@@ -32,27 +32,35 @@ struct SheetShape {
 /// positive).
 [[nodiscard]] TriangleSoup make_sheet(const SheetShape& shape);
 
-/// A chess rook as in the paper's Fig. 6: 31.75 x 31.75 x 53.15 mm, hollow crown with battlements, about
-/// 93,930 triangles.
+/// A chess rook as in the paper's Fig. 6: 31.75 x 31.75 x 53.15 mm, hollow crown with battlements, 94,080
+/// triangles (the paper's has 93,930). It stands on z = 0 around the z axis.
 [[nodiscard]] TriangleSoup make_rook();
 
-/// A lattice of struts: a cubic grid of cells, each node joined to its neighbours by struts of round section,
-/// all of it one closed surface without inner walls. Throws Error{usage} for impossible sizes.
+/// A lattice of struts: a cubic grid of cells, each corner of a cell joined to its neighbours by struts of
+/// round section that thicken towards the nodes, all of it one closed surface without inner walls, in the
+/// corner of the positive octant. Throws Error{usage} for impossible sizes. The default has 900,432
+/// triangles.
 struct LatticeShape {
     unsigned cells_x = 12;
     unsigned cells_y = 12;
     unsigned cells_z = 12;
     double cell_mm = 4.5;
     double strut_mm = 1.2; ///< diameter of a strut, smaller than the cell
-    unsigned detail = 4;   ///< triangles grow with its square
+    unsigned detail = 3;   ///< 16 * detail^2 triangles per strut
 };
 [[nodiscard]] TriangleSoup make_lattice(const LatticeShape& shape);
 
+// Small solids. They throw Error{usage} for sizes that are not positive and for segments that single
+// precision cannot tell apart.
+
+/// From the origin to (x, y, z). 12 triangles.
 [[nodiscard]] TriangleSoup make_box(double x_mm, double y_mm, double z_mm);
-/// Subdivided icosahedron: 20 * 4^level triangles, level 0 to 11.
+/// About the origin; a subdivided icosahedron: 20 * 4^level triangles, level 0 to 11.
 [[nodiscard]] TriangleSoup make_sphere(double radius_mm, unsigned level);
+/// About the origin, its axis upright. 2 * ring_segments * tube_segments triangles.
 [[nodiscard]] TriangleSoup make_torus(double ring_radius_mm, double tube_radius_mm, unsigned ring_segments,
                                       unsigned tube_segments);
+/// Upright on z = 0 around the z axis. 4 * segments triangles.
 [[nodiscard]] TriangleSoup make_cylinder(double radius_mm, double height_mm, unsigned segments);
 
 /// The same triangles in random order (the corners of each keep their order). The same seed gives the same

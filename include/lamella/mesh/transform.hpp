@@ -27,6 +27,9 @@ struct Transform {
     friend bool operator==(const Transform&, const Transform&) = default;
 };
 
+/// No entry is infinite or NaN.
+[[nodiscard]] bool finite(const Transform& map) noexcept;
+
 /// First `inner`, then `outer`.
 [[nodiscard]] Transform compose(const Transform& outer, const Transform& inner) noexcept;
 

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <span>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -61,12 +61,23 @@ class TriangleSoup {
 
     /// Triangle i with the placement applied, still counter-clockwise seen from outside when the placement
     /// mirrors.
-    [[nodiscard]] Triangle3 placed(std::size_t i) const noexcept;
+    [[nodiscard]] Triangle3 placed(std::size_t i) const noexcept {
+        const Triangle3f t = stored(i);
+        const auto corner = [&](int k) {
+            const Point3 p{t[k].x, t[k].y, t[k].z};
+            return has_placement_ ? placement_(p) : p;
+        };
+        return {corner(0), corner(mirrored_ ? 2 : 1), corner(mirrored_ ? 1 : 2)};
+    }
 
     [[nodiscard]] const Transform& placement() const noexcept { return placement_; }
     [[nodiscard]] bool has_placement() const noexcept { return has_placement_; }
 
+    /// The placement mirrors: `placed` swaps corners 1 and 2.
+    [[nodiscard]] bool mirrored() const noexcept { return mirrored_; }
+
     /// The same triangles under a further map (applied after the present placement). Shares the memory.
+    /// Throws Error{usage} when the map is not finite.
     [[nodiscard]] TriangleSoup transformed(const Transform& map) const;
 
     /// Where the triangles lie: for code that streams over them.

@@ -1,0 +1,56 @@
+#pragma once
+
+// Sums and boxes over many elements: in parallel, and with the same bits for any number of threads, because
+// the pieces have a fixed size and are put together in order.
+
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include "core/executor.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace lamella {
+
+/// Elements per piece.
+inline constexpr std::size_t fold_piece = std::size_t{1} << 15;
+
+/// piece(begin, end) -> Value over pieces of [0, n), then merge(total, value) in ascending order.
+template <class Value, class Piece, class Merge>
+[[nodiscard]] Value fold(Executor& executor, std::size_t n, Value total, const Piece& piece,
+                         const Merge& merge) {
+    std::vector<Value> values((n + fold_piece - 1) / fold_piece, total);
+    executor.for_chunks(n, fold_piece, [&](std::size_t begin, std::size_t end, unsigned) {
+        values[begin / fold_piece] = piece(begin, end);
+    });
+    for (const Value& value : values)
+        merge(total, value);
+    return total;
+}
+
+/// Six times the signed volume between a triangle and a point.
+[[nodiscard]] inline double six_volumes(const Triangle3& t, const Point3& origin) noexcept {
+    const Point3 a{t[0].x - origin.x, t[0].y - origin.y, t[0].z - origin.z};
+    const Point3 b{t[1].x - origin.x, t[1].y - origin.y, t[1].z - origin.z};
+    const Point3 c{t[2].x - origin.x, t[2].y - origin.y, t[2].z - origin.z};
+    return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+}
+
+/// Signed volume of n triangles, corners(i) -> Triangle3. Measured from the first corner, so that a part far
+/// from the origin does not drown in rounding.
+template <class Corners>
+[[nodiscard]] double fold_volume(Executor& executor, std::size_t n, const Corners& corners) {
+    if (n == 0)
+        return 0;
+    const Point3 origin = corners(std::size_t{0})[0];
+    const auto piece = [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            sum += six_volumes(corners(i), origin);
+        return sum;
+    };
+    return fold(executor, n, 0.0, piece, [](double& total, double value) { total += value; }) / 6;
+}
+
+} // namespace lamella

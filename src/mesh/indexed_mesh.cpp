@@ -1,0 +1,69 @@
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "mesh/folds.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace lamella {
+
+void check(const IndexedMesh& mesh) {
+    constexpr std::uint64_t limit = 0xffffffff;
+    if (mesh.vertices.size() > limit || mesh.triangles.size() > limit)
+        throw Error(ErrorKind::limit,
+                    fmt::format("a mesh of {} vertices and {} triangles is too large: at most "
+                                "{} of each can be indexed",
+                                mesh.vertices.size(), mesh.triangles.size(), limit));
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const Point3& p = mesh.vertices[i];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            throw Error(
+                ErrorKind::input,
+                fmt::format("vertex {} is ({}, {}, {}): expected finite coordinates", i, p.x, p.y, p.z));
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (const std::uint32_t v : mesh.triangles[i])
+            if (v >= mesh.vertices.size())
+                throw Error(ErrorKind::input,
+                            fmt::format("triangle {} names vertex {}, but there are only {} "
+                                        "vertices (numbered from 0)",
+                                        i, v, mesh.vertices.size()));
+}
+
+Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution) {
+    Executor executor(execution);
+    const auto piece = [&](std::size_t begin, std::size_t end) {
+        Box3 box;
+        for (std::size_t i = begin; i < end; ++i)
+            box.add(mesh.vertices[i]);
+        return box;
+    };
+    return fold(executor, mesh.vertices.size(), Box3{}, piece,
+                [](Box3& total, const Box3& box) { total.add(box); });
+}
+
+double volume(const IndexedMesh& mesh, const Execution& execution) {
+    Executor executor(execution);
+    return fold_volume(executor, mesh.triangles.size(), [&](std::size_t i) -> Triangle3 {
+        const auto& t = mesh.triangles[i];
+        return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+    });
+}
+
+IndexedMesh transformed(IndexedMesh mesh, const Transform& map) {
+    if (!finite(map))
+        throw Error(ErrorKind::usage, "cannot place a part with a map that is not finite");
+    for (Point3& p : mesh.vertices)
+        p = map(p);
+    if (map.determinant() < 0)
+        for (auto& t : mesh.triangles)
+            std::swap(t[1], t[2]);
+    return mesh;
+}
+
+} // namespace lamella

@@ -1,0 +1,63 @@
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/shapes.hpp"
+
+#include "mesh/naive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+namespace lamella {
+namespace {
+
+std::string complaint(const IndexedMesh& mesh) {
+    try {
+        check(mesh);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        return error.what();
+    }
+    return {};
+}
+
+TEST(IndexedMesh, CheckPassesASoundMeshAndAnEmptyOne) {
+    EXPECT_EQ(complaint(naive_weld(make_box(1, 2, 3))), "");
+    EXPECT_EQ(complaint({}), "");
+}
+
+TEST(IndexedMesh, CheckNamesTheFirstTriangleWithAnIndexOutOfRange) {
+    IndexedMesh mesh = naive_weld(make_box(1, 2, 3));
+    mesh.triangles[7][2] = 8;
+    mesh.triangles[9][0] = 4000000000;
+    EXPECT_EQ(complaint(mesh), "triangle 7 names vertex 8, but there are only 8 vertices (numbered from 0)");
+}
+
+TEST(IndexedMesh, CheckNamesTheFirstVertexThatIsNotFinite) {
+    IndexedMesh mesh = naive_weld(make_box(1, 2, 3));
+    mesh.vertices[3].y = std::nan("");
+    EXPECT_NE(complaint(mesh).find("vertex 3 "), std::string::npos);
+}
+
+TEST(IndexedMesh, HasTheBoxAndTheBitsOfTheVolumeOfItsSoup) {
+    for (const TriangleSoup& soup : {make_rook(), make_sphere(3, 6).transformed(upright({1, 2, 3}))}) {
+        const IndexedMesh mesh = naive_weld(soup);
+        EXPECT_EQ(bounding_box(mesh, {.threads = 3}), bounding_box(soup));
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(volume(mesh, {.threads = 3})),
+                  std::bit_cast<std::uint64_t>(volume(soup)));
+    }
+    EXPECT_TRUE(bounding_box(IndexedMesh{}).empty());
+    EXPECT_EQ(volume(IndexedMesh{}), 0);
+}
+
+TEST(IndexedMesh, TransformedKeepsTrianglesCounterClockwiseFromOutside) {
+    const IndexedMesh mesh = naive_weld(make_box(1, 2, 3));
+    EXPECT_EQ(volume(transformed(mesh, scaling(-2, 1, 1))), 12);
+    EXPECT_EQ(volume(transformed(mesh, rotation('x', 90))), 6);
+    EXPECT_EQ(bounding_box(transformed(mesh, translation(5, 6, 7))).max, (Point3{6, 8, 10}));
+}
+
+} // namespace
+} // namespace lamella
