@@ -25,8 +25,11 @@ struct Crossings {
 };
 
 /// Counts pairs of segments that cross properly: each has its ends strictly on both sides of the other.
-/// Contours that touch in a point or along a piece do not cross. Decided exactly, on the points as they are.
-/// Expected O(n) for segments of similar length (a grid); `keep` bounds Crossings::first.
+/// Contours that touch in a point or along a piece do not cross, and neither do those that change sides in a
+/// vertex. Decided exactly, on the points as they are. `keep` bounds Crossings::first.
+///
+/// Expected O(n + crossings); O(n log n) for hostile layers without crossings. Throws Error{limit} for a layer
+/// of more than 2^32 - 1 points.
 [[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16);
 
 } // namespace lamella
