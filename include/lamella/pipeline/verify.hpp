@@ -8,18 +8,19 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace lamella {
 
 struct VerifyOptions {
-    /// Compare each layer's area with the section of this mesh at the layer's z.
-    std::optional<MeshRef> mesh;
+    /// Compare each layer's area with the section of this mesh at the layer's z. It should be closed.
+    std::optional<MeshRef> mesh = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
-    /// How far a point may have been moved by the format (half a unit); it scales the area tolerance with the
-    /// layer's perimeter.
+    /// How far the format may have moved a coordinate of a point or of the cut (half a unit); it scales the
+    /// area tolerance with the layer's perimeter.
     double quantum_mm = 0;
 };
 
@@ -28,13 +29,19 @@ struct Verification {
     std::uint64_t contours = 0;
     std::uint64_t points = 0;
     std::uint64_t open_chains = 0;
+    /// Pairs of segments that cross properly; touching is allowed.
     std::uint64_t crossings = 0;
-    /// Rings that contradict their nesting: a counter-clockwise ring where a hole must be, or the reverse.
+    /// Rings that contradict their nesting: clockwise where there is no material to have a hole in, and every
+    /// ring within such a one.
     std::uint64_t misoriented = 0;
+    /// Counter-clockwise rings within the material of others. They are no error: where bodies of a mesh
+    /// overlap, their contours do. But a hole that runs the wrong way round looks the same.
+    std::uint64_t overlapping = 0;
     double volume_mm3 = 0; ///< sum of area times thickness
-    /// Largest difference between a layer's area and the mesh's section; with VerifyOptions::mesh.
+    /// Largest difference between a layer's area and the mesh's section, layers with open chains left out;
+    /// with VerifyOptions::mesh.
     std::optional<double> max_area_error_mm2;
-    /// Whether each area lies within its tolerance.
+    /// Whether each area lies within its tolerance: quantum and rounding errors, times the perimeter.
     bool areas_agree = true;
     /// One line for each kind of finding, with the first layer and place where it occurs.
     std::vector<std::string> findings;
@@ -44,9 +51,9 @@ struct Verification {
     }
 };
 
-/// O(points) expected for crossings and areas. Parallel over layers; the same result for any number of
-/// threads.
-[[nodiscard]] Verification verify(const LayerStack& layers, const VerifyOptions& options = {},
+/// Checks layers in any order. Expected O(points + triangles). Parallel over layers; the same result for any
+/// number of threads.
+[[nodiscard]] Verification verify(std::span<const Layer> layers, const VerifyOptions& options = {},
                                   const Execution& execution = {});
 
 } // namespace lamella

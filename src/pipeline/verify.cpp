@@ -1,0 +1,222 @@
+#include "lamella/pipeline/verify.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/polygon/crossings.hpp"
+
+#include "core/executor.hpp"
+#include "polygon/ring_places.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lamella {
+
+namespace {
+
+/// How often something occurs in a layer, and where first.
+struct Occurrences {
+    std::uint64_t count = 0;
+    Point2 first;
+
+    void add(std::uint64_t n, const Point2& at) {
+        if (count == 0)
+            first = at;
+        count += n;
+    }
+};
+
+struct LayerCheck {
+    LayerMeasure measure;
+    Occurrences open_chains;
+    Occurrences crossings;
+    Occurrences misoriented;
+    Occurrences overlapping;
+};
+
+LayerCheck check(const Layer& layer) {
+    LayerCheck result;
+    result.measure = measure(layer);
+    for (std::size_t i = layer.rings; i < layer.contours(); ++i)
+        if (!layer.contour(i).empty())
+            result.open_chains.add(1, layer.contour(i).front());
+    const Crossings crossings = find_crossings(layer, 1);
+    if (crossings.count > 0)
+        result.crossings.add(crossings.count, crossings.first.front().at);
+    const std::vector<RingPlace> places = ring_places(layer);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (places[i] == RingPlace::misoriented)
+            result.misoriented.add(1, layer.contour(i).front());
+        else if (places[i] == RingPlace::overlapping)
+            result.overlapping.add(1, layer.contour(i).front());
+    }
+    return result;
+}
+
+std::string where(const Layer& layer) {
+    return fmt::format("layer {} (z {:.7g} mm)", layer.index, layer.z);
+}
+
+/// The total over all layers of one kind of finding; text(total, first place) makes a line of it.
+template <class Text>
+std::uint64_t summed(std::span<const Layer> layers, std::span<const LayerCheck> checks,
+                     Occurrences LayerCheck::*kind, const Text& text, std::vector<std::string>& findings) {
+    std::uint64_t total = 0;
+    std::string place;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Occurrences& found = checks[i].*kind;
+        if (total == 0 && found.count > 0)
+            place = fmt::format("{} at ({:.7g}, {:.7g})", where(layers[i]), found.first.x, found.first.y);
+        total += found.count;
+    }
+    if (total > 0)
+        findings.push_back(text(total, place));
+    return total;
+}
+
+const char* plural(std::uint64_t n) {
+    return n == 1 ? "" : "s";
+}
+
+/// The areas that the section of a mesh has within a quantum of the z of a layer.
+struct SectionArea {
+    double nominal = 0;
+    double least = 0;
+    double greatest = 0;
+};
+
+std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const VerifyOptions& options,
+                                           const Execution& execution) {
+    std::vector<double> z;
+    for (const Layer& layer : layers)
+        z.push_back(layer.z);
+    std::sort(z.begin(), z.end());
+    z.erase(std::unique(z.begin(), z.end()), z.end());
+
+    const auto areas_at = [&](double offset) {
+        Plan plan;
+        plan.rule = options.rule;
+        std::vector<std::size_t> plane_of(z.size());
+        for (std::size_t i = 0; i < z.size(); ++i) {
+            const double shifted = z[i] + offset; // may round to the one before
+            if (plan.layers.empty() || shifted > plan.layers.back().z)
+                plan.layers.push_back({plan.layers.size(), shifted, shifted, shifted});
+            plane_of[i] = plan.layers.size() - 1;
+        }
+        const std::vector<double> of_planes = section_areas(*options.mesh, plan, execution);
+        std::vector<double> result;
+        for (const std::size_t plane : plane_of)
+            result.push_back(of_planes[plane]);
+        return result;
+    };
+    std::vector<SectionArea> areas(z.size());
+    const std::vector<double> nominal = areas_at(0);
+    for (std::size_t i = 0; i < z.size(); ++i)
+        areas[i] = {nominal[i], nominal[i], nominal[i]};
+    if (options.quantum_mm > 0)
+        for (const double offset : {-options.quantum_mm, options.quantum_mm}) {
+            const std::vector<double> shifted = areas_at(offset);
+            for (std::size_t i = 0; i < z.size(); ++i) {
+                areas[i].least = std::min(areas[i].least, shifted[i]);
+                areas[i].greatest = std::max(areas[i].greatest, shifted[i]);
+            }
+        }
+
+    std::vector<SectionArea> result;
+    for (const Layer& layer : layers)
+        result.push_back(
+            areas[static_cast<std::size_t>(std::lower_bound(z.begin(), z.end(), layer.z) - z.begin())]);
+    return result;
+}
+
+/// How far the area of a layer may be off when each of its points is off by up to `quantum` in x and y.
+double area_tolerance(const Layer& layer, const LayerMeasure& measure, double quantum) {
+    double largest = 0;
+    for (const Point2& p : layer.points)
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    // Two sums of as many products as there are points, of coordinates that are themselves rounded; errors of
+    // sums grow with the root of the number of terms.
+    const auto points = static_cast<double>(measure.points);
+    const double rounding = std::numeric_limits<double>::epsilon() * largest * (16 + 4 * std::sqrt(points));
+    // Rings smaller than a unit may have vanished: hence the perimeter of a few units more.
+    return (measure.perimeter_mm + 8 * quantum) * (std::sqrt(2.0) * quantum + rounding) +
+           2 * points * quantum * quantum;
+}
+
+void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> checks,
+                   const VerifyOptions& options, const Execution& execution, Verification& result) {
+    const std::vector<SectionArea> sections = areas_of_sections(layers, options, execution);
+    double largest_error = 0;
+    std::uint64_t differing = 0;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        if (checks[i].open_chains.count > 0)
+            continue; // its area is not known
+        const double area = checks[i].measure.area_mm2;
+        const SectionArea& section = sections[i];
+        largest_error = std::max(largest_error, std::abs(area - section.nominal));
+        const double beyond = std::max(section.least - area, area - section.greatest);
+        if (beyond > area_tolerance(layers[i], checks[i].measure, options.quantum_mm)) {
+            if (differing == 0)
+                first = i;
+            ++differing;
+        }
+    }
+    result.max_area_error_mm2 = largest_error;
+    if (differing > 0) {
+        result.areas_agree = false;
+        result.findings.push_back(fmt::format("{} layer{} of another area than the mesh's section, the first "
+                                              "is {}: {:.7g} mm^2 instead of {:.7g} mm^2",
+                                              differing, differing == 1 ? " is" : "s are",
+                                              where(layers[first]), checks[first].measure.area_mm2,
+                                              sections[first].nominal));
+    }
+}
+
+} // namespace
+
+Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {
+    std::vector<LayerCheck> checks(layers.size());
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::polygon, layers.size());
+    executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            checks[i] = check(layers[i]);
+            progress.add(1);
+        }
+    });
+    progress.finish();
+
+    Verification result;
+    result.layers = layers.size();
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        result.contours += checks[i].measure.contours;
+        result.points += checks[i].measure.points;
+        result.volume_mm3 += checks[i].measure.area_mm2 * layers[i].thickness();
+    }
+    const auto total = [&](Occurrences LayerCheck::*kind, const auto& text) {
+        return summed(layers, checks, kind, text, result.findings);
+    };
+    result.open_chains = total(&LayerCheck::open_chains, [](std::uint64_t n, const std::string& place) {
+        return fmt::format("{} contour{} not closed, the first in {}", n, n == 1 ? " is" : "s are", place);
+    });
+    result.crossings = total(&LayerCheck::crossings, [](std::uint64_t n, const std::string& place) {
+        return fmt::format("{} crossing{} of contours, the first in {}", n, plural(n), place);
+    });
+    result.misoriented = total(&LayerCheck::misoriented, [](std::uint64_t n, const std::string& place) {
+        return fmt::format("{} ring{} the wrong way round, the first in {}", n, n == 1 ? " runs" : "s run",
+                           place);
+    });
+    result.overlapping = total(&LayerCheck::overlapping, [](std::uint64_t n, const std::string& place) {
+        return fmt::format("{} ring{} within material: bodies that overlap, or holes that run the wrong way "
+                           "round; the first in {}",
+                           n, n == 1 ? " lies" : "s lie", place);
+    });
+    if (options.mesh)
+        compare_areas(layers, checks, options, execution, result);
+    return result;
+}
+
+} // namespace lamella

@@ -1,0 +1,170 @@
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/verify.hpp"
+
+#include "fixtures/layers.hpp"
+#include "fixtures/meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace lamella {
+namespace {
+
+using test::box_mesh;
+using test::layer_of;
+using test::rectangle;
+using test::reversed;
+
+Layer at(std::uint64_t index, Layer layer) {
+    layer.index = index;
+    layer.z = 0.5 + static_cast<double>(index);
+    layer.bottom = static_cast<double>(index);
+    layer.top = static_cast<double>(index) + 1;
+    return layer;
+}
+
+TEST(Verify, FindsNothingInSoundLayers) {
+    const LayerStack layers{at(0, layer_of({rectangle(0, 0, 4, 4), reversed(rectangle(1, 1, 3, 3))})),
+                            at(1, layer_of({rectangle(0, 0, 4, 4)})), at(2, Layer{})};
+    const Verification found = verify(layers);
+    EXPECT_TRUE(found.ok());
+    EXPECT_EQ(found.layers, 3U);
+    EXPECT_EQ(found.contours, 3U);
+    EXPECT_EQ(found.points, 12U);
+    EXPECT_EQ(found.volume_mm3, 12 + 16);
+    EXPECT_FALSE(found.max_area_error_mm2.has_value());
+    EXPECT_TRUE(found.findings.empty());
+}
+
+TEST(Verify, OfNothingFindsNothing) {
+    const Verification found = verify({});
+    EXPECT_TRUE(found.ok());
+    EXPECT_EQ(found.layers, 0U);
+}
+
+TEST(Verify, NamesTheFirstPlaceOfEachKindOfFinding) {
+    const LayerStack layers{
+        at(4, layer_of({rectangle(0, 0, 4, 4)})),
+        at(5, layer_of({rectangle(0, 0, 4, 4), rectangle(2, 1, 6, 3)}, {{{7, 7}, {8, 8}}})),
+        at(6, layer_of({reversed(rectangle(0, 0, 4, 4))}, {{{1, 9}, {8, 9}}}))};
+    const Verification found = verify(layers);
+    EXPECT_FALSE(found.ok());
+    EXPECT_EQ(found.open_chains, 2U);
+    EXPECT_EQ(found.crossings, 2U);
+    EXPECT_EQ(found.misoriented, 1U);
+    EXPECT_EQ(found.overlapping, 1U);
+    EXPECT_EQ(
+        found.findings,
+        (std::vector<std::string>{
+            "2 contours are not closed, the first in layer 5 (z 5.5 mm) at (7, 7)",
+            "2 crossings of contours, the first in layer 5 (z 5.5 mm) at (4, 1)",
+            "1 ring runs the wrong way round, the first in layer 6 (z 6.5 mm) at (0, 4)",
+            "1 ring lies within material: bodies that overlap, or holes that run the wrong way round; the "
+            "first in layer 5 (z 5.5 mm) at (2, 1)"}));
+}
+
+TEST(Verify, IsTheSameForAnyNumberOfThreads) {
+    LayerStack layers;
+    test::Random random(1);
+    for (std::uint64_t i = 0; i < 60; ++i) {
+        std::vector<test::Contour> rings;
+        for (int r = 0; r < 40; ++r) {
+            const double x = random.real(0, 100);
+            const double y = random.real(0, 100);
+            const test::Contour ring = rectangle(x, y, x + random.real(0, 20), y + random.real(0, 20));
+            rings.push_back(random.integer(0, 5) == 0 ? reversed(ring) : ring);
+        }
+        layers.push_back(at(i, layer_of(rings)));
+    }
+    const Verification one = verify(layers, {}, {.threads = 1});
+    EXPECT_GT(one.crossings, 0U);
+    EXPECT_GT(one.misoriented, 0U);
+    EXPECT_GT(one.overlapping, 0U);
+    for (const unsigned threads : {2U, 7U}) {
+        const Verification many = verify(layers, {}, {.threads = threads});
+        EXPECT_EQ(many.crossings, one.crossings);
+        EXPECT_EQ(many.misoriented, one.misoriented);
+        EXPECT_EQ(many.overlapping, one.overlapping);
+        EXPECT_EQ(many.volume_mm3, one.volume_mm3);
+        EXPECT_EQ(many.findings, one.findings);
+    }
+}
+
+TEST(Verify, ComparesAreasWithTheMesh) {
+    const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
+    const LayerStack right{at(0, layer_of({rectangle(0, 0, 4, 4)})),
+                           at(1, layer_of({rectangle(0, 0, 4, 4)}))};
+    const Verification agreed = verify(right, {.mesh = mesh});
+    EXPECT_TRUE(agreed.ok());
+    EXPECT_EQ(agreed.max_area_error_mm2, 0);
+
+    const LayerStack wrong{at(0, layer_of({rectangle(0, 0, 4, 4)})),
+                           at(1, layer_of({rectangle(0, 0, 4, 4.0625)}))};
+    const Verification differing = verify(wrong, {.mesh = mesh});
+    EXPECT_FALSE(differing.ok());
+    EXPECT_EQ(differing.max_area_error_mm2, 0.25);
+    EXPECT_EQ(differing.findings,
+              std::vector<std::string>{
+                  "1 layer is of another area than the mesh's section, the first is layer 1 (z "
+                  "1.5 mm): 16.25 mm^2 instead of 16 mm^2"});
+}
+
+TEST(Verify, MissesLayersThatAreNotThere) {
+    const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
+    const LayerStack empty{at(0, Layer{})};
+    EXPECT_FALSE(verify(empty, {.mesh = mesh}).areas_agree);
+    EXPECT_TRUE(verify(LayerStack{at(5, Layer{})}, {.mesh = mesh}).areas_agree); // above the box
+}
+
+TEST(Verify, GrantsTheQuantumOfAFormat) {
+    const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
+    const LayerStack rounded{at(0, layer_of({rectangle(0, 0, 4.01, 4.01)}))};
+    EXPECT_FALSE(verify(rounded, {.mesh = mesh, .quantum_mm = 0.001}).ok());
+    EXPECT_TRUE(verify(rounded, {.mesh = mesh, .quantum_mm = 0.01}).ok());
+    // The cut may have been moved, too: here over the top of the box.
+    LayerStack high{at(2, layer_of({rectangle(0, 0, 4, 4)}))};
+    high[0].z = 3;
+    EXPECT_FALSE(verify(high, {.mesh = mesh}).ok());
+    EXPECT_TRUE(verify(high, {.mesh = mesh, .quantum_mm = 0.001}).ok());
+    EXPECT_TRUE(verify(high, {.mesh = mesh, .rule = PlaneRule::section_below}).ok());
+}
+
+TEST(Verify, TakesLayersAtTheSameHeightOrNextToIt) {
+    const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
+    LayerStack layers{at(0, layer_of({rectangle(0, 0, 4, 4)})), at(0, layer_of({rectangle(0, 0, 4, 4)})),
+                      at(0, layer_of({rectangle(0, 0, 4, 4)}))};
+    layers[2].z = std::nextafter(layers[1].z, 0.0);
+    EXPECT_TRUE(verify(layers, {.mesh = mesh}).ok());
+    EXPECT_TRUE(verify(layers, {.mesh = mesh, .quantum_mm = 0.01}).ok());
+}
+
+TEST(Verify, ComparesNoAreaOfLayersWithOpenChains) {
+    const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
+    const Verification found = verify(LayerStack{at(0, layer_of({}, {{{0, 0}, {4, 0}}}))}, {.mesh = mesh});
+    EXPECT_FALSE(found.ok());
+    EXPECT_TRUE(found.areas_agree);
+    EXPECT_EQ(found.max_area_error_mm2, 0);
+}
+
+TEST(Verify, ReportsProgressToTheEndAndCanBeCancelled) {
+    const LayerStack layers(500, at(0, layer_of({rectangle(0, 0, 4, 4)})));
+    std::uint64_t done = 0;
+    std::stop_source stop;
+    Execution execution{.threads = 2, .cancel = stop.get_token()};
+    execution.progress = [&](const Progress& progress) {
+        EXPECT_EQ(progress.stage, Stage::polygon);
+        EXPECT_GE(progress.done, done);
+        EXPECT_EQ(progress.total, 500U);
+        done = progress.done;
+    };
+    EXPECT_TRUE(verify(layers, {}, execution).ok());
+    EXPECT_EQ(done, 500U);
+    execution.progress = nullptr;
+    stop.request_stop();
+    EXPECT_THROW(static_cast<void>(verify(layers, {}, execution)), Error);
+}
+
+} // namespace
+} // namespace lamella
