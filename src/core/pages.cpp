@@ -1,5 +1,7 @@
 #include "core/pages.hpp"
 
+#include "core/executor.hpp"
+
 #include <sys/mman.h>
 
 #include <cstdint>
@@ -47,6 +49,21 @@ Pages::~Pages() {
         munmap(data_, bytes_);
     else
         std::free(data_);
+}
+
+void make_pages_ready(Executor& executor, void* data, std::size_t bytes) {
+    const auto address = reinterpret_cast<std::uintptr_t>(data);
+    const std::uintptr_t begin = (address + huge_page - 1) & ~(huge_page - 1);
+    const std::uintptr_t end = (address + bytes) & ~(huge_page - 1);
+    if (begin >= end)
+        return;
+    auto* const first = static_cast<std::byte*>(data) + (begin - address);
+    madvise(first, end - begin, MADV_HUGEPAGE);
+    constexpr std::uint64_t pages_at_once = 2;
+    executor.for_chunks((end - begin) / huge_page, pages_at_once,
+                        [&](std::uint64_t from, std::uint64_t to, unsigned) {
+                            madvise(first + from * huge_page, (to - from) * huge_page, MADV_POPULATE_WRITE);
+                        });
 }
 
 } // namespace lamella

@@ -8,8 +8,11 @@
 #include <span>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace lamella {
+
+class Executor;
 
 /// A block of anonymous memory, zero where it was never written, that starts at a multiple of 64 bytes.
 /// Throws std::bad_alloc.
@@ -53,5 +56,18 @@ class PageArray {
     Pages pages_;
     std::size_t size_ = 0;
 };
+
+/// Asks for large pages behind [data, data + bytes), and has those of them that are whole pages made ready by
+/// all workers. A hint: the content does not change, and without large pages all still works.
+void make_pages_ready(Executor& executor, void* data, std::size_t bytes);
+
+/// Resizes an empty vector. To fill it in parallel afterwards is then not held up by fresh pages, which would
+/// all come from the one thread that resizes.
+template <class T>
+void resize_in_huge_pages(Executor& executor, std::vector<T>& values, std::size_t size) {
+    values.reserve(size);
+    make_pages_ready(executor, values.data(), size * sizeof(T));
+    values.resize(size);
+}
 
 } // namespace lamella

@@ -1,0 +1,215 @@
+// The exact weld, in four steps:
+//
+//     gather     each worker goes through one range of the file and replaces corners by local vertices. A
+//                small table of recent corners already joins most of them: triangles that share a corner are
+//                mostly near each other in a file.
+//     join       local vertices with equal coordinates are found by partitions (core/key_groups)
+//     number     the first of each kind becomes a vertex, in the order of the file
+//     rewrite    triangles are rewritten from local vertices to vertices
+//
+// The order in the file decides all numbers, so the ranges, and with them the number of workers, do not show.
+
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include "core/executor.hpp"
+#include "core/key_groups.hpp"
+#include "core/pages.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <compare>
+
+namespace lamella {
+
+namespace {
+
+/// Bits of coordinates that are not -0: equal bits, equal point.
+struct SingleKey {
+    std::uint32_t x;
+    std::uint32_t y;
+    std::uint32_t z;
+
+    friend bool operator==(const SingleKey& a, const SingleKey& b) noexcept {
+        return ((a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z)) == 0; // one branch, not three
+    }
+    friend auto operator<=>(const SingleKey&, const SingleKey&) noexcept = default;
+};
+
+struct DoubleKey {
+    std::uint64_t x;
+    std::uint64_t y;
+    std::uint64_t z;
+
+    friend bool operator==(const DoubleKey& a, const DoubleKey& b) noexcept {
+        return ((a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z)) == 0;
+    }
+    friend auto operator<=>(const DoubleKey&, const DoubleKey&) noexcept = default;
+};
+
+std::uint64_t hash(const SingleKey& key) noexcept {
+    return mix(key.x | std::uint64_t{key.y} << 32, key.z);
+}
+
+std::uint64_t hash(const DoubleKey& key) noexcept {
+    return mix(mix(key.x, key.y), key.z);
+}
+
+Point3 point(const SingleKey& key) noexcept {
+    return {std::bit_cast<float>(key.x), std::bit_cast<float>(key.y), std::bit_cast<float>(key.z)};
+}
+
+Point3 point(const DoubleKey& key) noexcept {
+    return {std::bit_cast<double>(key.x), std::bit_cast<double>(key.y), std::bit_cast<double>(key.z)};
+}
+
+/// Corners in single precision, for a soup without placement.
+struct StoredCorners {
+    using Key = SingleKey;
+    static std::array<Key, 3> of(const TriangleSoup& soup, std::size_t i) noexcept {
+        return std::bit_cast<std::array<Key, 3>>(soup.stored(i));
+    }
+};
+
+struct PlacedCorners {
+    using Key = DoubleKey;
+    static std::array<Key, 3> of(const TriangleSoup& soup, std::size_t i) noexcept {
+        return std::bit_cast<std::array<Key, 3>>(soup.placed(i));
+    }
+};
+
+/// One worker's range of triangles and the local vertices that it found there.
+template <class Key>
+struct Range {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    PageArray<Key> keys; ///< room for all corners; only the pages in use exist
+    std::size_t locals = 0;
+    std::size_t first_local = 0; ///< of this range among those of all ranges
+};
+
+/// Triangles between two looks at the clock.
+constexpr std::size_t block = std::size_t{1} << 15;
+
+template <class Corners>
+void gather(const TriangleSoup& soup, Range<typename Corners::Key>& range,
+            std::vector<std::array<std::uint32_t, 3>>& triangles, const Executor& executor,
+            ProgressMeter& progress) {
+    using Key = typename Corners::Key;
+    struct Recent {
+        Key key;
+        std::uint32_t local; // + 1
+    };
+    constexpr std::size_t slots = std::size_t{1} << 13; // within the second-level cache
+    const PageArray<Recent> recent(slots);
+    range.keys = PageArray<Key>(3 * (range.end - range.begin));
+    std::size_t locals = 0;
+    for (std::size_t from = range.begin; from < range.end && !executor.stopping(); from += block) {
+        const std::size_t to = std::min(range.end, from + block);
+        for (std::size_t i = from; i < to; ++i) {
+            const std::array<Key, 3> corners = Corners::of(soup, i);
+            for (int k = 0; k < 3; ++k) {
+                Recent& seen = recent[hash(corners[k]) % slots];
+                if (seen.local == 0 || seen.key != corners[k]) {
+                    range.keys[locals++] = corners[k];
+                    seen = {corners[k], static_cast<std::uint32_t>(locals)};
+                }
+                triangles[i][k] = seen.local - 1;
+            }
+        }
+        progress.add(to - from);
+    }
+    range.locals = locals;
+}
+
+template <class Corners>
+IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
+    using Key = typename Corners::Key;
+    IndexedMesh mesh;
+    ProgressMeter progress(execution, Stage::weld, soup.size());
+    Executor executor(execution);
+    // A range below a block is not worth a thread.
+    const std::size_t ranges_wanted = std::min<std::size_t>(executor.workers(), soup.size() / block + 1);
+    resize_in_huge_pages(executor, mesh.triangles, soup.size());
+
+    std::vector<Range<Key>> ranges(ranges_wanted);
+    for (std::size_t r = 0; r < ranges.size(); ++r) {
+        ranges[r].begin = soup.size() * r / ranges.size();
+        ranges[r].end = soup.size() * (r + 1) / ranges.size();
+    }
+    executor.for_chunks(ranges.size(), 1, [&](std::size_t r, std::size_t, unsigned) {
+        gather<Corners>(soup, ranges[r], mesh.triangles, executor, progress);
+    });
+    executor.check_cancelled();
+
+    std::size_t locals = 0;
+    std::vector<std::span<const Key>> parts;
+    for (Range<Key>& range : ranges) {
+        range.first_local = locals;
+        locals += range.locals;
+        parts.push_back(range.keys.span().first(range.locals));
+    }
+    if (locals >= 0xffffffff)
+        throw Error(ErrorKind::limit,
+                    fmt::format("cannot weld {} triangles: more than 2^32 - 1 corners are left to compare",
+                                soup.size()));
+
+    // first[i]: the first local vertex equal to local vertex i, + 1; 0 when that is itself.
+    const PageArray<std::uint32_t> first(locals);
+    join_equal_keys<Key>(
+        executor, parts, [](const Key& key) { return hash(key); },
+        [&](std::uint32_t representative, std::uint32_t other) { first[other] = representative + 1; });
+
+    // Count, prefix sum, fill: vertices in blocks of local vertices.
+    std::vector<std::uint32_t> next(locals / block + 1, 0);
+    executor.for_chunks(locals, block, [&](std::size_t begin, std::size_t end, unsigned) {
+        std::uint32_t count = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            count += first[i] == 0 ? 1 : 0;
+        next[begin / block] = count;
+    });
+    std::uint32_t vertices = 0;
+    for (std::uint32_t& value : next)
+        vertices = std::exchange(value, vertices) + vertices;
+    resize_in_huge_pages(executor, mesh.vertices, vertices);
+    const PageArray<std::uint32_t> number(locals);
+    executor.for_chunks(locals, block, [&](std::size_t begin, std::size_t end, unsigned) {
+        std::uint32_t vertex = next[begin / block];
+        std::size_t r = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            while (i >= ranges[r].first_local + ranges[r].locals)
+                ++r;
+            if (first[i] != 0)
+                continue;
+            number[i] = vertex;
+            mesh.vertices[vertex++] = point(ranges[r].keys[i - ranges[r].first_local]);
+        }
+    });
+
+    executor.for_chunks(soup.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
+        std::size_t r = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            while (i >= ranges[r].end)
+                ++r;
+            for (std::uint32_t& corner : mesh.triangles[i]) {
+                const std::size_t local = ranges[r].first_local + corner;
+                corner = number[first[local] != 0 ? first[local] - 1 : local];
+            }
+        }
+    });
+    progress.finish();
+    return mesh;
+}
+
+} // namespace
+
+IndexedMesh weld(const TriangleSoup& soup, const Execution& execution) {
+    if (soup.size() > 0xffffffff)
+        throw Error(ErrorKind::limit, fmt::format("cannot weld {} triangles: at most {} can be indexed",
+                                                  soup.size(), 0xffffffffU));
+    return soup.has_placement() ? weld_corners<PlacedCorners>(soup, execution)
+                                : weld_corners<StoredCorners>(soup, execution);
+}
+
+} // namespace lamella

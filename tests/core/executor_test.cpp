@@ -1,0 +1,133 @@
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+TEST(Executor, UsesAsManyWorkersAsAskedForAndAtLeastOne) {
+    EXPECT_EQ(Executor({.threads = 5}).workers(), 5U);
+    EXPECT_GE(Executor({}).workers(), 1U);
+}
+
+TEST(Executor, RunsTheBodyOnceForEachWorker) {
+    Executor executor({.threads = 4});
+    for (int region = 0; region < 50; ++region) {
+        std::vector<std::atomic<int>> calls(4);
+        executor.run([&](unsigned worker) { ++calls[worker]; });
+        for (const auto& count : calls)
+            EXPECT_EQ(count, 1);
+    }
+}
+
+TEST(Executor, ChunksCoverTheRangeExactlyOnce) {
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        Executor executor({.threads = threads});
+        for (const std::uint64_t n : {0U, 1U, 9U, 10U, 11U, 1000U}) {
+            std::vector<std::atomic<int>> seen(n);
+            executor.for_chunks(n, 10, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+                EXPECT_LT(worker, threads);
+                EXPECT_LE(end - begin, 10U);
+                for (std::uint64_t i = begin; i < end; ++i)
+                    ++seen[i];
+            });
+            for (const auto& count : seen)
+                EXPECT_EQ(count, 1);
+        }
+    }
+}
+
+TEST(Executor, ARangeOfOneChunkStaysOnTheCallingThread) {
+    Executor executor({.threads = 3});
+    const auto caller = std::this_thread::get_id();
+    executor.for_chunks(10, 10, [&](std::uint64_t, std::uint64_t, unsigned worker) {
+        EXPECT_EQ(worker, 0U);
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+    });
+}
+
+TEST(Executor, AnExceptionReachesTheCallerAndTheTeamLivesOn) {
+    for (const unsigned threads : {1U, 3U}) {
+        Executor executor({.threads = threads});
+        EXPECT_THROW(executor.for_chunks(1000, 1,
+                                         [](std::uint64_t begin, std::uint64_t, unsigned) {
+                                             if (begin == 17)
+                                                 throw std::runtime_error("seventeen");
+                                         }),
+                     std::runtime_error);
+        std::atomic<int> done = 0;
+        executor.for_chunks(100, 1, [&](std::uint64_t, std::uint64_t, unsigned) { ++done; });
+        EXPECT_EQ(done, 100);
+    }
+}
+
+TEST(Executor, StopsAtTheNextChunkWhenAsked) {
+    for (const unsigned threads : {1U, 3U}) {
+        std::stop_source stop;
+        Executor executor({.threads = threads, .cancel = stop.get_token()});
+        std::atomic<int> chunks = 0;
+        try {
+            executor.for_chunks(100000, 1, [&](std::uint64_t, std::uint64_t, unsigned) {
+                if (++chunks == 10)
+                    stop.request_stop();
+            });
+            ADD_FAILURE() << "not cancelled";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+        }
+        EXPECT_LT(chunks, 100);
+    }
+}
+
+TEST(ProgressMeter, NeverFallsAndEndsAtTheTotal) {
+    std::vector<std::uint64_t> reports;
+    const Execution execution{.threads = 3, .progress = [&](const Progress& p) {
+                                  EXPECT_EQ(p.stage, Stage::link);
+                                  EXPECT_EQ(p.total, 10000U);
+                                  reports.push_back(p.done);
+                              }};
+    ProgressMeter meter(execution, Stage::link, 10000);
+    Executor executor(execution);
+    executor.for_chunks(10000, 7,
+                        [&](std::uint64_t begin, std::uint64_t end, unsigned) { meter.add(end - begin); });
+    meter.finish();
+    ASSERT_FALSE(reports.empty());
+    EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
+    EXPECT_EQ(reports.front(), 0U);
+    EXPECT_EQ(reports.back(), 10000U);
+    EXPECT_GE(reports.size(), 10U);
+    EXPECT_LE(reports.size(), 102U);
+}
+
+TEST(ProgressMeter, WhatTheProgressFunctionThrowsReachesTheCaller) {
+    const Execution execution{.threads = 2, .progress = [](const Progress& p) {
+                                  if (p.done > 500)
+                                      throw std::runtime_error("enough");
+                              }};
+    ProgressMeter meter(execution, Stage::read, 1000);
+    Executor executor(execution);
+    EXPECT_THROW(
+        executor.for_chunks(
+            1000, 10, [&](std::uint64_t begin, std::uint64_t end, unsigned) { meter.add(end - begin); }),
+        std::runtime_error);
+}
+
+TEST(Stage, HasADistinctNameForEachStage) {
+    std::set<std::string> names;
+    for (const Stage stage :
+         {Stage::read, Stage::weld, Stage::link, Stage::slice, Stage::polygon, Stage::write})
+        names.insert(stage_name(stage));
+    EXPECT_EQ(names.size(), 6U);
+    EXPECT_FALSE(names.contains("?"));
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,121 @@
+#include "core/key_groups.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <random>
+#include <unordered_set>
+
+namespace lamella {
+namespace {
+
+using Pairs = std::map<std::uint32_t, std::uint32_t>; // other -> first
+
+template <class Hash>
+Pairs join(const std::vector<std::uint64_t>& keys, std::size_t parts, unsigned threads, const Hash& hash) {
+    std::vector<std::span<const std::uint64_t>> spans;
+    for (std::size_t p = 0; p < parts; ++p) {
+        const std::size_t begin = keys.size() * p / parts;
+        spans.push_back(std::span(keys).subspan(begin, keys.size() * (p + 1) / parts - begin));
+    }
+    Executor executor({.threads = threads});
+    Pairs out;
+    std::mutex mutex;
+    join_equal_keys<std::uint64_t>(executor, spans, hash, [&](std::uint32_t first, std::uint32_t other) {
+        const std::lock_guard lock(mutex);
+        EXPECT_TRUE(out.emplace(other, first).second) << "reported twice: " << other;
+    });
+    return out;
+}
+
+Pairs naive_join(const std::vector<std::uint64_t>& keys) {
+    Pairs out;
+    std::map<std::uint64_t, std::uint32_t> seen;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const auto [at, fresh] = seen.try_emplace(keys[i], static_cast<std::uint32_t>(i));
+        if (!fresh)
+            out[static_cast<std::uint32_t>(i)] = at->second;
+    }
+    return out;
+}
+
+std::vector<std::uint64_t> random_keys(std::size_t n, std::uint64_t kinds, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::vector<std::uint64_t> keys(n);
+    for (std::uint64_t& key : keys)
+        key = random() % kinds;
+    return keys;
+}
+
+const auto good_hash = [](std::uint64_t key) {
+    return mix(key, 1);
+};
+
+TEST(KeyGroups, FindsTheFirstEqualKeyForAnyNumberOfPartsAndThreads) {
+    for (const std::size_t n : {0U, 1U, 2U, 1000U, 50000U})
+        for (const std::uint64_t kinds :
+             {std::uint64_t{1}, std::uint64_t{37}, std::uint64_t{20000}, ~std::uint64_t{0}}) {
+            const std::vector<std::uint64_t> keys = random_keys(n, kinds, 1);
+            const Pairs expected = naive_join(keys);
+            for (const std::size_t parts : {1U, 2U, 7U})
+                for (const unsigned threads : {1U, 3U})
+                    EXPECT_EQ(join(keys, parts, threads, good_hash), expected);
+        }
+}
+
+TEST(KeyGroups, NoPartsAndEmptyPartsAreFine) {
+    Executor executor({.threads = 2});
+    const auto never = [](std::uint32_t, std::uint32_t) {
+        ADD_FAILURE();
+    };
+    join_equal_keys<std::uint64_t>(executor, {}, good_hash, never);
+    const std::vector<std::span<const std::uint64_t>> empty(3);
+    join_equal_keys<std::uint64_t>(executor, empty, good_hash, never);
+}
+
+TEST(KeyGroups, AConstantHashGivesTheSameAnswer) {
+    const std::vector<std::uint64_t> keys = random_keys(30000, 9000, 2);
+    const Pairs expected = naive_join(keys);
+    for (const std::uint64_t constant : {std::uint64_t{0}, ~std::uint64_t{0}})
+        EXPECT_EQ(join(keys, 3, 2, [&](std::uint64_t) { return constant; }), expected);
+}
+
+TEST(KeyGroups, AConstantHashDoesNotCostTheSquare) {
+    // A million different keys in one chain would take 5e11 comparisons: hours. Sorted, it is a second.
+    std::vector<std::uint64_t> keys = random_keys(500000, ~std::uint64_t{0}, 3);
+    keys.insert(keys.end(), keys.begin(), keys.end());
+    EXPECT_EQ(join(keys, 2, 2, [](std::uint64_t) { return std::uint64_t{0}; }).size(), 500000U);
+}
+
+TEST(KeyGroups, HashesThatCollideInAllLowBitsGiveTheSameAnswer) {
+    const std::vector<std::uint64_t> keys = random_keys(40000, 30000, 4);
+    EXPECT_EQ(join(keys, 2, 2, [](std::uint64_t key) { return key << 48; }), naive_join(keys));
+}
+
+TEST(KeyGroups, ReportsEqualKeysInAscendingOrder) {
+    const std::vector<std::uint64_t> keys = random_keys(50000, 11, 5);
+    Executor executor({.threads = 3});
+    const std::vector<std::span<const std::uint64_t>> parts{std::span(keys).first(20000),
+                                                            std::span(keys).subspan(20000)};
+    std::vector<std::uint32_t> last(keys.size(), 0);
+    join_equal_keys<std::uint64_t>(executor, parts, good_hash, [&](std::uint32_t first, std::uint32_t other) {
+        EXPECT_LT(last[first], other);
+        last[first] = other;
+    });
+}
+
+TEST(Mix, SpreadsNeighbouringNumbersOverTopAndBottomBits) {
+    std::unordered_set<std::uint64_t> top;
+    std::unordered_set<std::uint64_t> bottom;
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        top.insert(mix(i, 0) >> 32);
+        bottom.insert(mix(0, i) & 0xffffffff);
+    }
+    EXPECT_GE(top.size(), 999U);
+    EXPECT_GE(bottom.size(), 999U);
+}
+
+} // namespace
+} // namespace lamella
