@@ -1,6 +1,7 @@
 #include "slicing/sweep.hpp"
 
-#include "contour/least_rotation.hpp"
+#include "lamella/contour/normal_form.hpp"
+
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "slicing/cut_graph.hpp"
@@ -500,7 +501,7 @@ class SlabSweep {
             if (folds_flat(points))
                 return false;
             if (tie)
-                start = least_rotation(points);
+                start = smallest_rotation(points);
         }
         ring.start = static_cast<std::uint32_t>(start);
         ring.first = scratch_.point(start);
