@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 }
 
-Pages::Pages(std::size_t bytes) {
+Pages::Pages(std::size_t bytes, Fill fill) {
     if (bytes == 0)
         return;
     bytes_ = bytes;
@@ -24,10 +24,12 @@ Pages::Pages(std::size_t bytes) {
         data_ = std::aligned_alloc(line, (bytes + line - 1) / line * line);
         if (data_ == nullptr)
             throw std::bad_alloc();
-        std::memset(data_, 0, bytes);
+        if (fill == Fill::zero)
+            std::memset(data_, 0, bytes);
         return;
     }
-    // A whole huge page of slack lets the data start on one; what lies before it is given back.
+    // A fresh mapping is zero anyway. A whole huge page of slack lets the data start on one; what lies before
+    // it is given back.
     if (bytes > ~std::size_t{0} - 2 * huge_page)
         throw std::bad_alloc();
     const std::size_t mapped = bytes + huge_page;

@@ -14,12 +14,14 @@ namespace lamella {
 
 class Executor;
 
-/// A block of anonymous memory, zero where it was never written, that starts at a multiple of 64 bytes.
-/// Throws std::bad_alloc.
+/// What a block of memory holds at first.
+enum class Fill { none, zero };
+
+/// A block of anonymous memory that starts at a multiple of 64 bytes. Throws std::bad_alloc.
 class Pages {
   public:
     Pages() = default;
-    explicit Pages(std::size_t bytes);
+    explicit Pages(std::size_t bytes, Fill fill = Fill::none);
     ~Pages();
     Pages(const Pages&) = delete;
     Pages& operator=(const Pages&) = delete;
@@ -38,14 +40,15 @@ class Pages {
     std::size_t bytes_ = 0;
 };
 
-/// An array of trivial values on such a block, all zero bytes at first.
+/// An array of trivial values on such a block.
 template <class T>
 class PageArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
   public:
     PageArray() = default;
-    explicit PageArray(std::size_t size) : pages_(size * sizeof(T)), size_(size) {}
+    explicit PageArray(std::size_t size, Fill fill = Fill::none)
+        : pages_(size * sizeof(T), fill), size_(size) {}
 
     [[nodiscard]] T* data() const noexcept { return static_cast<T*>(pages_.data()); }
     [[nodiscard]] std::size_t size() const noexcept { return size_; }

@@ -201,7 +201,7 @@ class Builder {
     };
 
     struct Worker {
-        PageArray<Slot> table; // node + 1, so that fresh memory is empty
+        PageArray<Slot> table; // node + 1, so that zero is empty
         std::vector<std::vector<Record>> partitions;
         typename NodePool<Ends>::Cursor cursor;
     };
@@ -219,7 +219,7 @@ class Builder {
         executor_.for_chunks(triangles_, chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned w) {
             Worker& worker = worker_[w];
             if (worker.table.size() == 0) {
-                worker.table = PageArray<Slot>(table_mask_ + std::size_t{1});
+                worker.table = PageArray<Slot>(table_mask_ + std::size_t{1}, Fill::zero);
                 worker.partitions.resize(std::size_t{1} << partition_bits_);
             }
             for (std::uint64_t i = begin; i < end; ++i)

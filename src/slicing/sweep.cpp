@@ -43,7 +43,9 @@ namespace {
 
 /// What the planner knows about a plane: how many nodes are alive on it, and which begin there.
 struct PlaneIndex {
-    std::vector<std::uint64_t> points;  ///< per plane
+    std::vector<std::uint64_t> points;  ///< per plane: the nodes alive on it
+    std::uint64_t most_points = 0;      ///< on one plane
+    std::uint64_t all_points = 0;       ///< on all planes
     PageArray<std::uint32_t> starts;    ///< nodes ordered by the plane they begin on
     std::vector<std::uint64_t> offsets; ///< starts of plane p are [offsets[p], offsets[p + 1])
 };
@@ -55,36 +57,34 @@ struct Slab {
     std::vector<std::uint32_t> carried;
 };
 
+/// A worker's fixed share of the nodes, and how many of them begin and end on each plane.
+struct NodeShare {
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::vector<std::uint32_t> begins;
+    std::vector<std::uint32_t> ends;
+};
+
 template <class Ends>
-std::vector<std::uint64_t> count_points(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor,
-                                        std::vector<std::uint64_t>& begins) {
-    std::vector<std::vector<std::int64_t>> begin_counts(executor.workers());
-    std::vector<std::vector<std::int64_t>> end_counts(executor.workers());
-    executor.for_chunks(graph.count, 1U << 15, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
-        auto& starting = begin_counts[worker];
-        auto& ending = end_counts[worker];
-        starting.resize(planes + std::size_t{1});
-        ending.resize(planes + std::size_t{1});
-        for (std::uint64_t id = begin; id < end; ++id) {
+std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor) {
+    constexpr std::uint64_t worth_a_thread = 1U << 15; // nodes
+    const std::uint64_t shares =
+        std::clamp<std::uint64_t>(graph.count / worth_a_thread, 1, executor.workers());
+    std::vector<NodeShare> result(shares);
+    executor.for_chunks(shares, 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
+        NodeShare& share = result[s];
+        share.begin = static_cast<std::uint32_t>(graph.count * s / shares);
+        share.end = static_cast<std::uint32_t>(graph.count * (s + 1) / shares);
+        share.begins.assign(planes + std::size_t{1}, 0);
+        share.ends.assign(planes + std::size_t{1}, 0);
+        for (std::uint32_t id = share.begin; id < share.end; ++id) {
             const CutNode<Ends>& node = graph.nodes[id];
             const bool used = node.first < node.last;
-            starting[node.first] += used;
-            ending[node.last] += used;
+            share.begins[node.first] += used;
+            share.ends[node.last] += used;
         }
     });
-    begins.assign(planes, 0);
-    std::vector<std::uint64_t> points(planes, 0);
-    std::int64_t alive = 0;
-    for (std::uint32_t p = 0; p < planes; ++p) {
-        for (unsigned worker = 0; worker < executor.workers(); ++worker) {
-            if (begin_counts[worker].empty())
-                continue;
-            begins[p] += static_cast<std::uint64_t>(begin_counts[worker][p]);
-            alive += begin_counts[worker][p] - end_counts[worker][p];
-        }
-        points[p] = static_cast<std::uint64_t>(alive);
-    }
-    return points;
+    return result;
 }
 
 /// Cuts the planes into slabs of about equal work. A slab pays for walking once over all that is alive on its
@@ -125,28 +125,48 @@ std::vector<Slab> cut_into_slabs(const std::vector<std::uint64_t>& points, unsig
 template <class Ends>
 PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::uint64_t points_in_flight,
                         Executor& executor, std::vector<Slab>& slabs) {
+    std::vector<NodeShare> shares = count_nodes(graph, planes, executor);
     PlaneIndex index;
-    std::vector<std::uint64_t> begins;
-    index.points = count_points(graph, planes, executor, begins);
-    slabs = cut_into_slabs(index.points, executor.workers(), points_in_flight);
-
+    index.points.assign(planes, 0);
     index.offsets.assign(planes + std::size_t{1}, 0);
-    for (std::uint32_t p = 0; p < planes; ++p)
-        index.offsets[p + 1] = index.offsets[p] + begins[p];
-    index.starts = PageArray<std::uint32_t>(index.offsets[planes]);
+    std::vector<std::vector<std::uint64_t>> fill(shares.size(), std::vector<std::uint64_t>(planes));
+    std::uint64_t alive = 0;
+    std::uint64_t begun = 0;
+    for (std::uint32_t p = 0; p < planes; ++p) {
+        for (std::size_t s = 0; s < shares.size(); ++s) {
+            fill[s][p] = begun;
+            begun += shares[s].begins[p];
+            alive += shares[s].begins[p];
+            alive -= shares[s].ends[p];
+        }
+        index.points[p] = alive;
+        index.most_points = std::max(index.most_points, alive);
+        index.all_points += alive;
+        index.offsets[p + 1] = begun;
+    }
+
+    slabs = cut_into_slabs(index.points, executor.workers(), points_in_flight);
     std::vector<std::uint32_t> slab_of(planes);
     for (std::uint32_t s = 0; s < slabs.size(); ++s)
         std::fill(slab_of.begin() + slabs[s].begin, slab_of.begin() + slabs[s].end, s);
 
-    std::vector<std::uint64_t> fill(index.offsets.begin(), index.offsets.end() - 1);
-    for (std::uint32_t id = 0; id < graph.count; ++id) {
-        const CutNode<Ends>& node = graph.nodes[id];
-        if (node.first >= node.last)
-            continue;
-        index.starts[fill[node.first]++] = id;
-        for (std::uint32_t s = slab_of[node.first] + 1; s < slabs.size() && slabs[s].begin < node.last; ++s)
-            slabs[s].carried.push_back(id);
-    }
+    index.starts = PageArray<std::uint32_t>(begun);
+    std::vector<std::vector<std::vector<std::uint32_t>>> carried(
+        shares.size(), std::vector<std::vector<std::uint32_t>>(slabs.size()));
+    executor.for_chunks(shares.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
+        for (std::uint32_t id = shares[s].begin; id < shares[s].end; ++id) {
+            const CutNode<Ends>& node = graph.nodes[id];
+            if (node.first >= node.last)
+                continue;
+            index.starts[fill[s][node.first]++] = id;
+            for (std::uint32_t b = slab_of[node.first] + 1; b < slabs.size() && slabs[b].begin < node.last;
+                 ++b)
+                carried[s][b].push_back(id);
+        }
+    });
+    for (const auto& share : carried)
+        for (std::size_t b = 0; b < slabs.size(); ++b)
+            slabs[b].carried.insert(slabs[b].carried.end(), share[b].begin(), share[b].end());
     return index;
 }
 
@@ -201,6 +221,36 @@ class Scratch {
     PageArray<double> y_;
 };
 
+/// Memory for the points of layers, in blocks that outlive it for as long as a layer uses them. Blocks are
+/// large, so that they lie in large pages; only what is touched of them takes memory.
+class PointArena {
+  public:
+    /// `expected`: the points of the whole result; small results take small blocks.
+    explicit PointArena(std::uint64_t expected) : usual_(std::min(expected, largest_usual)) {}
+
+    struct Piece {
+        std::shared_ptr<const void> owner;
+        Point2* points;
+    };
+
+    [[nodiscard]] Piece take(std::uint64_t size) {
+        if (!block_ || block_->size() - used_ < size) {
+            block_ = std::make_shared<PageArray<Point2>>(std::max(size, usual_));
+            used_ = 0;
+        }
+        Point2* points = block_->data() + used_;
+        used_ += size;
+        return {block_, points};
+    }
+
+  private:
+    static constexpr std::uint64_t largest_usual = (std::uint64_t{8} << 20) / sizeof(Point2);
+
+    std::uint64_t usual_;
+    std::shared_ptr<PageArray<Point2>> block_;
+    std::uint64_t used_ = 0;
+};
+
 /// Whether a ring without repeated points runs to and fro on a line, so that it bounds nothing.
 bool folds_flat(const std::vector<Point2>& ring) {
     // A point between equal neighbours is the tip of a fold; folding it in leaves two equal points, one of
@@ -234,13 +284,13 @@ class SlabSweep {
     SlabSweep(const CutGraph<Ends>& graph, const Ranks& ranks, const Plan& plan, const PlaneIndex& index,
               const Executor& executor, OrderedDelivery& delivery)
         : graph_(graph), ranks_(ranks), plan_(plan), index_(index), executor_(executor), delivery_(delivery),
-          visited_until_(graph.count), segment_at_(graph.count) {
-        std::uint64_t most = 0;
-        for (const std::uint64_t p : index.points)
-            most = std::max(most, p);
+          arena_(index.all_points), visited_until_(graph.count, Fill::zero), segment_at_(graph.count) {
         // At any time the columns hold what is alive, what died since the last write (bounded by
-        // `stale_enough` and the larger of what was carried and one plane), and one new plane.
-        columns_ = PageArray<double>(EdgeColumns::columns * (4 * most + stale_enough));
+        // `stale_enough` and by the larger of what was carried and one plane), and one new plane; padding
+        // makes at most four of one. Only what is touched takes memory.
+        columns_ =
+            PageArray<double>(EdgeColumns::columns *
+                              (16 * index.most_points + 2 * std::min(stale_enough, 4 * index.all_points)));
     }
 
     /// Slabs must come in ascending order.
@@ -527,13 +577,13 @@ class SlabSweep {
             total += lay_out(plane, total, layer);
         }
 
-        const auto block = std::make_shared<const PageArray<Point2>>(total);
+        const PointArena::Piece piece = arena_.take(total);
         for (const Run& run : runs_) {
             const std::uint32_t last = std::min(run.end, end);
             for (std::uint32_t plane = std::max(run.begin, written_); plane < last; ++plane) {
                 const Ring& ring = rings_[run.rings + plane - run.begin];
                 if (ring.count != 0)
-                    write_ring(run, plane, ring, block->data() + ring.place);
+                    write_ring(run, plane, ring, piece.points + ring.place);
             }
         }
 
@@ -545,8 +595,8 @@ class SlabSweep {
             layer.bottom = planned.bottom;
             layer.top = planned.top;
             if (layer.offsets.back() != 0)
-                layer.points =
-                    PointArray(block, block->data() + layer_begin[plane - written_], layer.offsets.back());
+                layer.points = PointArray(piece.owner, piece.points + layer_begin[plane - written_],
+                                          layer.offsets.back());
             delivery_.deliver(plane, std::move(layer));
         }
         written_ = end;
@@ -680,6 +730,7 @@ class SlabSweep {
     std::vector<std::vector<Order>> rings_of_plane_;
     std::vector<std::uint64_t> ending_;
     Scratch scratch_;
+    PointArena arena_;
     std::uint32_t written_ = 0;
 };
 

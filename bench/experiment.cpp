@@ -1,0 +1,93 @@
+#include "experiment.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+namespace lamella::bench {
+
+std::uint64_t run_in_child(const std::function<void(std::span<std::byte>)>& body,
+                           std::span<std::byte> result) {
+    int ends[2];
+    if (pipe(ends) != 0) {
+        std::perror("pipe");
+        std::exit(1);
+    }
+    std::cout.flush();
+    const pid_t child = fork();
+    if (child == 0) {
+        try {
+            body(result);
+        } catch (const std::exception& error) {
+            std::cerr << "failed: " << error.what() << "\n";
+            _exit(1);
+        }
+        const bool sent = write(ends[1], result.data(), result.size()) == static_cast<ssize_t>(result.size());
+        _exit(sent ? 0 : 1);
+    }
+    close(ends[1]);
+    const ssize_t got = read(ends[0], result.data(), result.size());
+    close(ends[0]);
+    int status = 0;
+    rusage usage{};
+    wait4(child, &status, 0, &usage);
+    if (status != 0 || got != static_cast<ssize_t>(result.size())) {
+        std::cerr << "a measurement failed\n";
+        std::exit(1);
+    }
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+std::string Table::text() const {
+    std::vector<std::size_t> width(rows_.front().size(), 0);
+    for (const auto& row : rows_)
+        for (std::size_t c = 0; c < row.size(); ++c)
+            width[c] = std::max(width[c], row[c].size());
+    std::string text;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        for (std::size_t c = 0; c < rows_[r].size(); ++c)
+            text += c == 0 ? fmt::format("| {:<{}} |", rows_[r][c], width[c])
+                           : fmt::format(" {:>{}} |", rows_[r][c], width[c]);
+        text += "\n";
+        if (r == 0) {
+            for (std::size_t c = 0; c < width.size(); ++c)
+                text += c == 0 ? "|" + std::string(width[c] + 2, '-') + "|"
+                               : std::string(width[c] + 1, '-') + ":|";
+            text += "\n";
+        }
+    }
+    return text;
+}
+
+std::string machine() {
+    std::string processor = "unknown processor";
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);) {
+        if (line.rfind("model name", 0) == 0) {
+            processor = line.substr(line.find(':') + 2);
+            break;
+        }
+    }
+    return fmt::format("{}, {} threads, compiler {}", processor, std::thread::hardware_concurrency(),
+                       __VERSION__);
+}
+
+std::string option(int argc, char** argv, const char* name, const std::string& otherwise) {
+    for (int i = 1; i + 1 < argc; ++i)
+        if (std::string(argv[i]) == name)
+            return argv[i + 1];
+    return otherwise;
+}
+
+} // namespace lamella::bench

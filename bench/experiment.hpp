@@ -1,0 +1,67 @@
+#pragma once
+
+// What every experiment needs: a fresh process for each measurement, a clock, medians, and a table.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace lamella::bench {
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Runs `body` in a process of its own, so that no measurement inherits warm memory from the one before, and
+/// the peak memory is its own. Exits the program with a message when the process fails. Returns its peak
+/// resident memory in bytes; the bytes of the result are written to `result`.
+std::uint64_t run_in_child(const std::function<void(std::span<std::byte> result)>& body,
+                           std::span<std::byte> result);
+
+template <class Result>
+struct Measured {
+    Result result;
+    std::uint64_t peak_bytes;
+};
+
+template <class Result, class Body>
+Measured<Result> measure_in_child(const Body& body) {
+    static_assert(std::is_trivially_copyable_v<Result>);
+    Measured<Result> measured{};
+    measured.peak_bytes = run_in_child(
+        [&](std::span<std::byte> bytes) {
+            const Result result = body();
+            std::memcpy(bytes.data(), &result, sizeof result);
+        },
+        std::as_writable_bytes(std::span(&measured.result, 1)));
+    return measured;
+}
+
+[[nodiscard]] double median(std::vector<double> values);
+
+/// Columns of text, right-aligned but for the first.
+class Table {
+  public:
+    explicit Table(std::vector<std::string> head) : rows_{std::move(head)} {}
+    void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+    [[nodiscard]] std::string text() const;
+
+  private:
+    std::vector<std::vector<std::string>> rows_;
+};
+
+/// One line: processor, threads available, compiler.
+[[nodiscard]] std::string machine();
+
+/// `--name value` from the command line, or the default.
+[[nodiscard]] std::string option(int argc, char** argv, const char* name, const std::string& otherwise);
+
+} // namespace lamella::bench

@@ -1,0 +1,104 @@
+// Does the cost stay flat? Time per triangle and point from 10^4 to 10^7 triangles, and from 30 to 3,000
+// planes.
+//
+//     growth [--rounds 5] [--threads 2]
+
+#include "experiment.hpp"
+#include "parts.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iostream>
+#include <thread>
+
+namespace lamella::bench {
+
+namespace {
+
+struct Run {
+    double seconds;
+    std::uint64_t triangles, points, open_chains;
+    double worst_area_error;
+};
+
+/// From a soup in memory to layers in memory, checked.
+Run slice_soup(const TriangleSoup& soup, unsigned planes, unsigned threads) {
+    const Execution execution{.threads = threads};
+    const Box3 box = bounding_box(soup, execution);
+    const Plan plan = plan_uniform(box.min.z, box.max.z,
+                                   {.layer_height = (box.max.z - box.min.z) / static_cast<double>(planes)});
+    SliceReport report;
+    const auto start = Clock::now();
+    const LayerStack layers = slice(soup, plan, execution, &report);
+    Run run{seconds_since(start), soup.size(), report.points, report.open_chains, 0};
+    const std::vector<double> areas = section_areas(soup, plan, execution);
+    double largest = 0;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        largest = std::max(largest, std::abs(areas[i]));
+        run.worst_area_error =
+            std::max(run.worst_area_error, std::abs(measure(layers[i]).area_mm2 - areas[i]));
+    }
+    run.worst_area_error /= largest;
+    return run;
+}
+
+class Report {
+  public:
+    Report(int rounds, unsigned threads) : rounds_(rounds), threads_(threads) {}
+
+    void add(const std::string& part, const std::function<TriangleSoup()>& make, unsigned planes) {
+        std::vector<double> seconds;
+        Run last{};
+        for (int round = 0; round < rounds_; ++round) {
+            last = measure_in_child<Run>([&] { return slice_soup(make(), planes, threads_); }).result;
+            seconds.push_back(last.seconds);
+            right_ = right_ && last.open_chains == 0 && last.worst_area_error < 1e-9;
+        }
+        const double work = static_cast<double>(last.triangles + last.points);
+        table_.add({part, fmt::format("{}", last.triangles), fmt::format("{}", planes),
+                    fmt::format("{}", last.points), fmt::format("{:.5f}", median(seconds)),
+                    fmt::format("{:.2f}", median(seconds) / work * 1e9)});
+    }
+
+    int finish() const {
+        std::cout << table_.text() << "\n"
+                  << (right_ ? "All results checked: closed, areas as computed from the triangles.\n"
+                             : "SOME RESULTS ARE WRONG.\n");
+        return right_ ? 0 : 1;
+    }
+
+  private:
+    int rounds_;
+    unsigned threads_;
+    bool right_ = true;
+    Table table_{{"part", "triangles", "planes", "points", "seconds", "ns per triangle + point"}};
+};
+
+} // namespace
+
+} // namespace lamella::bench
+
+int main(int argc, char** argv) {
+    using namespace lamella;
+    using namespace lamella::bench;
+    const int rounds = std::stoi(option(argc, argv, "--rounds", "5"));
+    const auto threads = static_cast<unsigned>(
+        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
+    std::cout << machine() << "; medians of " << rounds << " rounds, " << threads << " threads\n\n";
+
+    Report report(rounds, threads);
+    // Growing in triangles: the same torus with finer facets, planes growing with their height.
+    for (const unsigned n : {71U, 224U, 708U, 2237U})
+        report.add(
+            "torus", [n] { return make_torus(50, 20, n, n); }, std::max(30U, n / 4));
+    // Growing in planes: the same lattice, thinner layers.
+    for (const unsigned planes : {30U, 100U, 300U, 1000U, 3000U})
+        report.add(
+            "lattice", [] { return make_lattice({}); }, planes);
+    // The worst case growing in planes: walls that every plane crosses.
+    for (const unsigned planes : {30U, 100U, 300U, 1000U, 3000U})
+        report.add(
+            "sheet 100", [] { return make_sheet({.holes = 100}); }, planes);
+    return report.finish();
+}

@@ -1,0 +1,134 @@
+// The kernels one by one (Google Benchmark): rank, weld, link, walk, run, format.
+
+#include "core/executor.hpp"
+#include "slicing/cut_graph.hpp"
+#include "slicing/point_kernels.hpp"
+#include "slicing/ranks.hpp"
+
+#include <benchmark/benchmark.h>
+#include <lamella/lamella.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+Plan planes_of(const TriangleSoup& soup, double count) {
+    const Box3 box = bounding_box(soup);
+    return plan_uniform(box.min.z, box.max.z, {.layer_height = (box.max.z - box.min.z) / count});
+}
+
+const TriangleSoup& torus() {
+    static const TriangleSoup soup = make_torus(50, 20, 700, 350); // 490,000 triangles
+    return soup;
+}
+
+const TriangleSoup& sheet() {
+    static const TriangleSoup soup = make_sheet({.holes = 225});
+    return soup;
+}
+
+Execution on(const benchmark::State& state) {
+    return {.threads = static_cast<unsigned>(state.range(0))};
+}
+
+void rank(benchmark::State& state) {
+    const Ranks ranks(planes_of(torus(), static_cast<double>(state.range(0))));
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < torus().size(); ++i)
+        for (const Point3& corner : torus().placed(i))
+            heights.push_back(corner.z);
+    for (auto _ : state) {
+        std::uint64_t sum = 0;
+        for (const double z : heights)
+            sum += ranks(z);
+        benchmark::DoNotOptimize(sum);
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(heights.size()));
+}
+BENCHMARK(rank)->Arg(30)->Arg(3000)->ArgName("planes")->Unit(benchmark::kMillisecond);
+
+void weld_corners(benchmark::State& state) {
+    for (auto _ : state)
+        benchmark::DoNotOptimize(weld(torus(), on(state)).vertices.data());
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(3 * torus().size()));
+}
+BENCHMARK(weld_corners)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void link_triangles(benchmark::State& state) {
+    const Execution execution = on(state);
+    const Ranks ranks(planes_of(torus(), 400));
+    for (auto _ : state) {
+        Executor executor(execution);
+        ProgressMeter progress(execution, Stage::link, torus().size());
+        benchmark::DoNotOptimize(build_cut_graph(torus(), ranks, executor, progress).count);
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(torus().size()));
+}
+BENCHMARK(link_triangles)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Time of the sweep alone; linking is left out.
+void sweep(benchmark::State& state, const TriangleSoup& soup, double planes) {
+    const Plan plan = planes_of(soup, planes);
+    const Execution execution = on(state);
+    SliceReport report;
+    for (auto _ : state) {
+        const LayerStack layers = slice(soup, plan, execution, &report);
+        state.SetIterationTime(report.slice_seconds);
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(report.points));
+}
+
+/// Facets about as high as a layer: nearly every plane of every contour is a walk of its own.
+void walk(benchmark::State& state) {
+    sweep(state, torus(), 350);
+}
+BENCHMARK(walk)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseManualTime();
+
+/// Walls: one walk serves all planes.
+void run(benchmark::State& state) {
+    sweep(state, sheet(), 60);
+}
+BENCHMARK(run)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseManualTime();
+
+void points(benchmark::State& state, const PointKernels& kernels) {
+    const std::size_t n = 1024;
+    std::vector<double> memory(EdgeColumns::columns * n + EdgeColumns::lanes, 0.5);
+    void* start = memory.data();
+    std::size_t space = memory.size() * sizeof(double);
+    const EdgeColumns edges{
+        static_cast<double*>(std::align(64, EdgeColumns::columns * n * sizeof(double), start, space)), n};
+    std::vector<Point2> to(n);
+    for (auto _ : state) {
+        kernels.cut(edges, 0, n, 0.75, to.data());
+        benchmark::ClobberMemory();
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
+}
+BENCHMARK_CAPTURE(points, widest, point_kernels());
+BENCHMARK_CAPTURE(points, plain, plain_point_kernels());
+
+void format_layers(benchmark::State& state, const char* name) {
+    const Plan plan = planes_of(sheet(), 10);
+    const LayerStack layers = slice(sheet(), plan);
+    std::uint64_t bytes = 0;
+    for (auto _ : state) {
+        const auto writer = open_layer_writer(
+            "/dev/null", layer_format(name, ""),
+            {.box = bounding_box(sheet()), .layers = layers.size(), .bottom = layers.front().bottom});
+        for (const Layer& layer : layers)
+            writer->prepare(layer)();
+        bytes += writer->bytes();
+        writer->finish();
+    }
+    state.SetBytesProcessed(static_cast<std::int64_t>(bytes));
+}
+BENCHMARK_CAPTURE(format_layers, cli, "cli")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(format_layers, cli_ascii, "cli-ascii")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(format_layers, svg, "svg")->Unit(benchmark::kMillisecond);
+
+} // namespace
+
+} // namespace lamella

@@ -1,0 +1,221 @@
+// How far from the limit? The limit of slicing a file is to read its bytes and to write the points of the
+// result to fresh memory. Both are timed here in one run, each in a process of its own, in turn, and the
+// result is checked.
+//
+//     limit [--rounds 7] [--threads 2]
+
+#include "experiment.hpp"
+#include "parts.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <iostream>
+#include <thread>
+
+namespace lamella::bench {
+
+namespace {
+
+void on_threads(unsigned threads, const std::function<void(unsigned)>& body) {
+    std::vector<std::thread> team;
+    for (unsigned t = 1; t < threads; ++t)
+        team.emplace_back(body, t);
+    body(0);
+    for (std::thread& thread : team)
+        thread.join();
+}
+
+/// Reads every byte of the file and writes `points` points, with the best that this machine offers to a
+/// program: mapped reading, memory in large pages.
+double limit_seconds(const std::string& path, std::uint64_t points, unsigned threads) {
+    const auto start = Clock::now();
+    const int file = open(path.c_str(), O_RDONLY);
+    struct stat status {};
+    fstat(file, &status);
+    const auto bytes = static_cast<std::size_t>(status.st_size);
+    const auto* data = static_cast<const char*>(mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file, 0));
+    close(file);
+    std::vector<std::uint64_t> sums(threads);
+    on_threads(threads, [&](unsigned t) {
+        const std::size_t words = bytes / 8;
+        std::uint64_t sum = 0;
+        for (std::size_t i = words * t / threads; i < words * (t + 1) / threads; ++i) {
+            std::uint64_t word;
+            std::memcpy(&word, data + 8 * i, 8);
+            sum += word;
+        }
+        sums[t] = sum;
+    });
+
+    constexpr std::size_t huge = std::size_t{2} << 20;
+    const std::size_t size = (points * sizeof(Point2) + huge) / huge * huge;
+    auto* memory = static_cast<char*>(mmap(nullptr, size + huge, PROT_READ | PROT_WRITE,
+                                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0));
+    memory += huge - reinterpret_cast<std::uintptr_t>(memory) % huge;
+    madvise(memory, size, MADV_HUGEPAGE);
+    auto* target = reinterpret_cast<Point2*>(memory);
+    on_threads(threads, [&](unsigned t) {
+        const Point2 value{static_cast<double>(sums[t]), 1};
+        std::fill(target + points * t / threads, target + points * (t + 1) / threads, value);
+    });
+    return seconds_since(start);
+}
+
+struct Run {
+    double read, link, slice, total;
+    double weld;
+    std::uint64_t triangles, points, hash;
+    double worst_area_error; // relative to the largest area
+    std::uint64_t open_chains;
+};
+
+Run run_lamella(const Part& part, unsigned threads, bool weld_too) {
+    Run run{};
+    const Execution execution{.threads = threads};
+    auto start = Clock::now();
+    const MeshFile file = read_mesh(part.path, {}, execution);
+    const Box3 box = bounding_box(file.mesh, execution);
+    run.read = seconds_since(start);
+    const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
+    SliceReport report;
+    const LayerStack layers = slice(file.mesh, plan, execution, &report);
+    run.total = seconds_since(start);
+    run.link = report.link_seconds;
+    run.slice = report.slice_seconds;
+    run.triangles = file.mesh.size();
+    run.points = report.points;
+    run.open_chains = report.open_chains;
+
+    if (weld_too) {
+        start = Clock::now();
+        const IndexedMesh mesh = weld(file.mesh, execution);
+        run.weld = seconds_since(start);
+        if (mesh.triangles.size() != file.mesh.size())
+            throw std::runtime_error("the weld lost triangles");
+    }
+
+    const std::vector<double> areas = section_areas(file.mesh, plan, execution);
+    double largest = 0;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        run.hash = run.hash * 0x9E3779B97F4A7C15 + content_hash(layers[i]);
+        largest = std::max(largest, std::abs(areas[i]));
+        run.worst_area_error =
+            std::max(run.worst_area_error, std::abs(measure(layers[i]).area_mm2 - areas[i]));
+    }
+    run.worst_area_error /= largest;
+    return run;
+}
+
+template <class Get>
+double middle(const std::vector<Measured<Run>>& runs, Get get) {
+    std::vector<double> values;
+    for (const auto& run : runs)
+        values.push_back(get(run.result));
+    return median(values);
+}
+
+int report(int argc, char** argv) {
+    const int rounds = std::stoi(option(argc, argv, "--rounds", "7"));
+    const auto threads = static_cast<unsigned>(
+        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
+    std::cout << machine() << "; medians of " << rounds << " rounds\n\n";
+
+    Table table({"part", "triangles", "points", "threads", "limit s", "total s", "ratio", "read",
+                 "ranks+graph", "sweep", "weld", "bytes/point", "peak MB"});
+    Table scaling({"part", "ranks+graph", "sweep", "weld", "total"});
+    bool right = true;
+    std::uint64_t sheet_hash = 0;
+    double sheet_total = 0;
+    for (const Part& part : standard_parts()) {
+        std::vector<double> single(4);
+        std::uint64_t hash = 0;
+        std::vector<unsigned> counts{1};
+        if (threads > 1)
+            counts.push_back(threads);
+        for (const unsigned count : counts) {
+            std::vector<Measured<Run>> runs;
+            std::vector<double> limits;
+            for (int round = 0; round < rounds; ++round) {
+                runs.push_back(measure_in_child<Run>([&] { return run_lamella(part, count, true); }));
+                const std::uint64_t points = runs.back().result.points;
+                limits.push_back(
+                    measure_in_child<double>([&] { return limit_seconds(part.path, points, count); }).result);
+                const Run& run = runs.back().result;
+                if (hash == 0)
+                    hash = run.hash;
+                if (run.hash != hash || run.open_chains != 0 || !(run.worst_area_error < 1e-9)) {
+                    std::cout << fmt::format(
+                        "WRONG: {} on {} threads: hash {:016x} against {:016x}, {} open chains, area "
+                        "error {:g}\n",
+                        part.name, count, run.hash, hash, run.open_chains, run.worst_area_error);
+                    right = false;
+                }
+            }
+            const double read = middle(runs, [](const Run& r) { return r.read; });
+            const double link = middle(runs, [](const Run& r) { return r.link; });
+            const double sweep = middle(runs, [](const Run& r) { return r.slice; });
+            const double weld_time = middle(runs, [](const Run& r) { return r.weld; });
+            const double total = middle(runs, [](const Run& r) { return r.total; });
+            // The peak without the checks is that of a run of its own.
+            const std::uint64_t peak =
+                measure_in_child<std::uint64_t>([&] {
+                    const Execution execution{.threads = count};
+                    const MeshFile file = read_mesh(part.path, {}, execution);
+                    const Box3 box = bounding_box(file.mesh, execution);
+                    const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
+                    return std::uint64_t{slice(file.mesh, plan, execution).size()};
+                }).peak_bytes;
+            const Run& run = runs.front().result;
+            table.add({part.name, fmt::format("{}", run.triangles), fmt::format("{}", run.points),
+                       fmt::format("{}", count), fmt::format("{:.4f}", median(limits)),
+                       fmt::format("{:.4f}", total), fmt::format("{:.2f}", total / median(limits)),
+                       fmt::format("{:.4f}", read), fmt::format("{:.4f}", link), fmt::format("{:.4f}", sweep),
+                       fmt::format("{:.4f}", weld_time),
+                       fmt::format("{:.1f}", static_cast<double>(peak) / static_cast<double>(run.points)),
+                       fmt::format("{:.0f}", static_cast<double>(peak) / 1e6)});
+            if (count == 1) {
+                single = {link, sweep, weld_time, total};
+            } else {
+                scaling.add({part.name, fmt::format("{:.2f}", single[0] / link),
+                             fmt::format("{:.2f}", single[1] / sweep),
+                             fmt::format("{:.2f}", single[2] / weld_time),
+                             fmt::format("{:.2f}", single[3] / total)});
+            }
+            if (part.name == "sheet 1225") {
+                sheet_hash = hash;
+                sheet_total = total;
+            }
+            if (part.name == "sheet 1225 shuffled") {
+                if (hash != sheet_hash) {
+                    std::cout << "WRONG: the shuffled sheet gives other layers\n";
+                    right = false;
+                } else if (count == counts.back()) {
+                    std::cout << fmt::format(
+                        "shuffled against in order, {} threads: {:.2f} times the time, the same "
+                        "bytes\n",
+                        count, total / sheet_total);
+                }
+            }
+        }
+    }
+    std::cout << "\n" << table.text();
+    if (threads > 1)
+        std::cout << "\nSpeed-up of " << threads << " threads over one:\n\n" << scaling.text();
+    std::cout << "\n"
+              << (right ? "All results checked: closed, areas as computed from the triangles, equal hashes.\n"
+                        : "SOME RESULTS ARE WRONG.\n");
+    return right ? 0 : 1;
+}
+
+} // namespace
+
+} // namespace lamella::bench
+
+int main(int argc, char** argv) {
+    return lamella::bench::report(argc, argv);
+}

@@ -1,0 +1,32 @@
+#include "parts.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace lamella::bench {
+
+Part make_part(const std::string& name, double layer_height, const std::function<TriangleSoup()>& make) {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "lamella-bench";
+    std::filesystem::create_directories(folder);
+    std::string file = name + ".stl";
+    std::replace(file.begin(), file.end(), ' ', '-');
+    const std::string path = (folder / file).string();
+    if (!std::filesystem::exists(path))
+        write_stl(path, make());
+    return {name, path, layer_height};
+}
+
+std::vector<Part> standard_parts() {
+    const auto sheet = [](unsigned holes) {
+        return make_sheet({.holes = holes});
+    };
+    return {
+        make_part("sheet 1225", 0.1, [&] { return sheet(1225); }),
+        make_part("sheet 1225 shuffled", 0.1, [&] { return shuffled(sheet(1225), 1); }),
+        make_part("sheet 100 on edge", 0.1, [&] { return sheet(100).transformed(rotation('x', 90)); }),
+        make_part("rook", 0.1, [] { return make_rook(); }),
+        make_part("lattice", 0.1, [] { return make_lattice({}); }),
+    };
+}
+
+} // namespace lamella::bench

@@ -1,0 +1,26 @@
+#pragma once
+
+// The parts that the experiments slice, as binary STL files in a folder of the system's temporary files.
+
+#include <lamella/lamella.hpp>
+
+#include <string>
+#include <vector>
+
+namespace lamella::bench {
+
+struct Part {
+    std::string name;
+    std::string path;
+    double layer_height = 0.1;
+};
+
+/// sheet 1225, its shuffled twin, sheet 100 on its edge, rook and lattice (about 900,000 triangles). Made on
+/// the first call, reused as long as the files are there.
+[[nodiscard]] std::vector<Part> standard_parts();
+
+/// Writes a part unless its file is already there.
+[[nodiscard]] Part make_part(const std::string& name, double layer_height,
+                             const std::function<TriangleSoup()>& make);
+
+} // namespace lamella::bench
