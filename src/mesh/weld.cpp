@@ -102,7 +102,7 @@ void gather(const TriangleSoup& soup, Range<typename Corners::Key>& range,
         std::uint32_t local; // + 1
     };
     constexpr std::size_t slots = std::size_t{1} << 13; // within the second-level cache
-    const PageArray<Recent> recent(slots);
+    const PageArray<Recent> recent(slots, Fill::zero);
     range.keys = PageArray<Key>(3 * (range.end - range.begin));
     std::size_t locals = 0;
     for (std::size_t from = range.begin; from < range.end && !executor.stopping(); from += block) {
@@ -156,7 +156,7 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
                                 soup.size()));
 
     // first[i]: the first local vertex equal to local vertex i, + 1; 0 when that is itself.
-    const PageArray<std::uint32_t> first(locals);
+    const PageArray<std::uint32_t> first(locals, Fill::zero);
     join_equal_keys<Key>(
         executor, parts, [](const Key& key) { return hash(key); },
         [&](std::uint32_t representative, std::uint32_t other) { first[other] = representative + 1; });

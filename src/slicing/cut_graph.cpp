@@ -183,7 +183,7 @@ class Builder {
                         fmt::format("{} triangles are more than can be sliced at once in 32-bit "
                                     "numbers ({})",
                                     triangles_, no_node / 3));
-        graph_.nodes = PageArray<Node>(capacity);
+        graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
         NodePool<Ends> pool(graph_.nodes, static_cast<std::uint32_t>(block));
 
         collect(pool);

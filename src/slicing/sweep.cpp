@@ -711,6 +711,7 @@ class SlabSweep {
     OrderedDelivery& delivery_;
     const PointKernels& kernels_ = point_kernels();
 
+    PointArena arena_;
     const Slab* slab_ = nullptr;
     PageArray<std::uint32_t> visited_until_; // per node: the plane before which it needs no visit
     PageArray<std::uint32_t> segment_at_;    // per node that a walk of this plane started at: its segment
@@ -730,7 +731,6 @@ class SlabSweep {
     std::vector<std::vector<Order>> rings_of_plane_;
     std::vector<std::uint64_t> ending_;
     Scratch scratch_;
-    PointArena arena_;
     std::uint32_t written_ = 0;
 };
 
