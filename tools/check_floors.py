@@ -43,6 +43,9 @@ THIRD_PARTY_ANYWHERE = {"fmt"}
 ENGINES = ["sweep"]
 ENGINE_TABLE = "src/slicing/engines.cpp"
 
+# The one consumer that opens private headers: it times the kernels alone.
+KERNEL_BENCHMARK = "bench/kernels.cpp"
+
 STANDARD = set(
     """algorithm any array atomic barrier bit bitset cassert cctype cerrno cfenv cfloat charconv chrono
     cinttypes climits clocale cmath codecvt compare complex concepts condition_variable coroutine csetjmp
@@ -147,7 +150,7 @@ class House:
             if used != user and used not in ROOMS[user]:
                 return f"{user} may not include {target}: {used} is not below it"
             return self.judge_engine(name, target)
-        if public or not target.startswith("src/"):
+        if public or not target.startswith("src/") or name == KERNEL_BENCHMARK:
             return None
         if parts[0] == "tests" and user in ROOMS:
             if used == user or used in ROOMS[user]:

@@ -25,6 +25,7 @@ SOUND = {
     "src/slicing/cut_graph.hpp": "",
     "src/polygon/grid.hpp": "",
     "app/main.cpp": "#include <lamella/lamella.hpp>\n#include <CLI/CLI.hpp>\n",
+    "bench/kernels.cpp": '#include "slicing/sweep.hpp"\n',
     "tests/fixtures/solids.hpp": "#include <lamella/lamella.hpp>\n",
     "tests/slicing/sweep_test.cpp": '#include "slicing/sweep.hpp"\n#include "fixtures/solids.hpp"\n',
 }
