@@ -31,9 +31,9 @@ namespace lamella {
     return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
 }
 
-/// Calls found(first, other) for every key that is not the first of its kind: `first` is the lowest id of an
-/// equal key. The ids of keys are their positions in all parts together, one part after the other; below
-/// 2^32 in all.
+/// Calls found(first, other, worker) for every key that is not the first of its kind: `first` is the lowest
+/// id of an equal key, `worker` the one that makes the call. The ids of keys are their positions in all parts
+/// together, one part after the other; below 2^32 in all.
 ///
 /// hash(key) gives 64 bits, equal for equal keys. Calls come from all workers at once; those for equal keys
 /// come from one worker and with ascending `other`. Hands out parts to workers, so there should be as many.
@@ -58,7 +58,8 @@ struct Record {
 
 /// Reports records from `from` on (those before were reported already).
 template <class Key, class Found>
-void join_sorted(std::span<const Record<Key>> records, std::size_t from, const Found& found) {
+void join_sorted(std::span<const Record<Key>> records, std::size_t from, unsigned worker,
+                 const Found& found) {
     std::vector<std::uint32_t> order(records.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         order[i] = static_cast<std::uint32_t>(i);
@@ -69,14 +70,14 @@ void join_sorted(std::span<const Record<Key>> records, std::size_t from, const F
         const Record<Key>& first = records[order[i]];
         for (++i; i < order.size() && records[order[i]].key == first.key; ++i)
             if (order[i] >= from)
-                found(first.id, records[order[i]].id);
+                found(first.id, records[order[i]].id, worker);
     }
 }
 
 /// `table`: memory to work in, of any content.
 template <class Key, class Hash, class Found>
-void join_partition(std::span<const Record<Key>> records, std::vector<std::uint32_t>& table, const Hash& hash,
-                    const Found& found) {
+void join_partition(std::span<const Record<Key>> records, std::vector<std::uint32_t>& table, unsigned worker,
+                    const Hash& hash, const Found& found) {
     if (records.size() < 2)
         return;
     table.assign(std::bit_ceil(2 * records.size()), 0); // position + 1, or 0
@@ -91,11 +92,11 @@ void join_partition(std::span<const Record<Key>> records, std::vector<std::uint3
             }
             const Record<Key>& first = records[entry - 1];
             if (first.key == records[i].key) {
-                found(first.id, records[i].id);
+                found(first.id, records[i].id, worker);
                 break;
             }
             if (probe == longest_probe) {
-                join_sorted(records, i, found);
+                join_sorted(records, i, worker, found);
                 return;
             }
             slot = (slot + 1) & mask;
@@ -154,8 +155,8 @@ void join_equal_keys(Executor& executor, std::span<const std::span<const Key>> p
     std::vector<std::vector<std::uint32_t>> tables(executor.workers());
     executor.for_chunks(partitions, 1, [&](std::size_t q, std::size_t, unsigned worker) {
         const std::span<const Record<Key>> all = records.span();
-        key_groups::join_partition(all.subspan(begin[q], begin[q + 1] - begin[q]), tables[worker], hash,
-                                   found);
+        key_groups::join_partition(all.subspan(begin[q], begin[q + 1] - begin[q]), tables[worker], worker,
+                                   hash, found);
     });
 }
 

@@ -159,7 +159,9 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
     const PageArray<std::uint32_t> first(locals, Fill::zero);
     join_equal_keys<Key>(
         executor, parts, [](const Key& key) { return hash(key); },
-        [&](std::uint32_t representative, std::uint32_t other) { first[other] = representative + 1; });
+        [&](std::uint32_t representative, std::uint32_t other, unsigned) {
+            first[other] = representative + 1;
+        });
 
     // Count, prefix sum, fill: vertices in blocks of local vertices.
     std::vector<std::uint32_t> next(locals / block + 1, 0);

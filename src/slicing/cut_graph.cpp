@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/key_groups.hpp"
 #include "slicing/edge_pairing.hpp"
 
 #include <fmt/format.h>
@@ -19,36 +20,27 @@
 //    together. Found: the node is complete. Not found: a new node, known from one side so far, takes the
 //    slot; whoever sat there is left to step 2. No thread waits for another, and no memory access leaves the
 //    cache but to append.
-// 2. Join. Every node has also left a record (hash, id) in one of many partitions, by hash. A partition fits
-// the
-//    cache; nodes of equal ends meet there. Two halves become one node.
-// 3. Pair. Where more than two triangles met in an edge, its links are dealt out anew by geometry
-//    (edge_pairing.hpp).
+// 2. Join. Nodes of equal ends are brought together by their hashes (core/key_groups.hpp). Two halves become
+// one
+//    node.
+// 3. Pair. Where more than two triangles met in an edge, or where hashes collide, the links are dealt out
+// anew
+//    among the nodes that really have equal ends, by geometry (edge_pairing.hpp).
 
 namespace lamella {
 
 namespace {
 
-__extension__ using Wide = unsigned __int128;
-
-std::uint64_t fold(std::uint64_t a, std::uint64_t b) {
-    const Wide product = static_cast<Wide>(a) * b;
-    return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
-}
-
-constexpr std::uint64_t key_a = 0x9E3779B97F4A7C15;
-constexpr std::uint64_t key_b = 0xC2B2AE3D27D4EB4F;
-constexpr std::uint64_t key_c = 0x165667B19E3779F9;
-
 template <class Ends>
 std::uint64_t hash_of(const Ends& ends) {
-    std::array<std::uint64_t, (sizeof(Ends) + 7) / 8> words{};
+    std::array<std::uint64_t, sizeof(Ends) / 8> words;
+    static_assert(sizeof words == sizeof ends);
     std::memcpy(words.data(), &ends, sizeof ends);
-    std::uint64_t h = key_c;
+    std::uint64_t h = 0;
     for (std::size_t i = 0; i + 1 < words.size(); i += 2)
-        h = fold(words[i] ^ key_a ^ h, words[i + 1] ^ key_b);
+        h = mix(words[i] ^ h, words[i + 1]);
     if (words.size() % 2 == 1)
-        h = fold(words.back() ^ key_a ^ h, key_b);
+        h = mix(words.back() ^ h, words.size());
     return h;
 }
 
@@ -119,18 +111,6 @@ struct IndexedCorners {
     const PageArray<std::uint32_t>& ranks_;
 };
 
-/// What a node leaves behind for the join.
-struct Record {
-    std::uint32_t tag;
-    std::uint32_t node;
-};
-
-// Which bits of the hash serve what: the partition the highest, the worker's table the lowest, the tag those
-// between. 31 bits of tag leave the join one bit for a mark.
-std::uint32_t tag_of(std::uint64_t hash) {
-    return static_cast<std::uint32_t>(hash >> 20) & 0x7FFFFFFF;
-}
-
 /// Node numbers come in blocks from one counter, so that workers number nodes without waiting and the numbers
 /// stay dense.
 template <class Ends>
@@ -184,6 +164,7 @@ class Builder {
                                     "numbers ({})",
                                     triangles_, no_node / 3));
         graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
+        hashes_ = PageArray<std::uint64_t>(capacity);
         NodePool<Ends> pool(graph_.nodes, static_cast<std::uint32_t>(block));
 
         collect(pool);
@@ -195,21 +176,28 @@ class Builder {
     }
 
   private:
+    /// Two nodes of equal hash.
+    struct Meeting {
+        std::uint32_t first; ///< the same at each meeting of a group
+        std::uint32_t other;
+    };
+
+    /// The node last seen with this part of a hash, + 1, so that zero is empty.
     struct Slot {
         std::uint32_t tag;
         std::uint32_t node;
     };
 
     struct Worker {
-        PageArray<Slot> table; // node + 1, so that zero is empty
-        std::vector<std::vector<Record>> partitions;
+        PageArray<Slot> table;
         typename NodePool<Ends>::Cursor cursor;
+        std::array<Meeting, 16> meetings; ///< under way, oldest at `met` modulo their number
+        std::size_t met = 0;
+        std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, repeated
     };
 
     void collect(NodePool<Ends>& pool) {
-        // Some 8,192 records make a partition, so that its table stays in the second-level cache.
         const std::uint64_t expected = triangles_ * 3 / 2;
-        partition_bits_ = std::clamp(static_cast<int>(std::bit_width(expected >> 13)), 0, 12);
         const auto table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
         table_mask_ = (1U << table_bits) - 1;
 
@@ -220,7 +208,6 @@ class Builder {
             Worker& worker = worker_[w];
             if (worker.table.size() == 0) {
                 worker.table = PageArray<Slot>(table_mask_ + std::size_t{1}, Fill::zero);
-                worker.partitions.resize(std::size_t{1} << partition_bits_);
             }
             for (std::uint64_t i = begin; i < end; ++i)
                 add_triangle(i, worker, pool);
@@ -267,7 +254,7 @@ class Builder {
     std::uint32_t find_or_add(const Ends& ends, std::uint32_t first, std::uint32_t last, bool entered,
                               Worker& worker, NodePool<Ends>& pool) {
         const std::uint64_t hash = hash_of(ends);
-        const std::uint32_t tag = tag_of(hash);
+        const auto tag = static_cast<std::uint32_t>(hash >> 32);
         Slot& slot = worker.table[hash & table_mask_];
         if (slot.node != 0 && slot.tag == tag) {
             Node& node = graph_.nodes[slot.node - 1];
@@ -282,146 +269,71 @@ class Builder {
         const std::uint32_t added = pool.take(worker.cursor);
         graph_.nodes[added] = {ends, no_node, no_node, first, first & 0x7FFFFFFF, entered, last, 0};
         slot = {tag, added + 1};
-        worker.partitions[partition_bits_ == 0 ? 0 : hash >> (64 - partition_bits_)].push_back({tag, added});
+        hashes_[added] = hash;
         return added;
     }
 
-    // ------------------------------------------------------------------------------------------------ join
-
-    /// Nodes that turned out to have the same ends.
-    struct Meeting {
-        std::uint32_t first;
-        std::uint32_t second;
-    };
-
     void join() {
-        std::vector<std::vector<std::uint32_t>> crowded(workers_);
-        executor_.for_chunks(std::uint64_t{1} << partition_bits_, 1,
-                             [&](std::uint64_t begin, std::uint64_t end, unsigned w) {
-                                 for (std::uint64_t p = begin; p < end; ++p)
-                                     join_partition(p, crowded[w]);
-                             });
-        for (const auto& part : crowded)
-            crowded_.insert(crowded_.end(), part.begin(), part.end());
-        worker_.clear();
+        // Numbers that were handed out but not used take part with hashes of their own.
+        for (const Worker& worker : worker_)
+            for (std::uint32_t id = worker.cursor.next; id < worker.cursor.end; ++id)
+                hashes_[id] = mix(id, graph_.count);
+
+        std::vector<std::span<const std::uint64_t>> parts;
+        for (std::uint64_t w = 0; w < workers_; ++w) {
+            const std::uint64_t begin = graph_.count * w / workers_;
+            const std::uint64_t end = graph_.count * (w + 1) / workers_;
+            parts.push_back(hashes_.span().subspan(begin, end - begin));
+        }
+        join_equal_keys<std::uint64_t>(
+            executor_, parts, [](std::uint64_t hash) { return hash; },
+            [&](std::uint32_t first, std::uint32_t other, unsigned w) {
+                // The two nodes may lie anywhere: they are looked at a while after they are asked for.
+                Worker& worker = worker_[w];
+                __builtin_prefetch(&graph_.nodes[first], 1);
+                __builtin_prefetch(&graph_.nodes[other], 1);
+                Meeting& oldest = worker.meetings[worker.met % worker.meetings.size()];
+                if (worker.met >= worker.meetings.size())
+                    meet(oldest, worker.crowded);
+                oldest = {first, other};
+                ++worker.met;
+            });
+        for (Worker& worker : worker_) {
+            const std::size_t places = worker.meetings.size();
+            for (std::size_t i = worker.met < places ? 0 : worker.met - places; i < worker.met; ++i)
+                meet(worker.meetings[i % places], worker.crowded);
+            crowded_.insert(crowded_.end(), worker.crowded.begin(), worker.crowded.end());
+        }
     }
 
-    void join_partition(std::uint64_t p, std::vector<std::uint32_t>& crowded) {
-        std::size_t size = 0;
-        for (const Worker& worker : worker_)
-            size += worker.partitions.empty() ? 0 : worker.partitions[p].size();
-        if (size < 2)
+    void meet(const Meeting& meeting, std::vector<std::uint32_t>& crowded) {
+        Node& a = graph_.nodes[meeting.first];
+        Node& b = graph_.nodes[meeting.other];
+        if (a.first == a.last) {
+            // It is one node with another one already: three are a crowd.
+            crowded.insert(crowded.end(), {a.triangle, meeting.other});
             return;
-
-        std::vector<Meeting> meetings;
-        std::vector<Meeting> crowds;
-        if (!meet_by_tag(p, size, meetings, crowds) || !ends_agree(meetings) || !ends_agree(crowds)) {
-            meetings.clear();
-            crowds.clear();
-            meet_by_sorting(p, meetings, crowds);
         }
-
-        for (const Meeting& meeting : meetings) {
-            Node& a = graph_.nodes[meeting.first];
-            Node& b = graph_.nodes[meeting.second];
-            if (a.entered != b.entered && a.left() != b.left() && a.entered != a.left())
-                unite(a.entered ? a : b, a.entered ? b : a);
-            else
-                crowded.insert(crowded.end(), {meeting.first, meeting.second});
+        const bool halves = a.entered != b.entered && a.left() != b.left() && a.entered != a.left();
+        if (!halves || !(a.ends == b.ends)) {
+            crowded.insert(crowded.end(), {meeting.first, meeting.other});
+        } else if (a.entered) {
+            unite(a, b, meeting.first);
+        } else {
+            unite(b, a, meeting.other);
         }
-        for (const Meeting& meeting : crowds)
-            crowded.insert(crowded.end(), {meeting.first, meeting.second});
     }
 
     /// Nodes are known by the edges that lead to them, so the entered half stays and takes the other's links.
-    static void unite(Node& entered, Node& left) {
+    /// The other one is no longer in use; as its triangle it keeps the number of the node that it is part of.
+    static void unite(Node& entered, Node& left, std::uint32_t number) {
         entered.next_low = left.next_low;
         entered.next_high = left.next_high;
         entered.split = left.split;
         entered.triangle = left.triangle;
         left.next_low = left.next_high = no_node;
         left.last = left.first;
-    }
-
-    /// Pairs nodes of equal tag: the first two in `meetings`; for any further one its meeting with the first,
-    /// and the first pair again, in `crowds`. False when the table got so crowded that somebody must have
-    /// meant it.
-    bool meet_by_tag(std::uint64_t p, std::size_t size, std::vector<Meeting>& meetings,
-                     std::vector<Meeting>& crowds) {
-        constexpr std::uint32_t met = 0x80000000;
-        constexpr std::uint32_t longest_probe = 128;
-        const std::uint32_t mask = static_cast<std::uint32_t>(std::bit_ceil(2 * size)) - 1;
-        std::vector<Slot> table(std::size_t{mask} + 1, Slot{0, no_node});
-        for (const Worker& worker : worker_) {
-            if (worker.partitions.empty())
-                continue;
-            for (const Record& record : worker.partitions[p]) {
-                std::uint32_t at = (record.tag * 0x9E3779B1U) >> 7 & mask;
-                for (std::uint32_t probe = 0;; ++probe, at = (at + 1) & mask) {
-                    if (probe == longest_probe)
-                        return false;
-                    Slot& slot = table[at];
-                    if (slot.node == no_node) {
-                        slot = {record.tag, record.node};
-                        break;
-                    }
-                    if ((slot.tag & ~met) != record.tag)
-                        continue;
-                    if ((slot.tag & met) == 0) {
-                        meetings.push_back({slot.node, record.node});
-                        slot = {record.tag | met, static_cast<std::uint32_t>(meetings.size() - 1)};
-                    } else {
-                        const Meeting& before = meetings[slot.node];
-                        crowds.push_back(before);
-                        crowds.push_back({before.first, record.node});
-                    }
-                    break;
-                }
-            }
-        }
-        return true;
-    }
-
-    bool ends_agree(const std::vector<Meeting>& meetings) const {
-        constexpr std::size_t ahead = 16;
-        for (std::size_t i = 0; i < meetings.size(); ++i) {
-            if (i + ahead < meetings.size()) {
-                __builtin_prefetch(&graph_.nodes[meetings[i + ahead].first], 1);
-                __builtin_prefetch(&graph_.nodes[meetings[i + ahead].second], 1);
-            }
-            if (!(graph_.nodes[meetings[i].first].ends == graph_.nodes[meetings[i].second].ends))
-                return false;
-        }
-        return true;
-    }
-
-    /// The same by sorting: for partitions that crafted hashes have made too full for a table, and for the
-    /// rare tag that two different edges share.
-    void meet_by_sorting(std::uint64_t p, std::vector<Meeting>& meetings, std::vector<Meeting>& crowds) {
-        std::vector<std::uint32_t> ids;
-        for (const Worker& worker : worker_)
-            if (!worker.partitions.empty())
-                for (const Record& record : worker.partitions[p])
-                    ids.push_back(record.node);
-        const auto bytes_less = [&](std::uint32_t a, std::uint32_t b) {
-            const int order = std::memcmp(&graph_.nodes[a].ends, &graph_.nodes[b].ends, sizeof(Ends));
-            return order != 0 ? order < 0 : a < b;
-        };
-        std::sort(ids.begin(), ids.end(), bytes_less);
-        const auto same = [&](std::uint32_t a, std::uint32_t b) {
-            return graph_.nodes[a].ends == graph_.nodes[b].ends;
-        };
-        for (std::size_t i = 0; i + 1 < ids.size();) {
-            std::size_t end = i + 1;
-            while (end < ids.size() && same(ids[i], ids[end]))
-                ++end;
-            if (end - i >= 2)
-                meetings.push_back({ids[i], ids[i + 1]});
-            if (end - i > 2)
-                for (std::size_t k = i + 1; k < end; ++k)
-                    crowds.push_back({ids[i], ids[k]});
-            i = end;
-        }
+        left.triangle = number;
     }
 
     const Corners& corners_;
@@ -429,9 +341,9 @@ class Builder {
     Executor& executor_;
     ProgressMeter& progress_;
     unsigned workers_;
-    int partition_bits_ = 0;
     std::uint32_t table_mask_ = 0;
     std::vector<Worker> worker_;
+    PageArray<std::uint64_t> hashes_; // per node
     CutGraph<Ends> graph_;
     std::vector<std::uint32_t> crowded_; // nodes that share their ends with others, in no order, repeated
 };

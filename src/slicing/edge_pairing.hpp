@@ -183,7 +183,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
         }
         for (const std::uint32_t id : spare)
             graph.nodes[id].last = graph.nodes[id].first;
-        ++edges;
+        edges += rays.size() > 2;
         begin = end;
     }
     return edges;
