@@ -67,7 +67,7 @@ TEST(KeyGroups, FindsTheFirstEqualKeyForAnyNumberOfPartsAndThreads) {
 
 TEST(KeyGroups, NoPartsAndEmptyPartsAreFine) {
     Executor executor({.threads = 2});
-    const auto never = [](std::uint32_t, std::uint32_t) {
+    const auto never = [](std::uint32_t, std::uint32_t, unsigned) {
         ADD_FAILURE();
     };
     join_equal_keys<std::uint64_t>(executor, {}, good_hash, never);
