@@ -48,7 +48,8 @@ class PageArray {
   public:
     PageArray() = default;
     explicit PageArray(std::size_t size, Fill fill = Fill::none)
-        : pages_(size * sizeof(T), fill), size_(size) {}
+        : pages_(size <= ~std::size_t{0} / sizeof(T) ? size * sizeof(T) : ~std::size_t{0}, fill),
+          size_(size) {} // a size beyond all memory must fail, not wrap around
 
     [[nodiscard]] T* data() const noexcept { return static_cast<T*>(pages_.data()); }
     [[nodiscard]] std::size_t size() const noexcept { return size_; }

@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
-TEST(PageArray, IsZeroAndWritableWhateverItsSize) {
+TEST(PageArray, IsZeroWhereAskedForAndWritableWhateverItsSize) {
     for (const std::size_t size : {std::size_t{0}, std::size_t{1}, huge_page / 4 - 1, huge_page / 4,
                                    huge_page / 4 + 1, 3 * huge_page / 4 + 5}) {
-        const PageArray<std::uint32_t> array(size);
+        const PageArray<std::uint32_t> array(size, Fill::zero);
         EXPECT_EQ(array.size(), size);
         for (std::uint32_t& v : array.span()) {
             ASSERT_EQ(v, 0U);
@@ -40,8 +40,9 @@ TEST(PageArray, MovingHandsTheMemoryOver) {
 }
 
 TEST(PageArray, ASizeThatNoMemoryHoldsThrows) {
-    EXPECT_THROW(Pages(~std::size_t{0}), std::bad_alloc);
-    EXPECT_THROW(Pages(~std::size_t{0} / 2), std::bad_alloc);
+    EXPECT_THROW(PageArray<char>(~std::size_t{0}), std::bad_alloc);
+    EXPECT_THROW(PageArray<char>(~std::size_t{0} / 2), std::bad_alloc);
+    EXPECT_THROW(PageArray<std::uint64_t>((~std::size_t{0} >> 3) + 2), std::bad_alloc);
 }
 
 TEST(ResizeInHugePages, GivesAVectorOfZeros) {

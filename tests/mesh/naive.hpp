@@ -5,11 +5,14 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
+#include <vector>
 
 namespace lamella {
 
@@ -40,11 +43,15 @@ struct EdgeCounts {
     friend bool operator==(const EdgeCounts&, const EdgeCounts&) = default;
 };
 
+inline bool naive_degenerate(const std::array<std::uint32_t, 3>& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
 inline EdgeCounts naive_edges(const IndexedMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, int>> edges;
     EdgeCounts out;
     for (const auto& t : mesh.triangles) {
-        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
+        if (naive_degenerate(t)) {
             ++out.degenerate_triangles;
             continue;
         }
@@ -60,6 +67,47 @@ inline EdgeCounts naive_edges(const IndexedMesh& mesh) {
         out.boundary += all == 1;
         out.nonmanifold += all > 2;
         out.unbalanced += all > 1 && uses.first != uses.second;
+    }
+    return out;
+}
+
+inline std::uint64_t naive_duplicates(const IndexedMesh& mesh) {
+    std::set<std::array<std::uint32_t, 3>> seen;
+    std::uint64_t out = 0;
+    for (std::array<std::uint32_t, 3> t : mesh.triangles) {
+        std::sort(t.begin(), t.end());
+        out += !naive_degenerate(t) && !seen.insert(t).second;
+    }
+    return out;
+}
+
+/// Parts connected over edges, by flooding.
+inline std::uint64_t naive_shells(const IndexedMesh& mesh) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> at_edge;
+    const auto edge = [&](std::size_t i, int k) {
+        return std::pair(std::minmax(mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3]));
+    };
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (int k = 0; k < 3 && !naive_degenerate(mesh.triangles[i]); ++k)
+            at_edge[edge(i, k)].push_back(i);
+    std::vector<bool> visited(mesh.triangles.size(), false);
+    std::uint64_t out = 0;
+    for (std::size_t start = 0; start < mesh.triangles.size(); ++start) {
+        if (visited[start] || naive_degenerate(mesh.triangles[start]))
+            continue;
+        ++out;
+        std::vector<std::size_t> todo{start};
+        visited[start] = true;
+        while (!todo.empty()) {
+            const std::size_t i = todo.back();
+            todo.pop_back();
+            for (int k = 0; k < 3; ++k)
+                for (const std::size_t next : std::exchange(at_edge[edge(i, k)], {}))
+                    if (!visited[next]) {
+                        visited[next] = true;
+                        todo.push_back(next);
+                    }
+        }
     }
     return out;
 }

@@ -74,13 +74,15 @@ TEST(Weld, KeepsDegenerateAndEmptyInput) {
 }
 
 TEST(Weld, WeldsAFileThatWasCraftedAgainstItsHash) {
-    // Corners with these x and y all have the hash 0 (see mix), whatever their z: as one chain in a table they
-    // would take hours.
+    // Corners with these x and y all have the hash 0 (see mix), whatever their z: as one chain in a table
+    // they would take hours.
     const float x = std::bit_cast<float>(0x7f4a7c15U);
     const float y = std::bit_cast<float>(0x9e3779b9U);
     std::vector<Triangle3f> triangles(200'000);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const auto z = [&](std::size_t k) { return static_cast<float>(1 + (3 * i + k) % 400'000); };
+        const auto z = [&](std::size_t k) {
+            return static_cast<float>(1 + (3 * i + k) % 400'000);
+        };
         triangles[i] = {Point3f{x, y, z(0)}, {x, y, z(1)}, {x, y, z(2)}};
     }
     const TriangleSoup soup(std::move(triangles));

@@ -25,12 +25,13 @@ struct Inspection {
     std::uint64_t orientation_conflicts = 0;
     /// Triangles beyond the first with the same three vertices, whichever way round.
     std::uint64_t duplicate_triangles = 0;
-    /// Triangles with two equal corners. They are left out of all other counts.
+    /// Triangles that name a vertex twice: lines or points. They have no edges and belong to no shell.
     std::uint64_t degenerate_triangles = 0;
     /// Parts connected over edges.
     std::uint64_t shells = 0;
-    /// Closed shells whose normals point into the material: negative volume, and not a cavity of another
-    /// shell.
+    /// Closed shells of negative volume that lie in the material of the others: hollows, as they should be.
+    std::uint64_t cavities = 0;
+    /// Closed shells of negative volume that do not: turned inside out.
     std::uint64_t inverted_shells = 0;
 
     /// Every edge is used as often one way as the other: slices have no open chains.

@@ -1,0 +1,60 @@
+#pragma once
+
+// Disjoint sets that all workers may join at once, without locks (Anderson and Woll 1991). A set is named by
+// its lowest member, so the result does not depend on the order in which sets were joined.
+
+#include "core/pages.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace lamella {
+
+class UnionFind {
+  public:
+    /// Numbers below `size`, each a set of its own.
+    explicit UnionFind(std::size_t size) : up_(size, Fill::zero) {}
+
+    /// The lowest member of i's set, once all joining is done; some member of it before.
+    [[nodiscard]] std::uint32_t find(std::uint32_t i) const noexcept {
+        for (;;) {
+            const std::uint32_t parent = above(i);
+            if (parent == i)
+                return i;
+            const std::uint32_t grandparent = above(parent);
+            // Halve the way for whoever comes next. A lost race only leaves a longer way.
+            if (grandparent != parent)
+                at(i).store(i - grandparent, std::memory_order_relaxed);
+            i = grandparent;
+        }
+    }
+
+    void join(std::uint32_t a, std::uint32_t b) const noexcept {
+        for (;;) {
+            a = find(a);
+            b = find(b);
+            if (a == b)
+                return;
+            if (a < b)
+                std::swap(a, b);
+            std::uint32_t root = 0;
+            if (at(a).compare_exchange_weak(root, a - b, std::memory_order_relaxed))
+                return;
+        }
+    }
+
+  private:
+    [[nodiscard]] std::atomic_ref<std::uint32_t> at(std::uint32_t i) const noexcept {
+        return std::atomic_ref<std::uint32_t>(up_[i]);
+    }
+    [[nodiscard]] std::uint32_t above(std::uint32_t i) const noexcept {
+        return i - at(i).load(std::memory_order_relaxed);
+    }
+
+    /// How far below the member the next one up is; 0 at the top.
+    PageArray<std::uint32_t> up_;
+};
+
+} // namespace lamella

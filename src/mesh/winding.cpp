@@ -1,0 +1,122 @@
+#include "mesh/winding.hpp"
+
+#include "lamella/core/point.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+
+namespace lamella {
+
+namespace {
+
+/// How often the projection of a triangle to the x-y plane winds around p: -1, 0 or 1. Each side counts where
+/// a ray from p to the right crosses it, and is evaluated from its lower end, so that two triangles always
+/// agree on the side that they share.
+int projected_winding(const std::array<Point3, 3>& t, const Point3& p) {
+    int winding = 0;
+    for (int k = 0; k < 3; ++k) {
+        const Point3& a = t[k];
+        const Point3& b = t[(k + 1) % 3];
+        if ((a.y > p.y) == (b.y > p.y))
+            continue;
+        const bool upwards = b.y > a.y;
+        const Point3& low = upwards ? a : b;
+        const Point3& high = upwards ? b : a;
+        if ((high.x - low.x) * (p.y - low.y) > (p.x - low.x) * (high.y - low.y))
+            winding += upwards ? 1 : -1;
+    }
+    return winding;
+}
+
+/// For a triangle whose projection holds p.
+bool above(const std::array<Point3, 3>& t, const Point3& p) {
+    if (std::min({t[0].z, t[1].z, t[2].z}) > p.z)
+        return true;
+    if (std::max({t[0].z, t[1].z, t[2].z}) <= p.z)
+        return false;
+    const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
+    const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
+    const Point3 w{p.x - t[0].x, p.y - t[0].y, p.z - t[0].z};
+    const double normal_z = u.x * v.y - u.y * v.x;
+    const double side = w.x * (u.y * v.z - u.z * v.y) + w.y * (u.z * v.x - u.x * v.z) + w.z * normal_z;
+    return (side < 0) == (normal_z > 0);
+}
+
+/// Points by cells of a square grid over the x-y plane.
+class PointGrid {
+  public:
+    explicit PointGrid(std::span<const Point3> points) {
+        for (const Point3& p : points)
+            box_.add(p);
+        side_ = std::clamp<std::size_t>(
+            static_cast<std::size_t>(std::sqrt(static_cast<double>(points.size()))), 1, 2048);
+        std::vector<std::size_t> cells;
+        for (const Point3& p : points)
+            cells.push_back(row(p.y) * side_ + column(p.x));
+        begin_.assign(side_ * side_ + 1, 0);
+        for (const std::size_t cell : cells)
+            ++begin_[cell + 1];
+        for (std::size_t c = 1; c < begin_.size(); ++c)
+            begin_[c] += begin_[c - 1];
+        std::vector<std::size_t> next = begin_;
+        members_.resize(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            members_[next[cells[i]]++] = i;
+    }
+
+    /// visit(point) for all points whose cells the triangle's box covers.
+    template <class Visit>
+    void under(const std::array<Point3, 3>& t, const Visit& visit) const {
+        const auto [left, right] = std::minmax({t[0].x, t[1].x, t[2].x});
+        const auto [front, back] = std::minmax({t[0].y, t[1].y, t[2].y});
+        if (right < box_.min.x || left > box_.max.x || back < box_.min.y || front > box_.max.y)
+            return;
+        for (std::size_t r = row(front); r <= row(back); ++r) {
+            const std::size_t first = begin_[r * side_ + column(left)];
+            const std::size_t last = begin_[r * side_ + column(right) + 1];
+            for (std::size_t m = first; m < last; ++m)
+                visit(members_[m]);
+        }
+    }
+
+  private:
+    [[nodiscard]] std::size_t cell(double v, double low, double high) const {
+        if (!(v > low)) // also where all points share a coordinate
+            return 0;
+        const double at = (v - low) / (high - low) * static_cast<double>(side_);
+        return at < static_cast<double>(side_) ? static_cast<std::size_t>(at) : side_ - 1;
+    }
+    [[nodiscard]] std::size_t column(double x) const { return cell(x, box_.min.x, box_.max.x); }
+    [[nodiscard]] std::size_t row(double y) const { return cell(y, box_.min.y, box_.max.y); }
+
+    Box3 box_;
+    std::size_t side_ = 1;
+    std::vector<std::size_t> begin_;
+    std::vector<std::size_t> members_;
+};
+
+} // namespace
+
+std::vector<int> winding_numbers(Executor& executor, const IndexedMesh& mesh, std::span<const Point3> points,
+                                 const std::function<bool(std::size_t, std::size_t)>& counts) {
+    std::vector<int> out(points.size(), 0);
+    if (points.empty())
+        return out;
+    const PointGrid grid(points);
+    executor.for_chunks(mesh.triangles.size(), 1024, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& t = mesh.triangles[i];
+            const std::array corners{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+            grid.under(corners, [&](std::size_t p) {
+                const int winding = projected_winding(corners, points[p]);
+                if (winding != 0 && counts(p, i) && above(corners, points[p]))
+                    std::atomic_ref<int>(out[p]).fetch_add(winding, std::memory_order_relaxed);
+            });
+        }
+    });
+    return out;
+}
+
+} // namespace lamella

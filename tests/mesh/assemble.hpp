@@ -1,0 +1,42 @@
+#pragma once
+
+// Building meshes from meshes.
+
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+inline std::vector<Triangle3f> triangles_of(const TriangleSoup& soup) {
+    std::vector<Triangle3f> out;
+    for (std::size_t i = 0; i < soup.size(); ++i) {
+        const Triangle3 t = soup.placed(i);
+        const auto single = [](const Point3& p) {
+            return Point3f{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        };
+        out.push_back({single(t[0]), single(t[1]), single(t[2])});
+    }
+    return out;
+}
+
+/// All triangles of all parts, placed, in one soup.
+inline TriangleSoup assemble(std::initializer_list<TriangleSoup> parts) {
+    std::vector<Triangle3f> out;
+    for (const TriangleSoup& part : parts) {
+        const std::vector<Triangle3f> triangles = triangles_of(part);
+        out.insert(out.end(), triangles.begin(), triangles.end());
+    }
+    return TriangleSoup(std::move(out));
+}
+
+inline TriangleSoup turned_inside_out(const TriangleSoup& soup) {
+    std::vector<Triangle3f> out = triangles_of(soup);
+    for (Triangle3f& t : out)
+        std::swap(t[1], t[2]);
+    return TriangleSoup(std::move(out));
+}
+
+} // namespace lamella
