@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -50,11 +51,24 @@ struct PlaneIndex {
     std::vector<std::uint64_t> offsets; ///< starts of plane p are [offsets[p], offsets[p + 1])
 };
 
-/// A run of planes as the unit of work, and the nodes that are alive on its first plane but began before.
+/// A stretch of planes that one worker walks through.
+///
+/// Normally it writes all of them. Where single layers are so large that only few may be in flight, several
+/// workers walk through the same planes and write groups of them in turn: worker `turn` of `turns` writes
+/// every group whose number is `turn` modulo `turns`.
 struct Slab {
     std::uint32_t begin;
     std::uint32_t end;
-    std::vector<std::uint32_t> carried;
+    std::vector<std::uint32_t> carried; ///< the nodes alive on `begin` that began before
+    std::uint32_t group;                ///< planes in a group
+    std::uint32_t turn = 0;
+    std::uint32_t turns = 1;
+    bool bounded = false; ///< wait before writing until the group `turns` before it is delivered
+
+    [[nodiscard]] std::uint32_t group_of(std::uint32_t plane) const noexcept {
+        return (plane - begin) / group;
+    }
+    [[nodiscard]] bool writes(std::uint32_t plane) const noexcept { return group_of(plane) % turns == turn; }
 };
 
 /// A worker's fixed share of the nodes, and how many of them begin and end on each plane.
@@ -87,38 +101,53 @@ std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
     return result;
 }
 
-/// Cuts the planes into slabs of about equal work. A slab pays for walking once over all that is alive on its
+/// How the planes are dealt out to the workers.
+///
+/// Into slabs of about equal work, as a rule. A slab pays for walking once over all that is alive on its
 /// first plane, so there are few of them where planes are few and large, and more where that cost is lost
-/// among the planes, to level out what the estimate of the work misses.
-std::vector<Slab> cut_into_slabs(const std::vector<std::uint64_t>& points, unsigned workers,
-                                 std::uint64_t points_in_flight) {
+/// among the planes, to level out what the estimate of the work misses. Where the bound on points in flight
+/// would make slabs of a few planes only, every worker walks through all planes and they write in turn.
+std::vector<Slab> deal_out(const std::vector<std::uint64_t>& points, std::uint64_t most_points,
+                           unsigned workers, std::uint64_t points_in_flight) {
     constexpr std::uint64_t plane_cost = 64; // in points
-    const std::uint64_t planes = points.size();
+    constexpr std::uint64_t worth_a_thread = 1U << 15;
+    constexpr std::uint64_t worth_a_slab = 32; // planes
+    const auto planes = static_cast<std::uint32_t>(points.size());
     std::uint64_t work = 0;
     for (const std::uint64_t p : points)
         work += p + plane_cost;
-    constexpr std::uint64_t worth_a_thread = 1U << 15;
     if (work < workers * worth_a_thread)
         workers = 1;
-    const std::uint64_t slabs =
-        workers == 1 ? 1 : workers * std::clamp<std::uint64_t>(planes / (workers * 32ULL), 1, 4);
-    std::uint64_t target = work / slabs + 1;
-    if (points_in_flight != 0) {
-        // Each worker has one slab under way, and one more may be waiting for its turn.
-        target = std::min(target, std::max<std::uint64_t>(points_in_flight / (workers + 1ULL), 1));
+
+    std::vector<Slab> slabs;
+    const std::uint64_t per_worker =
+        points_in_flight / (workers + 1ULL); // one group or slab may wait for its turn
+    const std::uint64_t planes_in_flight =
+        std::max<std::uint64_t>(1, per_worker / std::max<std::uint64_t>(1, most_points));
+    if (points_in_flight != 0 && planes_in_flight < planes &&
+        (workers == 1 || planes_in_flight < worth_a_slab)) {
+        for (std::uint32_t turn = 0; turn < workers; ++turn)
+            slabs.push_back(
+                {0, planes, {}, static_cast<std::uint32_t>(planes_in_flight), turn, workers, true});
+        return slabs;
     }
-    std::vector<Slab> result;
+
+    const std::uint64_t wanted =
+        workers == 1 ? 1 : workers * std::clamp<std::uint64_t>(planes / (workers * 32ULL), 1, 4);
+    std::uint64_t target = work / wanted + 1;
+    if (points_in_flight != 0)
+        target = std::min(target, per_worker);
     std::uint64_t filled = 0;
     for (std::uint32_t p = 0; p < planes; ++p) {
         const std::uint64_t cost = points[p] + plane_cost;
-        if (result.empty() || filled + cost / 2 > target) {
-            result.push_back({p, p, {}});
+        if (slabs.empty() || filled + cost / 2 > target) {
+            slabs.push_back({p, p, {}, planes});
             filled = 0;
         }
         filled += cost;
-        result.back().end = p + 1;
+        slabs.back().end = p + 1;
     }
-    return result;
+    return slabs;
 }
 
 /// Sorts the nodes by the plane they begin on, and tells each slab which nodes reach into it from below.
@@ -145,7 +174,8 @@ PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::
         index.offsets[p + 1] = begun;
     }
 
-    slabs = cut_into_slabs(index.points, executor.workers(), points_in_flight);
+    slabs = deal_out(index.points, index.most_points, executor.workers(), points_in_flight);
+    // The slab that a plane lies in; the last one where all slabs hold all planes.
     std::vector<std::uint32_t> slab_of(planes);
     for (std::uint32_t s = 0; s < slabs.size(); ++s)
         std::fill(slab_of.begin() + slabs[s].begin, slab_of.begin() + slabs[s].end, s);
@@ -176,8 +206,9 @@ struct Run {
     std::uint32_t end;
     std::uint32_t size; ///< nodes
     bool closed;
-    std::uint64_t columns; ///< its EdgeColumns start at 6 * columns
-    std::uint64_t rings;   ///< its Ring on plane p is rings[this + p - begin]
+    std::uint64_t sequence; ///< where its nodes start in the sequences
+    std::uint64_t columns;  ///< where its edges start in the columns, or not_kept
+    std::uint64_t rings;    ///< its Ring on plane p is rings[this + p - begin]
 };
 
 /// One contour on one plane.
@@ -221,12 +252,14 @@ class Scratch {
     PageArray<double> y_;
 };
 
-/// Memory for the points of layers, in blocks that outlive it for as long as a layer uses them. Blocks are
-/// large, so that they lie in large pages; only what is touched of them takes memory.
+/// Memory for the points of layers, in blocks that live as long as a layer uses them. Blocks are large, so
+/// that they lie in large pages; only what is touched of them takes memory. A block that its layers let go of
+/// while slicing goes on is used again: memory that was written before costs a fraction of fresh memory.
 class PointArena {
   public:
     /// `expected`: the points of the whole result; small results take small blocks.
-    explicit PointArena(std::uint64_t expected) : usual_(std::min(expected, largest_usual)) {}
+    explicit PointArena(std::uint64_t expected)
+        : usual_(std::min(expected, largest_usual)), returned_(std::make_shared<Returned>()) {}
 
     struct Piece {
         std::shared_ptr<const void> owner;
@@ -234,11 +267,12 @@ class PointArena {
     };
 
     [[nodiscard]] Piece take(std::uint64_t size) {
-        if (!block_ || block_->size() - used_ < size) {
-            block_ = std::make_shared<PageArray<Point2>>(std::max(size, usual_));
+        if (!block_ || block_->memory.size() - used_ < size) {
+            block_.reset();
+            block_ = std::make_shared<Block>(find_memory(size), returned_);
             used_ = 0;
         }
-        Point2* points = block_->data() + used_;
+        Point2* points = block_->memory.data() + used_;
         used_ += size;
         return {block_, points};
     }
@@ -246,8 +280,46 @@ class PointArena {
   private:
     static constexpr std::uint64_t largest_usual = (std::uint64_t{8} << 20) / sizeof(Point2);
 
+    struct Returned {
+        std::mutex mutex;
+        std::vector<PageArray<Point2>> memory;
+    };
+
+    struct Block {
+        Block(PageArray<Point2> points, const std::shared_ptr<Returned>& to)
+            : memory(std::move(points)), returned(to) {}
+        ~Block() {
+            if (const std::shared_ptr<Returned> to = returned.lock()) {
+                const std::lock_guard lock(to->mutex);
+                to->memory.push_back(std::move(memory));
+            }
+        }
+        Block(const Block&) = delete;
+        Block& operator=(const Block&) = delete;
+
+        PageArray<Point2> memory;
+        std::weak_ptr<Returned> returned; ///< gone when slicing is over: then the memory goes too
+    };
+
+    PageArray<Point2> find_memory(std::uint64_t size) {
+        {
+            const std::lock_guard lock(returned_->mutex);
+            for (PageArray<Point2>& memory : returned_->memory) {
+                if (memory.size() < size)
+                    continue;
+                PageArray<Point2> found = std::move(memory);
+                memory = std::move(returned_->memory.back());
+                returned_->memory.pop_back();
+                return found;
+            }
+            returned_->memory.clear(); // all too small by now
+        }
+        return PageArray<Point2>(std::max(size + size / 8, usual_));
+    }
+
     std::uint64_t usual_;
-    std::shared_ptr<PageArray<Point2>> block_;
+    std::shared_ptr<Returned> returned_;
+    std::shared_ptr<Block> block_;
     std::uint64_t used_ = 0;
 };
 
@@ -285,12 +357,8 @@ class SlabSweep {
               const Executor& executor, OrderedDelivery& delivery)
         : graph_(graph), ranks_(ranks), plan_(plan), index_(index), executor_(executor), delivery_(delivery),
           arena_(index.all_points), visited_until_(graph.count, Fill::zero), segment_at_(graph.count) {
-        // At any time the columns hold what is alive, what died since the last write (bounded by
-        // `stale_enough` and by the larger of what was carried and one plane), and one new plane; padding
-        // makes at most four of one. Only what is touched takes memory.
-        columns_ =
-            PageArray<double>(EdgeColumns::columns *
-                              (16 * index.most_points + 2 * std::min(stale_enough, 4 * index.all_points)));
+        room_ = std::min(most_room, EdgeColumns::padded(8 * index.all_points));
+        columns_ = PageArray<double>(EdgeColumns::columns * room_);
     }
 
     /// Slabs must come in ascending order.
@@ -305,13 +373,19 @@ class SlabSweep {
                 return;
             walk_plane(plane);
             stale_ += ending_[plane + 1 - slab.begin];
-            if (plane + 1 == slab.end || (stale_ >= stale_enough && stale_ >= carried_))
-                write_layers(plane + 1);
+            const bool group_ends = plane + 1 == slab.end || (plane + 1 - slab.begin) % slab.group == 0;
+            const bool much_is_stale = stale_ >= stale_enough && stale_ >= carried_;
+            if ((much_is_stale || (group_ends && slab.writes(plane))) && !write_layers(plane + 1))
+                return;
+            if (much_is_stale || plane + 1 == slab.end)
+                forget_ended_runs(plane + 1);
         }
     }
 
   private:
-    static constexpr std::uint64_t stale_enough = 1U << 15; // edges; 1.5 MB of columns
+    static constexpr std::uint64_t stale_enough = 1U << 15; // edges of runs that ended
+    static constexpr std::uint64_t most_room = 1U << 16;    // edges; 3 MB of columns stay in the cache
+    static constexpr std::uint64_t not_kept = ~std::uint64_t{0};
 
     // ------------------------------------------------------------------------------------------------- walk
 
@@ -470,29 +544,19 @@ class SlabSweep {
 
     void add_run(std::uint32_t plane, std::uint32_t valid_until, bool closed, const std::uint32_t* sequence,
                  std::size_t size) {
-        Run run{plane, valid_until, static_cast<std::uint32_t>(size), closed, columns_used_, rings_.size()};
+        Run run{plane,    valid_until,  static_cast<std::uint32_t>(size), closed, sequences_.size(),
+                not_kept, rings_.size()};
+        sequences_.insert(sequences_.end(), sequence, sequence + size);
         const std::size_t stride = EdgeColumns::padded(size);
-        double* z0 = columns_.data() + EdgeColumns::columns * columns_used_;
-        double* inverse_dz = z0 + stride;
-        double* x0 = inverse_dz + stride;
-        double* dx = x0 + stride;
-        double* y0 = dx + stride;
-        double* dy = y0 + stride;
-        const PlaneRule rule = ranks_.rule();
-        const bool lasts = valid_until > plane + 1;
-        for (std::size_t i = 0; i < size; ++i) {
-            const EdgeCut cut = graph_.cut(sequence[i], rule);
-            z0[i] = cut.z0;
-            inverse_dz[i] = cut.inverse_dz;
-            x0[i] = cut.x0;
-            dx[i] = cut.dx;
-            y0[i] = cut.y0;
-            dy[i] = cut.dy;
-            if (lasts)
-                visited_until_[sequence[i]] = valid_until;
+        if (room_ - columns_used_ >= stride) {
+            run.columns = columns_used_;
+            columns_used_ += stride;
         }
-        columns_used_ += stride;
-        ending_[valid_until - slab_->begin] += stride;
+        const EdgeColumns edges = lay_out_edges(run);
+        if (valid_until > plane + 1)
+            for (std::size_t i = 0; i < size; ++i)
+                visited_until_[sequence[i]] = valid_until;
+        ending_[valid_until - slab_->begin] += size;
         if (!closed && valid_until < slab_->end) {
             // Only a closed contour is sure to go on through a node that begins where its run ends.
             std::vector<std::uint32_t>& again = restarts_[valid_until - slab_->begin];
@@ -501,18 +565,55 @@ class SlabSweep {
         runs_.push_back(run);
         rings_.resize(rings_.size() + (valid_until - plane));
         for (std::uint32_t p = plane; p < valid_until; ++p)
-            measure(run, p);
+            if (slab_->writes(p))
+                measure(run, edges, p);
     }
 
-    [[nodiscard]] EdgeColumns columns_of(const Run& run) const {
+    /// Prepares the edges of a run for being cut: in the columns where it has room there, else for now.
+    EdgeColumns lay_out_edges(const Run& run) {
+        const std::size_t stride = EdgeColumns::padded(run.size);
+        double* z0 = nullptr;
+        if (run.columns != not_kept) {
+            z0 = columns_.data() + EdgeColumns::columns * run.columns;
+        } else {
+            if (spare_columns_.size() < EdgeColumns::columns * stride)
+                spare_columns_ = PageArray<double>(2 * EdgeColumns::columns * stride);
+            z0 = spare_columns_.data();
+        }
+        double* inverse_dz = z0 + stride;
+        double* x0 = inverse_dz + stride;
+        double* dx = x0 + stride;
+        double* y0 = dx + stride;
+        double* dy = y0 + stride;
+        const PlaneRule rule = ranks_.rule();
+        const std::uint32_t* sequence = sequences_.data() + run.sequence;
+        constexpr std::size_t ahead = 12;
+        for (std::size_t i = 0; i < run.size; ++i) {
+            if (i + ahead < run.size)
+                __builtin_prefetch(&graph_.nodes[sequence[i + ahead]]);
+            const EdgeCut cut = graph_.cut(sequence[i], rule);
+            z0[i] = cut.z0;
+            inverse_dz[i] = cut.inverse_dz;
+            x0[i] = cut.x0;
+            dx[i] = cut.dx;
+            y0[i] = cut.y0;
+            dy[i] = cut.dy;
+        }
+        return {z0, run.size};
+    }
+
+    /// The edges of a run that was laid out before.
+    EdgeColumns edges_of(const Run& run) {
+        if (run.columns == not_kept)
+            return lay_out_edges(run);
         return {columns_.data() + EdgeColumns::columns * run.columns, run.size};
     }
 
-    void measure(const Run& run, std::uint32_t plane) {
+    void measure(const Run& run, const EdgeColumns& edges, std::uint32_t plane) {
         Ring& ring = rings_[run.rings + plane - run.begin];
         std::size_t n = run.size;
         scratch_.reserve(EdgeColumns::padded(n));
-        const Survey survey = kernels_.survey(columns_of(run), ranks_.z(plane), scratch_.x(), scratch_.y());
+        const Survey survey = kernels_.survey(edges, ranks_.z(plane), scratch_.x(), scratch_.y());
         const bool repeats = survey.repeats || (run.closed && scratch_.point(0) == scratch_.point(n - 1));
         if (repeats)
             n = scratch_.drop_repeats(n, run.closed);
@@ -566,45 +667,61 @@ class SlabSweep {
         bool closed;
     };
 
-    /// Writes and delivers the planes [written_, end), and drops what only they needed.
-    void write_layers(std::uint32_t end) {
-        std::vector<Layer> layers(end - written_);
-        std::vector<std::uint64_t> layer_begin(layers.size());
+    /// A layer on its way out.
+    struct Outgoing {
+        std::uint32_t plane;
+        std::uint64_t begin; ///< of its points in the piece of memory that the outgoing layers share
+        Layer layer;
+    };
+
+    /// Writes and delivers what this worker has to of the planes [written_, end). False when slicing is given
+    /// up.
+    bool write_layers(std::uint32_t end) {
+        std::vector<Outgoing> outgoing;
         std::uint64_t total = 0;
         for (std::uint32_t plane = written_; plane < end; ++plane) {
-            Layer& layer = layers[plane - written_];
-            layer_begin[plane - written_] = total;
-            total += lay_out(plane, total, layer);
+            if (!slab_->writes(plane))
+                continue;
+            outgoing.push_back({plane, total, {}});
+            total += lay_out_layer(plane, total, outgoing.back().layer);
+        }
+        if (slab_->bounded && !outgoing.empty()) {
+            const std::uint32_t group = slab_->group_of(outgoing.back().plane);
+            if (group >= slab_->turns &&
+                !delivery_.wait_for(slab_->begin + (group - slab_->turns) * slab_->group))
+                return false;
         }
 
         const PointArena::Piece piece = arena_.take(total);
         for (const Run& run : runs_) {
-            const std::uint32_t last = std::min(run.end, end);
-            for (std::uint32_t plane = std::max(run.begin, written_); plane < last; ++plane) {
-                const Ring& ring = rings_[run.rings + plane - run.begin];
-                if (ring.count != 0)
-                    write_ring(run, plane, ring, piece.points + ring.place);
+            EdgeColumns edges{};
+            for (std::uint32_t p = std::max(run.begin, written_); p < std::min(run.end, end); ++p) {
+                const Ring& ring = rings_[run.rings + p - run.begin];
+                if (ring.count == 0)
+                    continue;
+                if (edges.data == nullptr)
+                    edges = edges_of(run);
+                write_ring(edges, run.closed, p, ring, piece.points + ring.place);
             }
         }
 
-        for (std::uint32_t plane = written_; plane < end; ++plane) {
-            Layer& layer = layers[plane - written_];
-            const PlannedLayer& planned = plan_.layers[plane];
-            layer.index = planned.index;
-            layer.z = planned.z;
-            layer.bottom = planned.bottom;
-            layer.top = planned.top;
-            if (layer.offsets.back() != 0)
-                layer.points = PointArray(piece.owner, piece.points + layer_begin[plane - written_],
-                                          layer.offsets.back());
-            delivery_.deliver(plane, std::move(layer));
+        for (Outgoing& out : outgoing) {
+            const PlannedLayer& planned = plan_.layers[out.plane];
+            out.layer.index = planned.index;
+            out.layer.z = planned.z;
+            out.layer.bottom = planned.bottom;
+            out.layer.top = planned.top;
+            if (out.layer.offsets.back() != 0)
+                out.layer.points =
+                    PointArray(piece.owner, piece.points + out.begin, out.layer.offsets.back());
+            delivery_.deliver(out.plane, std::move(out.layer));
         }
         written_ = end;
-        keep_alive_runs(end);
+        return true;
     }
 
     /// Puts the contours of a plane in order and gives each its place. Returns the number of points.
-    std::uint64_t lay_out(std::uint32_t plane, std::uint64_t base, Layer& layer) {
+    std::uint64_t lay_out_layer(std::uint32_t plane, std::uint64_t base, Layer& layer) {
         std::vector<Order>& order = rings_of_plane_[plane - slab_->begin];
         std::sort(order.begin(), order.end(), [](const Order& a, const Order& b) {
             return a.closed != b.closed ? a.closed : a.first < b.first;
@@ -643,53 +760,62 @@ class SlabSweep {
                                            [](std::uint64_t ring, const Run& r) { return ring < r.rings; }));
             const Ring& ring = rings_[it->ring];
             std::vector<Point2> points(ring.count);
-            write_ring(*run, plane, ring, points.data());
+            write_ring(edges_of(*run), run->closed, plane, ring, points.data());
             contours.emplace_back(std::move(points), *it);
         }
-        std::stable_sort(contours.begin(), contours.end(), [](const auto& a, const auto& b) {
-            return std::lexicographical_compare(a.first.begin(), a.first.end(), b.first.begin(),
-                                                b.first.end());
-        });
+        std::stable_sort(contours.begin(), contours.end(),
+                         [](const auto& a, const auto& b) { return stands_before(a.first, b.first); });
         for (std::size_t i = 0; i < contours.size(); ++i, ++begin)
             *begin = contours[i].second;
     }
 
-    void write_ring(const Run& run, std::uint32_t plane, const Ring& ring, Point2* to) {
-        const EdgeColumns edges = columns_of(run);
+    void write_ring(const EdgeColumns& edges, bool closed, std::uint32_t plane, const Ring& ring,
+                    Point2* to) {
         const double z = ranks_.z(plane);
-        if (ring.count == run.size) {
-            kernels_.cut(edges, ring.start, run.size, z, to);
-            kernels_.cut(edges, 0, ring.start, z, to + (run.size - ring.start));
+        if (ring.count == edges.size) {
+            kernels_.cut(edges, ring.start, edges.size, z, to);
+            kernels_.cut(edges, 0, ring.start, z, to + (edges.size - ring.start));
             return;
         }
         scratch_.reserve(edges.stride());
         kernels_.survey(edges, z, scratch_.x(), scratch_.y());
-        const std::size_t n = scratch_.drop_repeats(run.size, run.closed);
+        const std::size_t n = scratch_.drop_repeats(edges.size, closed);
         for (std::size_t i = 0; i < n; ++i)
             to[i] = scratch_.point(i + ring.start < n ? i + ring.start : i + ring.start - n);
     }
 
-    /// Moves the runs that go on to the front of the columns, and forgets the others.
-    void keep_alive_runs(std::uint32_t plane) {
+    /// Forgets the runs that end before `plane` (all planes before it are written), and moves the others
+    /// together.
+    void forget_ended_runs(std::uint32_t plane) {
         std::vector<Run> runs;
         std::vector<Ring> rings;
-        std::uint64_t used = 0;
+        std::uint64_t edges = 0;
+        std::uint64_t columns = 0;
         for (const Run& run : runs_) {
             if (run.end <= plane)
                 continue;
-            const EdgeColumns from = columns_of(run);
-            double* to = columns_.data() + EdgeColumns::columns * used;
-            if (from.data != to)
-                std::copy(from.data, from.data + EdgeColumns::columns * from.stride(), to);
-            Run kept{plane, run.end, run.size, run.closed, used, rings.size()};
+            const std::uint32_t begin = std::max(run.begin, plane);
+            Run kept{begin, run.end, run.size, run.closed, edges, run.columns, rings.size()};
+            const auto sequence = sequences_.begin() + static_cast<std::ptrdiff_t>(run.sequence);
+            std::copy(sequence, sequence + run.size, sequences_.begin() + static_cast<std::ptrdiff_t>(edges));
+            edges += run.size;
+            if (run.columns != not_kept) {
+                const std::uint64_t stride = EdgeColumns::padded(run.size);
+                const double* from = columns_.data() + EdgeColumns::columns * run.columns;
+                std::copy(from, from + EdgeColumns::columns * stride,
+                          columns_.data() + EdgeColumns::columns * columns);
+                kept.columns = columns;
+                columns += stride;
+            }
             const auto ring = rings_.begin() + static_cast<std::ptrdiff_t>(run.rings);
-            rings.insert(rings.end(), ring + (plane - run.begin), ring + (run.end - run.begin));
+            rings.insert(rings.end(), ring + (begin - run.begin), ring + (run.end - run.begin));
             runs.push_back(kept);
-            used += from.stride();
         }
         runs_ = std::move(runs);
         rings_ = std::move(rings);
-        columns_used_ = carried_ = used;
+        sequences_.resize(edges);
+        columns_used_ = columns;
+        carried_ = edges;
         stale_ = 0;
         for (std::vector<Order>& order : rings_of_plane_)
             order.clear();
@@ -722,7 +848,10 @@ class SlabSweep {
     std::vector<std::vector<std::uint32_t>>
         restarts_; // per plane of the slab: nodes of chains that end before it
 
-    PageArray<double> columns_;
+    std::vector<std::uint32_t> sequences_; // the nodes of the runs
+    PageArray<double> columns_;            // the prepared edges of the first runs, as many as have room
+    PageArray<double> spare_columns_;      // of one other run
+    std::uint64_t room_ = 0;               // for edges, in the columns
     std::uint64_t columns_used_ = 0;
     std::uint64_t carried_ = 0;
     std::uint64_t stale_ = 0;
@@ -749,15 +878,26 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
     std::vector<Slab> slabs;
     const PlaneIndex index = index_planes(graph, ranks.count(), job.points_in_flight, executor, slabs);
     std::vector<std::unique_ptr<SlabSweep<Ends>>> sweeps(executor.workers());
-    executor.for_chunks(slabs.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned worker) {
-        const bool bounded = job.points_in_flight != 0 && s > executor.workers();
-        if (bounded && !delivery.wait_for(slabs[s - executor.workers()].begin))
-            return;
+    const auto sweep = [&](const Slab& slab, unsigned worker) {
         if (!sweeps[worker])
             sweeps[worker] =
                 std::make_unique<SlabSweep<Ends>>(graph, ranks, job.plan, index, executor, delivery);
-        sweeps[worker]->sweep(slabs[s]);
-    });
+        sweeps[worker]->sweep(slab);
+    };
+    if (slabs.size() > 1 && slabs.front().turns > 1) {
+        // They wait for one another, so all must be under way at once.
+        executor.run([&](unsigned worker) {
+            if (worker < slabs.size())
+                sweep(slabs[worker], worker);
+        });
+    } else {
+        executor.for_chunks(slabs.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned worker) {
+            const bool bounded = job.points_in_flight != 0 && s > executor.workers();
+            if (bounded && !delivery.wait_for(slabs[s - executor.workers()].begin))
+                return;
+            sweep(slabs[s], worker);
+        });
+    }
     executor.check_cancelled();
     progress.finish();
     job.report.slice_seconds = seconds_since(start);
