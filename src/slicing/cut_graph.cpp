@@ -304,6 +304,10 @@ class Builder {
                 meet(worker.meetings[i % places], worker.crowded);
             crowded_.insert(crowded_.end(), worker.crowded.begin(), worker.crowded.end());
         }
+        // A half may have been in a crowd before it became part of another node, which then stands for it.
+        for (std::uint32_t& id : crowded_)
+            if (graph_.nodes[id].first == graph_.nodes[id].last)
+                id = graph_.nodes[id].triangle;
     }
 
     void meet(const Meeting& meeting, std::vector<std::uint32_t>& crowded) {
