@@ -15,8 +15,8 @@ namespace lamella {
 /// At the base t is 0 and the point is the base, bit for bit. dx and dy are shortened by one unit in the last
 /// place where x0 + dx would round beyond the far end; rounding is monotone, so no t in [0, 1] leads outside
 /// the edge's box. A plane so near both ends that inverse_dz overflows gives the far end (min(NaN, 1) is 1 as
-/// written below). Error: at most 3 units in the last place of the edge's extent, plus half a unit of the
-/// result.
+/// written below). Error: at most 6 units in the last place of the edge's extent (four for t, half of one
+/// each for the extent and the product, one for shortening it), plus half a unit of the result.
 struct EdgeCut {
     double z0, inverse_dz, x0, dx, y0, dy;
 

@@ -74,7 +74,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
         if (estimate > static_cast<double>(max_layers))
             throw Error(
                 ErrorKind::usage,
-                fmt::format("a layer height of {} mm makes {:.0f} layers of this part ({} mm high); at most "
+                fmt::format("a layer height of {} mm makes {:.6g} layers of this part ({} mm high); at most "
                             "{} are possible",
                             height, estimate, z_max - z_min, max_layers));
         count = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(estimate));
@@ -141,6 +141,11 @@ Plan plan_listed(const std::vector<double>& z, SliceAt slice_at) {
                             "ascend",
                             i + 1, z[i], z[i - 1]));
     }
+    if (!std::isfinite(z.back() - z.front()))
+        throw Error(ErrorKind::usage,
+                    fmt::format("the list of z reaches from {} to {}, further than a double "
+                                "can say; choose a larger unit",
+                                z.front(), z.back()));
 
     Plan plan;
     plan.rule = rule_for(slice_at);

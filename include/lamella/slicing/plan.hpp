@@ -56,7 +56,7 @@ struct UniformLayers {
 /// Cuts at exactly these z. Layer i is cut at z[i]; its slab reaches half-way to its neighbours (for slice_at
 /// middle), from the cut to the next cut (bottom), or from the previous cut to this one (top); the outermost
 /// slabs continue with the neighbouring thickness. Throws Error{usage} when the list is empty, not strictly
-/// ascending or not finite, naming the first offender.
+/// ascending or not finite, naming the first offender, or when it reaches further than a double can say.
 [[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle);
 
 } // namespace lamella
