@@ -1,0 +1,36 @@
+#include "lamella/slicing/slice.hpp"
+
+#include "expect_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string_view>
+
+namespace lamella {
+namespace {
+
+TEST(Engines, BeginWithTheSweep) {
+    ASSERT_FALSE(engines().empty());
+    EXPECT_EQ(engines().front().name, "sweep");
+}
+
+TEST(Engines, HaveDifferentNamesAndSayWhatTheyAre) {
+    std::set<std::string_view> names;
+    for (const Engine& one : engines()) {
+        EXPECT_TRUE(names.insert(one.name).second) << one.name;
+        EXPECT_FALSE(one.summary.empty()) << one.name;
+        EXPECT_EQ(one.summary.find('\n'), std::string_view::npos) << one.name;
+        EXPECT_NE(one.run, nullptr) << one.name;
+        EXPECT_EQ(&engine(one.name), &one);
+    }
+}
+
+TEST(Engines, AreListedWhenANameIsUnknown) {
+    test::expect_error(ErrorKind::usage, {"'swep'", "sweep"}, [] { (void)engine("swep"); });
+    test::expect_error(ErrorKind::usage, {"''", "sweep"}, [] { (void)engine(""); });
+    test::expect_error(ErrorKind::usage, {"'Sweep'"}, [] { (void)engine("Sweep"); });
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,299 @@
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/mesh/shapes.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "expect_error.hpp"
+#include "expect_layers.hpp"
+#include "fixtures/solids.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+using test::expect_error;
+using test::expect_same;
+
+Plan even_planes(int count) {
+    std::vector<double> z;
+    for (int i = 0; i < count; ++i)
+        z.push_back(-10 + 20 * (i + 0.5) / count);
+    return plan_listed(z);
+}
+
+/// Enough contours and planes that several slabs are worth while. z from -10 to 10.
+TriangleSoup body() {
+    return test::soup(test::rugged_drum(2000, 60));
+}
+
+TEST(Slice, ReportsWhatItDid) {
+    const TriangleSoup soup = body();
+    const Plan plan = even_planes(100);
+    for (const unsigned threads : {1U, 7U}) {
+        SliceReport report;
+        const LayerStack stack = slice(soup, plan, {.threads = threads}, &report);
+        std::uint64_t contours = 0;
+        std::uint64_t chains = 0;
+        std::uint64_t points = 0;
+        for (const Layer& layer : stack) {
+            contours += layer.contours();
+            chains += layer.open_chains();
+            points += layer.points.size();
+        }
+        EXPECT_EQ(report.layers, 100U);
+        EXPECT_EQ(report.contours, contours);
+        EXPECT_EQ(report.open_chains, chains);
+        EXPECT_EQ(report.points, points);
+        EXPECT_GT(report.link_seconds, 0.0);
+        EXPECT_GT(report.slice_seconds, 0.0);
+    }
+}
+
+TEST(Slice, LeavesTheReportOfAFailedRunAlone) {
+    SliceReport report;
+    report.layers = 4711;
+    const LayerSink failing = [](Layer&&) -> std::function<void()> {
+        throw std::runtime_error("sink");
+    };
+    EXPECT_THROW(slice_to(failing, body(), even_planes(10), {}, &report), std::runtime_error);
+    EXPECT_EQ(report.layers, 4711U);
+}
+
+TEST(SliceTo, HandsOverTheLayersOfSliceInOrder) {
+    const TriangleSoup soup = body();
+    const Plan plan = even_planes(300);
+    const LayerStack expected = slice(soup, plan);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        LayerStack stack;
+        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+            return [&stack, kept = std::move(layer)]() mutable {
+                stack.push_back(std::move(kept));
+            };
+        };
+        SliceReport report;
+        slice_to(sink, soup, plan, {.threads = threads}, &report);
+        expect_same(stack, expected);
+        EXPECT_EQ(report.layers, 300U);
+    }
+}
+
+TEST(SliceTo, CallsTheSinkOnceForEveryLayerThatHasNoOrderedPartToo) {
+    std::mutex mutex;
+    std::vector<std::uint64_t> seen;
+    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        const std::lock_guard lock(mutex);
+        seen.push_back(layer.index);
+        return {};
+    };
+    slice_to(sink, body(), even_planes(200), {.threads = 7});
+    std::sort(seen.begin(), seen.end());
+    ASSERT_EQ(seen.size(), 200U);
+    for (std::uint64_t i = 0; i < 200; ++i)
+        EXPECT_EQ(seen[i], i);
+}
+
+/// Counts the points of layers from the moment the engine hands them over to the sink's last word on them,
+/// and remembers the memory behind them.
+class InFlight {
+  public:
+    [[nodiscard]] LayerSink sink() {
+        return [this](Layer&& layer) -> std::function<void()> {
+            const std::lock_guard lock(mutex_);
+            now_ += layer.points.size();
+            most_ = std::max(most_, now_);
+            if (layer.points.owner())
+                blocks_.push_back(layer.points.owner());
+            return [this, kept = std::move(layer)] {
+                const std::lock_guard inner(mutex_);
+                now_ -= kept.points.size();
+            };
+        };
+    }
+    [[nodiscard]] std::uint64_t most_points() const { return most_; }
+    [[nodiscard]] std::uint64_t points_left() const { return now_; }
+    [[nodiscard]] std::size_t layers_left() const {
+        return static_cast<std::size_t>(std::count_if(blocks_.begin(), blocks_.end(),
+                                                      [](const auto& block) { return !block.expired(); }));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::uint64_t now_ = 0;
+    std::uint64_t most_ = 0;
+    std::vector<std::weak_ptr<const void>> blocks_;
+};
+
+TEST(SliceTo, BoundsThePointsInFlight) {
+    const TriangleSoup soup = body();
+    const Plan plan = even_planes(2000);
+    SliceReport whole;
+    std::uint64_t largest = 0;
+    for (const Layer& layer : slice(soup, plan, {}, &whole))
+        largest = std::max<std::uint64_t>(largest, layer.points.size());
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        for (const std::uint64_t bound : {std::uint64_t{1}, whole.points / 100, whole.points / 10}) {
+            InFlight flight;
+            const LayerSink sink = flight.sink();
+            SliceReport report;
+            const Execution execution{.threads = threads};
+            engines().front().run({soup, plan, sink, execution, bound, report});
+            EXPECT_LE(flight.most_points(), bound + 2 * threads * largest) << threads << " threads";
+            EXPECT_EQ(flight.points_left(), 0U);
+            EXPECT_EQ(flight.layers_left(), 0U) << "someone still holds a layer";
+        }
+    }
+}
+
+TEST(SliceTo, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
+    const TriangleSoup soup = body();
+    const Plan plan = even_planes(60);
+    const LayerStack expected = slice(soup, plan);
+    for (const std::uint64_t bound : {1U, 20000U, 100000U}) {
+        for (const unsigned threads : {1U, 3U}) {
+            LayerStack stack;
+            const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+                return [&stack, kept = std::move(layer)]() mutable {
+                    stack.push_back(std::move(kept));
+                };
+            };
+            SliceReport report;
+            const Execution execution{.threads = threads};
+            engines().front().run({soup, plan, sink, execution, bound, report});
+            expect_same(stack, expected);
+        }
+    }
+}
+
+TEST(SliceTo, PassesOnWhatTheSinkThrows) {
+    const TriangleSoup soup = body();
+    const Plan plan = even_planes(500);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        std::vector<std::uint64_t> written;
+        const auto throws_in = [&](bool ordered) -> LayerSink {
+            return [&written, ordered](Layer&& layer) -> std::function<void()> {
+                if (!ordered && layer.index == 250)
+                    throw std::runtime_error("disk full");
+                return [&written, ordered, index = layer.index] {
+                    if (ordered && index == 250)
+                        throw std::runtime_error("disk full");
+                    written.push_back(index);
+                };
+            };
+        };
+        for (const bool ordered : {false, true}) {
+            written.clear();
+            EXPECT_THROW(slice_to(throws_in(ordered), soup, plan, {.threads = threads}), std::runtime_error);
+            EXPECT_LE(written.size(), 250U) << "nothing may be written after the gap";
+            for (std::size_t i = 0; i < written.size(); ++i)
+                EXPECT_EQ(written[i], i);
+        }
+    }
+}
+
+TEST(Slice, CountsProgressUpToTheWholeInBothStages) {
+    const TriangleSoup soup = body();
+    const Plan plan = even_planes(300);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        std::vector<Progress> seen;
+        const Execution execution{.threads = threads, .progress = [&](const Progress& p) {
+                                      seen.push_back(p);
+                                  }};
+        (void)slice(soup, plan, execution);
+        ASSERT_GE(seen.size(), 4U);
+        EXPECT_LE(seen.size(), 220U);
+        std::size_t i = 0;
+        for (const auto& [stage, total] : {std::pair(Stage::link, std::uint64_t{soup.size()}),
+                                           std::pair(Stage::slice, std::uint64_t{300})}) {
+            const std::size_t first = i;
+            for (; i < seen.size() && seen[i].stage == stage; ++i) {
+                EXPECT_EQ(seen[i].total, total);
+                EXPECT_LE(seen[i].done, total);
+                if (i > first) {
+                    EXPECT_GE(seen[i].done, seen[i - 1].done);
+                }
+            }
+            ASSERT_GT(i, first);
+            EXPECT_EQ(seen[first].done, 0U);
+            EXPECT_EQ(seen[i - 1].done, total);
+        }
+        EXPECT_EQ(i, seen.size()) << "a stage that does not belong here";
+    }
+}
+
+TEST(Slice, EndsWhenItWasCancelledBeforeItBegan) {
+    std::stop_source stop;
+    stop.request_stop();
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        const Execution execution{.threads = threads, .cancel = stop.get_token()};
+        expect_error(ErrorKind::cancelled, {}, [&] { (void)slice(body(), even_planes(10), execution); });
+        expect_error(ErrorKind::cancelled, {},
+                     [&] { (void)slice(TriangleSoup(), even_planes(10), execution); });
+    }
+}
+
+TEST(Slice, EndsWhenItIsCancelledOnTheWay) {
+    const TriangleSoup soup = body();
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        for (const Stage stage : {Stage::link, Stage::slice}) {
+            std::stop_source stop;
+            const Execution execution{.threads = threads,
+                                      .progress =
+                                          [&](const Progress& p) {
+                                              if (p.stage == stage && p.done >= p.total / 3)
+                                                  stop.request_stop();
+                                          },
+                                      .cancel = stop.get_token()};
+            expect_error(ErrorKind::cancelled, {}, [&] { (void)slice(soup, even_planes(300), execution); });
+        }
+        std::stop_source stop;
+        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+            if (layer.index == 100)
+                stop.request_stop();
+            return {};
+        };
+        expect_error(ErrorKind::cancelled, {}, [&] {
+            slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = stop.get_token()});
+        });
+    }
+}
+
+TEST(Slice, PassesOnWhatTheProgressFunctionThrows) {
+    const TriangleSoup soup = body();
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        for (const Stage stage : {Stage::link, Stage::slice}) {
+            for (const bool at_end : {false, true}) {
+                const Execution execution{.threads = threads, .progress = [&](const Progress& p) {
+                                              if (p.stage == stage && p.done >= (at_end ? p.total : 0))
+                                                  throw std::runtime_error("enough");
+                                          }};
+                EXPECT_THROW((void)slice(soup, even_planes(300), execution), std::runtime_error);
+            }
+        }
+    }
+}
+
+TEST(Slice, KeepsLayersAliveAfterTheMeshIsGone) {
+    LayerStack stack;
+    {
+        const TriangleSoup soup = body();
+        stack = slice(soup, even_planes(20));
+    }
+    const Layer kept = stack[10];
+    const std::uint64_t hash = content_hash(kept);
+    stack.clear();
+    EXPECT_EQ(content_hash(kept), hash);
+}
+
+} // namespace
+} // namespace lamella
