@@ -12,11 +12,12 @@ namespace lamella {
 ///
 ///     t = min((z - z0) * inverse_dz, 1)      x = x0 + t * dx      y = y0 + t * dy
 ///
-/// At the base t is 0 and the point is the base, bit for bit. dx and dy are shortened by one unit in the last
-/// place where x0 + dx would round beyond the far end; rounding is monotone, so no t in [0, 1] leads outside
-/// the edge's box. A plane so near both ends that inverse_dz overflows gives the far end (min(NaN, 1) is 1 as
-/// written below). Error: at most 6 units in the last place of the edge's extent (four for t, half of one
-/// each for the extent and the product, one for shortening it), plus half a unit of the result.
+/// At the base t is 0 and the point is the base, bit for bit (but -0 becomes +0, as in all layers). dx and dy
+/// are shortened by one unit in the last place where x0 + dx would round beyond the far end; rounding is
+/// monotone, so no t in [0, 1] leads outside the edge's box. A plane so near both ends that inverse_dz
+/// overflows gives the far end (min(NaN, 1) is 1 as written below). Error: at most 6 units in the last place
+/// of the edge's extent (four for t, half of one each for the extent and the product, one for shortening it),
+/// plus half a unit of the result.
 struct EdgeCut {
     double z0, inverse_dz, x0, dx, y0, dy;
 
@@ -29,8 +30,8 @@ struct EdgeCut {
     }
 
     EdgeCut(const Point3& base, const Point3& far) noexcept
-        : z0(base.z), inverse_dz(1.0 / (far.z - base.z)), x0(base.x), dx(shortened(base.x, far.x)),
-          y0(base.y), dy(shortened(base.y, far.y)) {}
+        : z0(base.z), inverse_dz(1.0 / (far.z - base.z)), x0(base.x + 0.0), dx(shortened(base.x, far.x)),
+          y0(base.y + 0.0), dy(shortened(base.y, far.y)) {}
 
     [[nodiscard]] Point2 at(double z) const noexcept {
         const double t = (z - z0) * inverse_dz;

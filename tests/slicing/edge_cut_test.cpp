@@ -167,6 +167,16 @@ TEST(EdgeCut, OfAVerticalEdgeIsItsFootOnEveryPlane) {
         expect_same_bits(cut.at(z), {0.1, -0.7});
 }
 
+TEST(EdgeCut, NeverGivesMinusZero) {
+    for (const double from : {-0.0, 0.0})
+        for (const double to : {-1.0, -0.0, 0.0, 1.0})
+            for (const double z : {0.0, -0.0, 0.5, 1.0}) {
+                const Point2 p = EdgeCut({from, from, 0}, {to, to, 1}).at(z);
+                EXPECT_FALSE(p.x == 0 && std::signbit(p.x)) << from << " to " << to << " at " << z;
+                EXPECT_FALSE(p.y == 0 && std::signbit(p.y)) << from << " to " << to << " at " << z;
+            }
+}
+
 TEST(EdgeCut, OfAnEdgeTooFlatToDivideByIsItsFarEnd) {
     const Point3 low{1, 2, 0};
     const Point3 high{5, -4, 5e-324};

@@ -472,6 +472,12 @@ TEST(Sweep, TakesMinusZeroForZero) {
                 *v = -0.0;
     expect_same(slice(mesh, plan), expected);
     expect_same(slice(test::soup(octahedron), plan_listed({-0.5, -0.0, 0.5})), expected);
+    // Edges that lead away from a corner at x = -0 to the left.
+    const Triangles leaning = test::tetrahedron({0, -1, 0}, {0, 1, 0}, {-2, 0, 0}, {-1, 0, 1});
+    mesh = test::indexed(leaning);
+    for (Point3& p : mesh.vertices)
+        p.x = p.x == 0 ? -0.0 : p.x;
+    expect_same(slice(mesh, plan), slice(test::soup(leaning), plan));
 }
 
 TEST(Sweep, WorksInAnyUnit) {
