@@ -19,27 +19,39 @@ enum class MeshFormat { stl_binary, stl_ascii };
 [[nodiscard]] const char* format_name(MeshFormat format) noexcept;
 
 struct MeshReadOptions {
-    /// Make an error of what is otherwise a warning: wrong counts, truncation, corners that are not finite.
+    /// Makes Error{defect} of what is otherwise a warning: wrong counts, truncation, corners that are not
+    /// finite.
     bool strict = false;
 };
 
 struct MeshFile {
     std::string path;
     MeshFormat format = MeshFormat::stl_binary;
-    std::string name;                      ///< the solid's name or the header's text, where there is one
+    /// The first solid's name or the header's text, where there is one: valid UTF-8 of one line and some 1000
+    /// bytes at most; other bytes are written as \xNN.
+    std::string name;
     TriangleSoup mesh;                     ///< finite corners only
     std::uint64_t stored_triangles = 0;    ///< including those that were dropped
     std::uint64_t nonfinite_triangles = 0; ///< dropped, because a corner was NaN or infinite
     std::vector<std::string> warnings;     ///< one line each: what was odd and what was made of it
 };
 
-/// Reads an STL file, binary or ASCII by its content. "-" reads standard input. Binary files are
-/// memory-mapped and viewed, not copied (but for dropped triangles), so the file must not change while the
-/// mesh lives. Parallel; O(bytes).
+/// Reads an STL file, binary or ASCII by its content. "-" reads standard input. Parallel; O(bytes); the same
+/// result for any number of threads.
 ///
-/// Accepted with a warning: a wrong or absent count, trailing bytes, a truncated last triangle, corners that
-/// are not finite (dropped). Throws Error{input} with file, byte or line, what was found and what was
-/// expected for anything else, also for a file without any triangle.
+/// Binary files are memory-mapped and viewed, not copied (but where triangles are dropped). While the mesh
+/// lives, the file must not be written to or cut shorter (touching what was cut off ends the program with
+/// SIGBUS); replacing it under its name, or deleting it, does no harm. An ASCII file is not needed
+/// once this has returned.
+///
+/// Corners are single precision in both forms: a number in an ASCII file is rounded once, to the nearest, so
+/// the ASCII and the binary form of a part give the same slices, bit for bit. Stored normals are ignored. All
+/// solids of an ASCII file are taken together.
+///
+/// Accepted with a warning: a wrong or absent count, trailing bytes or text, a missing "endsolid", a
+/// truncated last triangle, corners that are not finite (their triangles are dropped). Throws Error{input}
+/// with file, byte or line, what was found and what was expected for anything else, also for a file without
+/// any usable triangle.
 [[nodiscard]] MeshFile read_mesh(const std::string& path, const MeshReadOptions& options = {},
                                  const Execution& execution = {});
 

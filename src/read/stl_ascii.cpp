@@ -1,0 +1,544 @@
+#include "read/stl_ascii.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "read/remarks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::size_t nowhere = std::string_view::npos;
+
+/// Pieces are parsed in parallel; about as much text as 4,000 facets.
+constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+
+bool is_blank(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+bool is_line_end(char c) {
+    return c == '\n' || c == '\r';
+}
+
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+}
+
+/// `keyword` is in lower case.
+bool matches(std::string_view word, std::string_view keyword) {
+    return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
+                                                       [](char w, char k) { return lower(w) == k; });
+}
+
+bool begins(std::string_view word, std::string_view keyword) {
+    return matches(word.substr(0, keyword.size()), keyword);
+}
+
+/// Walks over a text word by word.
+class Words {
+  public:
+    Words(std::string_view text, std::size_t from)
+        : begin_(text.data()), at_(text.data() + from), end_(text.data() + text.size()) {}
+
+    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
+    [[nodiscard]] bool at_end() const { return at_ == end_; }
+    [[nodiscard]] const char* position() const { return at_; }
+    [[nodiscard]] const char* text_end() const { return end_; }
+    void move_to(const char* position) { at_ = position; }
+
+    void skip_blanks() {
+        while (at_ != end_ && is_blank(*at_))
+            ++at_;
+    }
+
+    /// Skips blanks and says whether the line went on.
+    bool skip_blanks_in_line() {
+        while (at_ != end_ && is_blank(*at_) && !is_line_end(*at_))
+            ++at_;
+        return at_ != end_ && !is_line_end(*at_);
+    }
+
+    /// The word that begins here (empty at the end).
+    [[nodiscard]] std::string_view peek() const {
+        const char* stop = at_;
+        while (stop != end_ && !is_blank(*stop))
+            ++stop;
+        return {at_, static_cast<std::size_t>(stop - at_)};
+    }
+
+    void skip_word() {
+        while (at_ != end_ && !is_blank(*at_))
+            ++at_;
+    }
+
+    /// Skips the keyword when it is the word that begins here.
+    bool take(std::string_view keyword) {
+        const auto left = static_cast<std::size_t>(end_ - at_);
+        if (left < keyword.size() || !matches({at_, keyword.size()}, keyword) ||
+            (left > keyword.size() && !is_blank(at_[keyword.size()])))
+            return false;
+        at_ += keyword.size();
+        return true;
+    }
+
+  private:
+    const char* begin_;
+    const char* at_;
+    const char* end_;
+};
+
+/// A number, NaN or infinity may begin with it. The words of a facet that are not numbers never do.
+bool begins_like_number(std::string_view word) {
+    return !word.empty() && (std::string_view("+-.0123456789").find(word[0]) != nowhere ||
+                             begins(word, "nan") || begins(word, "inf"));
+}
+
+/// Whether the word "facet" that begins here begins a facet, rather than being part of a name.
+bool facet_begins(Words words) {
+    if (!words.take("facet"))
+        return false;
+    words.skip_blanks();
+    if (!words.take("normal"))
+        return matches(words.peek(), "outer");
+    words.skip_blanks();
+    return matches(words.peek(), "outer") || begins_like_number(words.peek());
+}
+
+/// Reads the name of a solid, up to the end of the line or to a facet on the same line.
+std::string_view take_name(Words& words) {
+    words.skip_blanks_in_line();
+    const char* first = words.position();
+    const char* last = first;
+    while (words.skip_blanks_in_line() && !facet_begins(words)) {
+        words.skip_word();
+        last = words.position();
+    }
+    return {first, static_cast<std::size_t>(last - first)};
+}
+
+std::size_t after_byte_order_mark(std::string_view text) {
+    return text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
+}
+
+/// What makes a piece of text unreadable.
+struct Fault {
+    std::size_t offset;
+    std::string text;  ///< what was expected, or the whole story where `found` is false
+    bool found = true; ///< the error shows the word at the offset
+};
+
+/// The text ended within a facet.
+struct CutOff {};
+
+/// A run of facets, and of solids that begin and end between them.
+struct Piece {
+    std::size_t begin = 0; ///< between facets
+    bool begins_in_solid = true;
+    std::size_t limit = 0; ///< parse to the first place between facets that is not before this
+
+    std::size_t end = 0; ///< where that was
+    bool ends_in_solid = false;
+    std::vector<Triangle3f> triangles = {};
+    std::uint64_t stored = 0; ///< facets, including those with a corner that is not finite
+    std::uint64_t nonfinite = 0;
+    std::size_t first_nonfinite = nowhere;
+    std::size_t first_unended = nowhere; ///< a "solid" while another one has not ended
+    std::size_t cut_off = nowhere;       ///< the facet in which the text ended
+    std::size_t garbage = nowhere;       ///< what follows the last "endsolid"
+    std::optional<Fault> fault = {};
+};
+
+/// Parses one piece.
+class PieceParser {
+  public:
+    PieceParser(std::string_view text, Piece& piece)
+        : words_(text, piece.begin), piece_(piece), in_solid_(piece.begins_in_solid) {}
+
+    void run() {
+        try {
+            while (next()) {
+            }
+        } catch (const CutOff&) {
+            piece_.cut_off = facet_;
+            words_.move_to(words_.text_end());
+        } catch (Fault& fault) {
+            piece_.fault = std::move(fault);
+        }
+        piece_.end = words_.offset();
+        piece_.ends_in_solid = in_solid_;
+    }
+
+  private:
+    /// One facet, or the begin or the end of a solid. False when the piece is done.
+    bool next() {
+        words_.skip_blanks();
+        if (words_.at_end() || words_.offset() >= piece_.limit)
+            return false;
+        const std::size_t here = words_.offset();
+        if (words_.take("facet")) {
+            facet_ = here;
+            in_solid_ = true;
+            parse_facet();
+        } else if (words_.take("endsolid")) {
+            in_solid_ = false;
+            take_name(words_);
+        } else if (words_.take("solid")) {
+            if (in_solid_ && piece_.first_unended == nowhere)
+                piece_.first_unended = here;
+            in_solid_ = true;
+            take_name(words_);
+        } else {
+            return skip_rest();
+        }
+        return true;
+    }
+
+    /// After the last solid anything may follow, but no more facets: they would be lost.
+    bool skip_rest() {
+        const std::size_t here = words_.offset();
+        if (in_solid_) {
+            if (ends_in("facet") || ends_in("endsolid")) {
+                words_.skip_word();
+                return false; // the text was cut off in this word; the solid has not ended
+            }
+            throw Fault{here, "'facet' or 'endsolid'"};
+        }
+        for (Words rest = words_; !rest.at_end(); rest.skip_word(), rest.skip_blanks())
+            if (facet_begins(rest))
+                throw Fault{here, "'solid' or the end of the file"};
+        piece_.garbage = here;
+        words_.move_to(words_.text_end());
+        return false;
+    }
+
+    void parse_facet() {
+        words_.skip_blanks();
+        if (words_.take("normal"))
+            skip_normal();
+        else if (ends_in("normal"))
+            throw CutOff{};
+        expect("outer");
+        expect("loop");
+        Triangle3f triangle;
+        for (Point3f& corner : triangle) {
+            expect("vertex");
+            corner.x = coordinate();
+            corner.y = coordinate();
+            corner.z = coordinate();
+        }
+        words_.skip_blanks();
+        if (words_.take("vertex"))
+            throw Fault{
+                facet_,
+                "this facet has more than three vertices, and only triangles can be read; triangulate "
+                "the mesh first",
+                false};
+        expect("endloop");
+        expect("endfacet");
+        ++piece_.stored;
+        if (finite(triangle)) {
+            piece_.triangles.push_back(triangle);
+        } else {
+            ++piece_.nonfinite;
+            piece_.first_nonfinite = std::min(piece_.first_nonfinite, facet_);
+        }
+    }
+
+    /// Three numbers, or fewer: nobody needs them.
+    void skip_normal() {
+        for (int i = 0; i < 3; ++i) {
+            words_.skip_blanks();
+            const std::string_view word = words_.peek();
+            if (is_last(word))
+                throw CutOff{};
+            if (!begins_like_number(word))
+                return;
+            words_.skip_word();
+        }
+    }
+
+    void expect(std::string_view keyword) {
+        words_.skip_blanks();
+        if (words_.take(keyword))
+            return;
+        if (ends_in(keyword))
+            throw CutOff{};
+        throw Fault{words_.offset(), fmt::format("'{}'", keyword)};
+    }
+
+    /// Whether the text ends here or with the first letters of this keyword.
+    [[nodiscard]] bool ends_in(std::string_view keyword) const {
+        const auto left = static_cast<std::size_t>(words_.text_end() - words_.position());
+        return left < keyword.size() && matches({words_.position(), left}, keyword.substr(0, left));
+    }
+
+    /// Whether the text ends with this word: who knows how it would have gone on?
+    [[nodiscard]] bool is_last(std::string_view word) const {
+        return words_.position() + word.size() == words_.text_end();
+    }
+
+    float coordinate() {
+        words_.skip_blanks();
+        const char* first = words_.position();
+        const char* end = words_.text_end();
+        if (first != end && *first == '+' && end - first > 1 && first[1] != '-')
+            ++first;
+        float value = 0;
+        const auto [stop, code] = std::from_chars(first, end, value);
+        const bool whole_word = stop == end || is_blank(*stop);
+        if (code == std::errc() && whole_word) {
+            words_.move_to(stop);
+            return value;
+        }
+        return unusual_coordinate(code == std::errc::result_out_of_range && whole_word);
+    }
+
+    /// Numbers beyond the range of a float, the many ways to write NaN, and what is no number.
+    float unusual_coordinate(bool out_of_range) {
+        const std::string_view word = words_.peek();
+        if (is_last(word))
+            throw CutOff{};
+        const std::string_view digits = word.substr(word[0] == '+' || word[0] == '-' ? 1 : 0);
+        float value = std::numeric_limits<float>::quiet_NaN();
+        if (out_of_range)
+            value = is_huge(digits) ? std::numeric_limits<float>::infinity() : 0.0F;
+        else if (!begins(digits, "nan") && !begins(digits, "inf") && !begins(digits, "1.#"))
+            throw Fault{words_.offset(), word.find(',') == nowhere
+                                             ? "a number"
+                                             : "a number with a decimal point and no comma"};
+        words_.skip_word();
+        return value;
+    }
+
+    /// Whether a number that no float can hold is too large rather than too small, from the place of its
+    /// first digit that is not 0.
+    static bool is_huge(std::string_view number) {
+        const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
+        const std::string_view mantissa = number.substr(0, exponent_at);
+        const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+        const std::size_t leading = std::min(mantissa.find_first_not_of("0."), mantissa.size());
+        const auto place = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(leading);
+        const std::string_view exponent = number.substr(std::min(exponent_at + 1, number.size()));
+        const bool negative = exponent.starts_with('-');
+        const std::string_view digits = exponent.substr(negative || exponent.starts_with('+') ? 1 : 0);
+        std::int64_t power = 0;
+        if (!digits.empty() &&
+            std::from_chars(digits.data(), digits.data() + digits.size(), power).ec != std::errc())
+            power = std::numeric_limits<std::int64_t>::max() / 2;
+        return place + (negative ? -power : power) > 0;
+    }
+
+    static bool finite(const Triangle3f& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(), [](const Point3f& p) {
+            return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+        });
+    }
+
+    Words words_;
+    Piece& piece_;
+    bool in_solid_;
+    std::size_t facet_ = nowhere;
+};
+
+/// The first place at or after `from`, and before `limit`, where "endfacet" is followed by "facet"; that of
+/// "facet". It is a guess: both words may belong to a name.
+std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit) {
+    Words words(text, from);
+    words.skip_word(); // it may have begun before
+    while (words.skip_blanks(), words.offset() < limit && !words.at_end()) {
+        if (!words.take("endfacet")) {
+            words.skip_word();
+            continue;
+        }
+        words.skip_blanks();
+        if (matches(words.peek(), "facet"))
+            return words.offset();
+    }
+    return nowhere;
+}
+
+/// Pieces that are parsed ahead, on the guess that they begin between two facets.
+std::vector<Piece> cut_in_pieces(std::string_view text, std::size_t begin) {
+    std::vector<Piece> pieces;
+    pieces.push_back({.begin = begin, .begins_in_solid = false, .limit = text.size()});
+    for (std::size_t from = begin + piece_bytes; from < text.size(); from += piece_bytes) {
+        const std::size_t cut = find_cut(text, from, std::min(from + piece_bytes, text.size()));
+        if (cut == nowhere || cut <= pieces.back().begin)
+            continue;
+        pieces.back().limit = cut;
+        pieces.push_back({.begin = cut, .begins_in_solid = true, .limit = text.size()});
+    }
+    return pieces;
+}
+
+/// Parses the text. The pieces of the result follow one another without a gap from its begin to its end or to
+/// the first fault, exactly as if it had been parsed from front to back: a piece that was parsed ahead counts
+/// only when the one before it ended where it begins.
+std::vector<Piece> parse(std::string_view text, const Execution& execution) {
+    std::vector<Piece> ahead = cut_in_pieces(text, after_byte_order_mark(text));
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, text.size());
+    executor.for_chunks(ahead.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            PieceParser(text, ahead[i]).run();
+            progress.add(ahead[i].limit - ahead[i].begin);
+        }
+    });
+
+    std::vector<Piece> pieces;
+    std::size_t at = ahead.front().begin;
+    bool in_solid = false;
+    auto candidate = ahead.begin();
+    do {
+        executor.check_cancelled();
+        while (candidate != ahead.end() && candidate->begin < at)
+            ++candidate;
+        if (candidate != ahead.end() && candidate->begin == at && candidate->begins_in_solid == in_solid) {
+            pieces.push_back(std::move(*candidate++));
+        } else {
+            const auto following =
+                std::find_if(candidate, ahead.end(), [&](const Piece& piece) { return piece.begin > at; });
+            Piece piece{.begin = at,
+                        .begins_in_solid = in_solid,
+                        .limit = following == ahead.end() ? text.size() : following->begin};
+            PieceParser(text, piece).run();
+            pieces.push_back(std::move(piece));
+        }
+        at = pieces.back().end;
+        in_solid = pieces.back().ends_in_solid;
+    } while (at < text.size() && !pieces.back().fault);
+    progress.finish();
+    return pieces;
+}
+
+TriangleSoup join(std::vector<Piece>& pieces, const Execution& execution) {
+    std::vector<std::size_t> first(pieces.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        first[i] = count;
+        count += pieces[i].triangles.size();
+    }
+    const auto memory = std::make_shared<PageArray<Triangle3f>>(count);
+    Executor executor(execution);
+    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), memory->data() + first[i]);
+            pieces[i].triangles = {};
+        }
+    });
+    return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
+}
+
+/// Adds up what the pieces counted, and takes the first of each kind of oddity.
+Piece summary(const std::vector<Piece>& pieces) {
+    Piece sum = {};
+    for (const Piece& piece : pieces) {
+        sum.stored += piece.stored;
+        sum.nonfinite += piece.nonfinite;
+        sum.first_nonfinite = std::min(sum.first_nonfinite, piece.first_nonfinite);
+        sum.first_unended = std::min(sum.first_unended, piece.first_unended);
+        sum.cut_off = std::min(sum.cut_off, piece.cut_off);
+        sum.garbage = std::min(sum.garbage, piece.garbage);
+    }
+    sum.ends_in_solid = pieces.back().ends_in_solid;
+    return sum;
+}
+
+} // namespace
+
+bool begins_with_solid(std::string_view text) {
+    Words words(text, after_byte_order_mark(text));
+    words.skip_blanks();
+    return words.take("solid");
+}
+
+bool is_stl_ascii(std::string_view text) {
+    Words words(text, after_byte_order_mark(text));
+    words.skip_blanks();
+    if (!words.take("solid"))
+        return false;
+    take_name(words);
+    words.skip_blanks();
+    return matches(words.peek(), "facet") || matches(words.peek(), "endsolid");
+}
+
+MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
+                        const Execution& execution) {
+    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    const auto line = [&](std::size_t offset) {
+        return line_at(text, offset);
+    };
+    const auto fail = [&](const std::string& what) {
+        throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
+    };
+
+    std::vector<Piece> pieces = parse(text, execution);
+    if (const auto& fault = pieces.back().fault) {
+        if (!fault->found)
+            fail(fmt::format("line {}: {}", line(fault->offset), fault->text));
+        fail(fmt::format("line {}: found '{}', expected {}", line(fault->offset),
+                         printable(Words(text, fault->offset).peek(), 40), fault->text));
+    }
+    const Piece sum = summary(pieces);
+    if (sum.stored == 0)
+        fail(sum.cut_off == nowhere
+                 ? fmt::format("holds no triangle: an ASCII STL file without a facet, {} lines long",
+                               line(text.size()))
+                 : fmt::format("line {}: holds no triangle: the file ends within its first facet",
+                               line(text.size())));
+    if (sum.nonfinite == sum.stored)
+        fail(fmt::format(
+            "line {}: holds no usable triangle: each of the {} has a corner that is NaN or infinite",
+            line(sum.first_nonfinite), sum.stored));
+
+    Remarks remarks(source.name, options.strict);
+    if (sum.nonfinite != 0)
+        remarks.add(fmt::format("line {}: left out {} of {} triangles, which have a corner that is NaN or "
+                                "infinite (this is the first)",
+                                line(sum.first_nonfinite), sum.nonfinite, sum.stored));
+    if (sum.first_unended != nowhere)
+        remarks.add(
+            fmt::format("line {}: a solid begins before the one above has ended; 'endsolid' is missing",
+                        line(sum.first_unended)));
+    if (sum.cut_off != nowhere)
+        remarks.add(fmt::format("line {}: the file ends within this facet, which is left out; took the {} "
+                                "triangles before it (the file is cut off)",
+                                line(sum.cut_off), sum.stored));
+    else if (sum.ends_in_solid)
+        remarks.add(fmt::format("line {}: the file ends without 'endsolid'; it may be cut off, took all {} "
+                                "triangles",
+                                line(text.size()), sum.stored));
+    if (sum.garbage != nowhere)
+        remarks.add(fmt::format("line {}: left out '{}' and what follows it, after the last 'endsolid'",
+                                line(sum.garbage), printable(Words(text, sum.garbage).peek(), 40)));
+
+    MeshFile file;
+    file.format = MeshFormat::stl_ascii;
+    Words words(text, after_byte_order_mark(text));
+    words.skip_blanks();
+    words.skip_word(); // "solid"
+    constexpr std::size_t longest_name = 1000;
+    file.name = printable(take_name(words), longest_name);
+    file.mesh = join(pieces, execution);
+    file.stored_triangles = sum.stored;
+    file.nonfinite_triangles = sum.nonfinite;
+    file.warnings = remarks.take();
+    return file;
+}
+
+} // namespace lamella

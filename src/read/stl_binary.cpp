@@ -1,0 +1,196 @@
+#include "read/stl_binary.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "read/remarks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+
+static_assert(std::endian::native == std::endian::little, "binary STL is viewed in place, as little-endian");
+
+namespace {
+
+/// Bytes of the normal, which is not to be trusted, before the corners.
+constexpr std::size_t normal_bytes = 12;
+
+/// Some megabyte at a time: small enough to share out, large enough not to matter.
+constexpr std::uint64_t chunk_triangles = 20'000;
+
+// A float is NaN or infinite when all bits of its exponent are set.
+constexpr std::uint32_t exponent_bits = 0x7F800000;
+
+using FourWords [[gnu::vector_size(16)]] = std::uint32_t;
+
+/// Whether all corners of n records are finite. Runs as fast as memory delivers: integer compares, no branch.
+/// `corners` is where the corners of the first record begin.
+bool all_finite(const std::byte* corners, std::uint64_t n) {
+    constexpr FourWords mask = {exponent_bits, exponent_bits, exponent_bits, exponent_bits};
+    FourWords bad = {};
+    for (std::uint64_t i = 0; i < n; ++i) {
+        // Nine words are three loads of four; the last begins where the ninth is its last.
+        for (const std::size_t at : {0, 16, 20}) {
+            FourWords words;
+            std::memcpy(&words, corners + i * stl_record_bytes + at, sizeof words);
+            bad |= FourWords((words & mask) == mask);
+        }
+    }
+    return (bad[0] | bad[1] | bad[2] | bad[3]) == 0;
+}
+
+bool is_finite(const std::byte* corners) {
+    std::array<std::uint32_t, 9> words{};
+    std::memcpy(words.data(), corners, sizeof words);
+    return std::none_of(words.begin(), words.end(),
+                        [](std::uint32_t word) { return (word & exponent_bits) == exponent_bits; });
+}
+
+/// How many records of each chunk have a corner that is not finite, and the first of them all.
+struct NonFinite {
+    std::vector<std::uint32_t> per_chunk;
+    std::uint64_t total = 0;
+    std::uint64_t first = 0;
+};
+
+NonFinite find_nonfinite(const std::byte* corners, std::uint64_t n, Executor& executor,
+                         ProgressMeter& progress) {
+    NonFinite found;
+    found.per_chunk.resize((n + chunk_triangles - 1) / chunk_triangles);
+    executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        if (!all_finite(corners + begin * stl_record_bytes, end - begin)) {
+            std::uint32_t count = 0;
+            for (std::uint64_t i = begin; i < end; ++i)
+                count += is_finite(corners + i * stl_record_bytes) ? 0 : 1;
+            found.per_chunk[begin / chunk_triangles] = count;
+        }
+        progress.add((end - begin) * stl_record_bytes);
+    });
+    for (const std::uint32_t count : found.per_chunk)
+        found.total += count;
+    if (found.total != 0)
+        while (is_finite(corners + found.first * stl_record_bytes))
+            ++found.first;
+    return found;
+}
+
+/// The triangles with finite corners, in order, in memory of their own.
+TriangleSoup copy_finite(const std::byte* corners, std::uint64_t n, const NonFinite& dropped,
+                         Executor& executor) {
+    std::vector<std::uint64_t> first_kept(dropped.per_chunk.size());
+    std::uint64_t kept = 0;
+    for (std::size_t chunk = 0; chunk < first_kept.size(); ++chunk) {
+        first_kept[chunk] = kept;
+        kept += std::min(chunk_triangles, n - chunk * chunk_triangles) - dropped.per_chunk[chunk];
+    }
+    const auto memory = std::make_shared<PageArray<Triangle3f>>(kept);
+    executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        Triangle3f* to = memory->data() + first_kept[begin / chunk_triangles];
+        for (std::uint64_t i = begin; i < end; ++i)
+            if (is_finite(corners + i * stl_record_bytes))
+                std::memcpy(to++, corners + i * stl_record_bytes, sizeof *to);
+    });
+    const auto* first = reinterpret_cast<const std::byte*>(memory->data());
+    return {memory, first, sizeof(Triangle3f), kept};
+}
+
+/// The header's text: what stands before the first byte that no text has, without the blanks around it.
+std::string header_text(std::span<const std::byte> bytes) {
+    std::string_view text(reinterpret_cast<const char*>(bytes.data()), 80);
+    const auto is_control = [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    };
+    text = text.substr(0, std::find_if(text.begin(), text.end(), is_control) - text.begin());
+    const std::size_t first = text.find_first_not_of(' ');
+    if (first == std::string_view::npos)
+        return {};
+    return printable(text.substr(first, text.find_last_not_of(' ') + 1 - first), 80);
+}
+
+} // namespace
+
+std::uint32_t stl_declared_count(std::span<const std::byte> bytes) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, bytes.data() + 80, sizeof count);
+    return count;
+}
+
+StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared) {
+    const std::uint64_t stored = (file_bytes - stl_head_bytes) / stl_record_bytes;
+    const bool unknown = declared == 0 || declared == std::numeric_limits<std::uint32_t>::max();
+    StlExtent extent{unknown ? stored : std::min<std::uint64_t>(declared, stored), {}};
+    const std::uint64_t end = stl_head_bytes + stl_record_bytes * extent.triangles;
+    const std::uint64_t rest = file_bytes - end;
+    if (unknown && stored != declared)
+        extent.remark = fmt::format(
+            "byte 80: the count is {}; took the {} triangles that the file has room for", declared, stored);
+    else if (stored < declared)
+        extent.remark = fmt::format("byte 80: the count is {}, but the file ends after {} whole triangles; "
+                                    "took those (the file is cut off, or the count is wrong)",
+                                    declared, stored);
+    if (rest != 0 && !extent.remark.empty())
+        extent.remark += fmt::format(", and left out {} bytes from byte {} on", rest, end);
+    else if (rest != 0)
+        extent.remark = fmt::format("byte {}: left out {} bytes that follow the {} triangles of the count",
+                                    end, rest, declared);
+    return extent;
+}
+
+MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
+                         const Execution& execution) {
+    const std::uint32_t declared = stl_declared_count(source.bytes);
+    const auto [stored, remark] = stl_extent(source.bytes.size(), declared);
+    if (stored == 0)
+        throw Error(
+            ErrorKind::input,
+            fmt::format("{}: holds no triangle: a binary STL file whose count is {} and that ends after "
+                        "{} bytes (its first triangle would end at byte {})",
+                        source.name, declared, source.bytes.size(), stl_head_bytes + stl_record_bytes));
+    Remarks remarks(source.name, options.strict);
+    if (!remark.empty())
+        remarks.add(remark);
+
+    const std::byte* corners = source.bytes.data() + stl_head_bytes + normal_bytes;
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, source.bytes.size());
+    const NonFinite nonfinite = find_nonfinite(corners, stored, executor, progress);
+
+    MeshFile file;
+    file.format = MeshFormat::stl_binary;
+    file.name = header_text(source.bytes);
+    file.stored_triangles = stored;
+    file.nonfinite_triangles = nonfinite.total;
+    if (nonfinite.total == 0) {
+        file.mesh = TriangleSoup(source.owner, corners, stl_record_bytes, stored);
+    } else {
+        const std::string first = fmt::format("the first is triangle {} at byte {}", nonfinite.first + 1,
+                                              stl_head_bytes + stl_record_bytes * nonfinite.first);
+        if (nonfinite.total == stored)
+            throw Error(
+                ErrorKind::input,
+                fmt::format("{}: holds no usable triangle: each of the {} has a corner that is NaN or "
+                            "infinite ({})",
+                            source.name, stored, first));
+        remarks.add(
+            fmt::format("left out {} of {} triangles, which have a corner that is NaN or infinite ({})",
+                        nonfinite.total, stored, first));
+        file.mesh = copy_finite(corners, stored, nonfinite, executor);
+    }
+    file.warnings = remarks.take();
+    progress.finish();
+    return file;
+}
+
+} // namespace lamella

@@ -1,0 +1,215 @@
+// Which form a file has, whatever it claims.
+
+#include "lamella/read/mesh_file.hpp"
+
+#include "read/stl_text.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <thread>
+
+namespace lamella::stl_test {
+namespace {
+
+const Triangles one = some_triangles(1);
+const Triangles two = some_triangles(2);
+const Triangles many = some_triangles(24);
+
+TEST(Stl, ReadsBothFormsAndNamesThem) {
+    EXPECT_EQ(read(binary(many)).format, MeshFormat::stl_binary);
+    EXPECT_EQ(read(solid(many)).format, MeshFormat::stl_ascii);
+    EXPECT_STREQ(format_name(MeshFormat::stl_binary), "stl-binary");
+    EXPECT_STREQ(format_name(MeshFormat::stl_ascii), "stl-ascii");
+}
+
+TEST(Stl, GivesTheSameCornersFromBothForms) {
+    // Numbers that no short decimal represents: both forms round them once, to single precision.
+    Triangles odd = many;
+    for (std::size_t i = 0; i < odd.size(); ++i)
+        odd[i][i % 3] = {1.0F / 3 * static_cast<float>(i), 1e-30F / 7, -123456.789F};
+    EXPECT_EQ(triangles_of(read(solid(odd))), triangles_of(read(binary(odd))));
+    EXPECT_EQ(triangles_of(read(solid(odd))), odd);
+}
+
+TEST(Stl, BelievesTheSizeBeforeTheWordSolid) {
+    for (const char* header : {"solid part", "solid\nfacet normal 0 0 1 outer loop", "  SOLID facet"}) {
+        const MeshFile file = read(binary(many, 24, header));
+        EXPECT_EQ(file.format, MeshFormat::stl_binary) << header;
+        EXPECT_EQ(triangles_of(file), many) << header;
+        EXPECT_TRUE(file.warnings.empty()) << header;
+    }
+}
+
+TEST(Stl, TakesABinaryFileThatBeginsWithSolidAndHasAWrongCountForBinary) {
+    const MeshFile file = read(binary(many, 0, "solid part"));
+    EXPECT_EQ(file.format, MeshFormat::stl_binary);
+    EXPECT_EQ(triangles_of(file), many);
+}
+
+TEST(Stl, ReadsTinyBinaryFiles) {
+    expect_clean(binary(one), one);
+    expect_clean(binary(two), two);
+}
+
+TEST(Stl, LooksForSolidAfterAByteOrderMarkAndBlanks) {
+    expect_clean("\xEF\xBB\xBF" + solid(many), many);
+    expect_clean("\xEF\xBB\xBF \r\n\t" + solid(many), many);
+    expect_clean(" \n\f\v" + solid(one), one);
+}
+
+TEST(Stl, NamesTheFormatOfAForeignFile) {
+    const std::string tail(200, '\1');
+    const auto says = [&](const std::string& begin, const std::string& part) {
+        const std::string error = error_of(begin + tail);
+        EXPECT_NE(error.find(part), std::string::npos) << error;
+        EXPECT_TRUE(error.starts_with("part.stl: ")) << error;
+        error_of(begin); // as short as that, too
+    };
+    says("\x1F\x8B\x08", "gzip");
+    says("PK\x03\x04", "zip archive");
+    says("<!DOCTYPE html><html>", "web page");
+    says("\n <HTML>", "web page");
+    says("<?xml version=\"1.0\"?>", "XML");
+    says("<amf>", "AMF");
+    says("version https://git-lfs.github.com/spec/v1\n", "git lfs pull");
+    says(std::string("\xFF\xFEs\0o\0l\0", 8), "UTF-16");
+}
+
+TEST(Stl, ReadsABinaryFileWhoseHeaderLooksForeign) {
+    expect_clean(binary(many, 24, "PK\x03\x04"), many);
+    expect_clean(binary(many, 24, "<html>"), many);
+}
+
+TEST(Stl, NeverTakesTextForBinaryTriangles) {
+    const std::string points = "# a point cloud\n" + replaced(std::string(300, 'x'), "x", "v 1 2 3\n");
+    EXPECT_EQ(error_of(points), "part.stl: line 1: is a text, but not an STL file: found '# a point cloud', "
+                                "expected 'solid'");
+    EXPECT_EQ(error_of("\n\n  ply\nformat ascii 1.0\n"),
+              "part.stl: line 3: is a text, but not an STL file: found 'ply', expected 'solid'");
+    EXPECT_EQ(error_of("solidpart\n" + facet(one[0])),
+              "part.stl: line 1: is a text, but not an STL file: found 'solidpart', expected 'solid'");
+    EXPECT_EQ(error_of(" \n "),
+              "part.stl: line 2: is a text, but not an STL file: found '', expected 'solid'");
+}
+
+TEST(Stl, RefusesWhatIsTooShortToBeAnything) {
+    EXPECT_EQ(
+        error_of(binary(one).substr(0, 83)),
+        "part.stl: is not an STL file, or cut off: found 83 bytes, expected at least 84 (binary) or the word "
+        "'solid' (ASCII)");
+    EXPECT_EQ(error_of(""), "part.stl: is empty, expected a file with content");
+    EXPECT_NE(error_of("s").find("expected 'solid'"), std::string::npos);
+}
+
+TEST(Stl, SaysWhichFileCannotBeOpened) {
+    EXPECT_THROW((void)read_mesh("/nowhere/part.stl"), Error);
+    try {
+        (void)read_mesh("/nowhere/part.stl");
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_STREQ(error.what(), "/nowhere/part.stl: there is no such file");
+    }
+}
+
+/// A file of its own for each test, gone afterwards.
+class StlOnDisk : public testing::Test {
+  protected:
+    void SetUp() override {
+        const int descriptor = mkstemp(path_.data());
+        ASSERT_GE(descriptor, 0);
+        close(descriptor);
+    }
+    void TearDown() override { unlink(path_.c_str()); }
+
+    void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+  private:
+    std::string path_ = testing::TempDir() + "/lamella-stl-XXXXXX";
+};
+
+TEST_F(StlOnDisk, ViewsABinaryFileWithoutCopyingIt) {
+    write(binary(many));
+    const MeshFile file = read_mesh(path());
+    EXPECT_EQ(file.path, path());
+    EXPECT_EQ(file.mesh.stride(), 50U);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(file.mesh.data()) % 4096, 96U) << "84 + 12 bytes into a page";
+    EXPECT_EQ(triangles_of(file), many);
+}
+
+TEST_F(StlOnDisk, KeepsTheTrianglesOfADeletedFile) {
+    write(binary(many));
+    const TriangleSoup mesh = read_mesh(path()).mesh;
+    unlink(path().c_str());
+    EXPECT_EQ(mesh.stored(23), many[23]);
+}
+
+TEST_F(StlOnDisk, ReadsStandardInputFromAPipe) {
+    for (const std::string& bytes : {binary(many), solid(many)}) {
+        unlink(path().c_str());
+        ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
+        const std::jthread writer([&] { write(bytes); });
+        const int saved = dup(STDIN_FILENO);
+        const int fifo = open(path().c_str(), O_RDONLY | O_CLOEXEC);
+        dup2(fifo, STDIN_FILENO);
+        close(fifo);
+        const MeshFile file = read_mesh("-");
+        dup2(saved, STDIN_FILENO);
+        close(saved);
+        EXPECT_EQ(file.path, "-");
+        EXPECT_EQ(triangles_of(file), many);
+    }
+}
+
+TEST_F(StlOnDisk, CountsInSixtyFourBitsBeyondFourGigabytes) {
+    // Two triangles and a hole of five gigabytes behind them, of which nothing is read.
+    write(binary(two));
+    constexpr std::uint64_t size = std::uint64_t{5} << 30;
+    if (truncate(path().c_str(), static_cast<off_t>(size)) != 0)
+        GTEST_SKIP() << "no sparse files here";
+    const MeshFile file = read_mesh(path());
+    EXPECT_EQ(triangles_of(file), two);
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_EQ(
+        file.warnings[0],
+        fmt::format("byte 184: left out {} bytes that follow the 2 triangles of the count", size - 184));
+}
+
+TEST(Stl, ReportsProgressInBytesUpToTheEnd) {
+    for (const std::string& bytes : {binary(some_triangles(100'000)), solid(some_triangles(30'000))})
+        for (const unsigned threads : {1U, 2U, 7U}) {
+            std::vector<Progress> reports;
+            Execution execution{.threads = threads};
+            execution.progress = [&](const Progress& progress) {
+                reports.push_back(progress);
+            };
+            (void)read_mesh(std::as_bytes(std::span(bytes)), "part.stl", {}, execution);
+            ASSERT_GE(reports.size(), 3U);
+            EXPECT_EQ(reports.front().done, 0U);
+            EXPECT_EQ(reports.back().done, bytes.size());
+            for (std::size_t i = 0; i < reports.size(); ++i) {
+                EXPECT_EQ(reports[i].stage, Stage::read);
+                EXPECT_EQ(reports[i].total, bytes.size());
+                EXPECT_LE(reports[i == 0 ? 0 : i - 1].done, reports[i].done);
+            }
+        }
+}
+
+TEST(Stl, StopsWhenAsked) {
+    for (const std::string& bytes : {binary(many), solid(many)}) {
+        std::stop_source stop;
+        stop.request_stop();
+        try {
+            (void)read_mesh(std::as_bytes(std::span(bytes)), "part.stl", {}, {.cancel = stop.get_token()});
+            ADD_FAILURE() << "went on";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+        }
+    }
+}
+
+} // namespace
+} // namespace lamella::stl_test
