@@ -1,0 +1,95 @@
+#pragma once
+
+// Bytes of a layer under construction, and their memory used again for the next one: fresh pages would cost
+// as much as the formatting.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// A byte array that grows. What lies beyond its end is not initialised.
+class ByteBuffer {
+  public:
+    /// Room for `size` bytes after the end; write there and tell `end_at` how far. Earlier pointers become
+    /// invalid.
+    [[nodiscard]] char* room(std::size_t size) {
+        if (capacity_ - size_ < size)
+            grow(size);
+        return bytes_.get() + size_;
+    }
+    void end_at(const char* end) noexcept { size_ = static_cast<std::size_t>(end - bytes_.get()); }
+
+    void append(std::string_view text) {
+        if (text.empty())
+            return;
+        char* const out = room(text.size());
+        std::memcpy(out, text.data(), text.size());
+        end_at(out + text.size());
+    }
+
+    void clear() noexcept { size_ = 0; }
+    [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
+    [[nodiscard]] std::string_view view() const noexcept { return {bytes_.get(), size_}; }
+
+  private:
+    void grow(std::size_t size) {
+        const std::size_t capacity = std::max(size_ + size, capacity_ + capacity_ / 2);
+        auto bytes = std::make_unique_for_overwrite<char[]>(capacity);
+        if (size_ > 0)
+            std::memcpy(bytes.get(), bytes_.get(), size_);
+        bytes_ = std::move(bytes);
+        capacity_ = capacity;
+    }
+
+    std::unique_ptr<char[]> bytes_;
+    std::size_t size_ = 0;
+    std::size_t capacity_ = 0;
+};
+
+/// Buffers that wait to be used again. For any number of threads.
+class BufferPool : public std::enable_shared_from_this<BufferPool> {
+  public:
+    /// An empty buffer, which comes back to the pool when the last pointer to it goes.
+    [[nodiscard]] std::shared_ptr<ByteBuffer> take() {
+        ByteBuffer buffer;
+        {
+            const std::lock_guard lock(mutex_);
+            if (!idle_.empty()) {
+                buffer = std::move(idle_.back());
+                idle_.pop_back();
+            }
+        }
+        buffer.clear();
+        return {new ByteBuffer(std::move(buffer)), [pool = shared_from_this()](ByteBuffer* used) {
+                    pool->give_back(std::unique_ptr<ByteBuffer>(used));
+                }};
+    }
+
+  private:
+    // As many as there may be threads at work; more would only keep memory.
+    static constexpr std::size_t most_idle = 64;
+
+    void give_back(std::unique_ptr<ByteBuffer> buffer) noexcept {
+        const std::lock_guard lock(mutex_);
+        if (idle_.size() < most_idle)
+            idle_.push_back(std::move(*buffer));
+    }
+
+    std::mutex mutex_;
+    std::vector<ByteBuffer> idle_ = reserved();
+
+    static std::vector<ByteBuffer> reserved() {
+        std::vector<ByteBuffer> buffers;
+        buffers.reserve(most_idle);
+        return buffers;
+    }
+};
+
+} // namespace lamella

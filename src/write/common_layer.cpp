@@ -1,0 +1,435 @@
+#include "write/common_layer.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "write/decimal.hpp"
+#include "write/grid.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the binary form is written as memory has it");
+
+enum Direction : std::uint8_t { clockwise = 0, counter_clockwise = 1, open_line = 2 };
+
+constexpr double least_units = 1e-9;
+constexpr double most_units = 1e3;
+constexpr int part_id = 1;
+
+void check_units(double units) {
+    if (!(units >= least_units && units <= most_units))
+        throw Error(ErrorKind::usage,
+                    fmt::format("units of {} mm are not possible; choose from {} to {} mm, such as 0.001",
+                                units, least_units, most_units));
+}
+
+// The label as the format's strings have it: readers differ on quotes, commas and letters beyond ASCII.
+std::string label_text(std::string_view label) {
+    std::string text;
+    for (const char c : label) {
+        const bool harmless = c >= ' ' && c <= '~' && c != '"' && c != '$' && c != ',' && c != '/';
+        text += harmless ? c : '_';
+    }
+    return text;
+}
+
+// In the order that the strictest readers ask for. No date: equal layers give equal bytes.
+std::string header(std::string_view coding, const LayerFileInfo& info, double units) {
+    std::string text = "$$HEADERSTART\n";
+    text += fmt::format("$${}\n", coding);
+    text += fmt::format("$$UNITS/{}\n", exact_decimal_text(units));
+    text += "$$VERSION/200\n";
+    text += fmt::format("$$LABEL/{},\"{}\"\n", part_id, label_text(info.label));
+    text += "$$DIMENSION/";
+    const Box3& box = info.box;
+    for (const double v : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
+        text += decimal_text(v, 6, 6) + ',';
+    text.back() = '\n';
+    // One more for the empty layer that says where the first one begins.
+    text += fmt::format("$$LAYERS/{}\n$$HEADEREND", info.layers + 1);
+    return text;
+}
+
+// Calls write(contour, direction, area) for outer rings, then holes, then open chains.
+template <class Write>
+void for_each_contour(const Layer& layer, const Write& write) {
+    const std::vector<MeasuredRing> rings = measured_rings(layer);
+    for (const MeasuredRing& ring : rings) {
+        if (ring.area >= 0)
+            write(layer.contour(ring.contour), counter_clockwise, ring.area);
+    }
+    for (const MeasuredRing& ring : rings) {
+        if (ring.area < 0)
+            write(layer.contour(ring.contour), clockwise, ring.area);
+    }
+    for (std::size_t i = layer.rings; i < layer.contours(); ++i)
+        write(layer.contour(i), open_line, 0.0);
+}
+
+// Heights are not on the grid of coordinates: a layer may be thinner than its unit.
+std::string height_text(double z, double units) {
+    return decimal_text(z / units, 6, 1);
+}
+
+class AsciiWriter final : public SequentialWriter {
+  public:
+    AsciiWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
+        : SequentialWriter(path, info,
+                           header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
+                               height_text(info.bottom, options.units_mm) + '\n',
+                           "$$GEOMETRYEND\n"),
+          units_(options.units_mm), grid_(options.units_mm) {}
+
+  private:
+    std::string layer_head(const Place& place) override {
+        return fmt::format("$$LAYER/{}\n", height_text(place.top, units_));
+    }
+
+    void format(const Layer& layer, ByteBuffer& out) const override {
+        std::vector<GridPoint> scratch;
+        for_each_contour(layer, [&](std::span<const Point2> contour, Direction direction, double area) {
+            const bool closed = direction != open_line;
+            const auto points = grid_.snap(contour, closed, area, layer.index, scratch);
+            if (!points.empty())
+                put_polyline(points, direction, out);
+        });
+    }
+
+    static void put_polyline(std::span<const GridPoint> points, Direction direction, ByteBuffer& out) {
+        const bool closed = direction != open_line;
+        constexpr std::string_view command = "$$POLYLINE/";
+        // A comma or the end, sign, digits and ".0".
+        constexpr std::size_t per_number = most_integer_digits + 4;
+        char* at = out.room(command.size() + (points.size() + 3) * 2 * per_number);
+        at = std::copy(command.begin(), command.end(), at);
+        at = put_integer(at, std::uint64_t{part_id});
+        *at++ = ',';
+        *at++ = static_cast<char>('0' + direction);
+        *at++ = ',';
+        at = put_integer(at, std::uint64_t{points.size() + (closed ? 1 : 0)});
+        // A real number has a decimal point.
+        const auto put = [&](const GridPoint& p) {
+            *at = ',';
+            at = put_integer(at + 1, p.x);
+            at = put_integer(std::copy_n(".0,", 3, at), p.y);
+            at = std::copy_n(".0", 2, at);
+        };
+        for (const GridPoint& p : points)
+            put(p);
+        if (closed)
+            put(points.front());
+        *at++ = '\n';
+        out.end_at(at);
+    }
+
+    double units_;
+    Grid grid_;
+};
+
+enum class Command : std::uint16_t {
+    layer_long = 127,
+    layer_short = 128,
+    polyline_short = 129,
+    polyline_long = 130
+};
+
+template <class T>
+char* put(char* out, T value) {
+    std::memcpy(out, &value, sizeof value);
+    return out + sizeof value;
+}
+
+struct FloatPoint {
+    float x;
+    float y;
+};
+
+constexpr std::size_t long_head = 14;
+
+char* put_long_head(char* out, Direction direction, std::size_t points, std::uint64_t layer) {
+    if (points > std::size_t{std::numeric_limits<std::int32_t>::max()})
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("layer {} has a contour of {} points; the format ends at 2^31 - 1", layer, points));
+    out = put(out, Command::polyline_long);
+    out = put(out, std::int32_t{part_id});
+    out = put(out, std::int32_t{direction});
+    return put(out, static_cast<std::int32_t>(points));
+}
+
+class LongWriter final : public SequentialWriter {
+  public:
+    LongWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
+        : SequentialWriter(
+              path, info,
+              header("BINARY", info, options.units_mm) + layer_start(info.bottom, options.units_mm), {}),
+          units_(options.units_mm), per_unit_(1 / options.units_mm) {}
+
+  private:
+    static std::string layer_start(double z, double units) {
+        std::array<char, 6> bytes{};
+        put(put(bytes.data(), Command::layer_long), static_cast<float>(z / units) + 0.0F);
+        return {bytes.data(), bytes.size()};
+    }
+
+    std::string layer_head(const Place& place) override { return layer_start(place.top, units_); }
+
+    void format(const Layer& layer, ByteBuffer& out) const override {
+        // All room at once: most layers lose no point.
+        static_cast<void>(out.room(layer.contours() * (long_head + sizeof(FloatPoint)) +
+                                   layer.points.size() * sizeof(FloatPoint)));
+        for_each_contour(layer, [&](std::span<const Point2> contour, Direction direction, double area) {
+            put_polyline(contour, direction, area, layer.index, out);
+        });
+    }
+
+    void put_polyline(std::span<const Point2> contour, Direction direction, double area, std::uint64_t layer,
+                      ByteBuffer& out) const {
+        const bool closed = direction != open_line;
+        char* const head = out.room(long_head + (contour.size() + 1) * sizeof(FloatPoint));
+        char* const points = head + long_head;
+        convert(contour, points, layer);
+        const std::size_t count = without_repeats(points, contour.size(), closed);
+        if (count < (closed ? 3U : 2U))
+            return;
+        if (closed) {
+            if (area * float_area(points, count) < 0)
+                reverse(points, count);
+            std::memcpy(points + count * sizeof(FloatPoint), points, sizeof(FloatPoint));
+        }
+        const std::size_t listed = count + (closed ? 1 : 0);
+        put_long_head(head, direction, listed, layer);
+        out.end_at(points + listed * sizeof(FloatPoint));
+    }
+
+    // The one loop that a large file spends its time in: kept plain, so that it becomes vector code.
+    void convert(std::span<const Point2> contour, char* out, std::uint64_t layer) const {
+        const double per_unit = per_unit_;
+        constexpr double largest = std::numeric_limits<float>::max();
+        std::size_t beyond = 0;
+        for (std::size_t i = 0; i < contour.size(); ++i) {
+            const double x = contour[i].x * per_unit;
+            const double y = contour[i].y * per_unit;
+            beyond += std::abs(x) <= largest && std::abs(y) <= largest ? 0 : 1;
+            // Adding zero turns a rounded -0 into +0.
+            const FloatPoint p{static_cast<float>(x) + 0.0F, static_cast<float>(y) + 0.0F};
+            std::memcpy(out + i * sizeof p, &p, sizeof p);
+        }
+        if (beyond != 0)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
+    }
+
+    static FloatPoint load(const char* points, std::size_t i) {
+        FloatPoint p;
+        std::memcpy(&p, points + i * sizeof p, sizeof p);
+        return p;
+    }
+
+    // Removes points that rounding made equal to the one before; returns how many stay.
+    static std::size_t without_repeats(char* points, std::size_t count, bool closed) {
+        const auto bits = [&](std::size_t i) {
+            std::uint64_t b = 0;
+            std::memcpy(&b, points + i * sizeof b, sizeof b);
+            return b;
+        };
+        std::size_t repeats = 0;
+        for (std::size_t i = 1; i < count; ++i)
+            repeats += bits(i) == bits(i - 1) ? 1 : 0;
+        std::size_t kept = count;
+        if (repeats != 0) {
+            kept = 1;
+            for (std::size_t i = 1; i < count; ++i) {
+                const std::uint64_t b = bits(i);
+                if (b != bits(kept - 1))
+                    std::memcpy(points + kept++ * sizeof b, &b, sizeof b);
+            }
+        }
+        while (closed && kept > 1 && bits(kept - 1) == bits(0))
+            --kept;
+        return kept;
+    }
+
+    static double float_area(const char* points, std::size_t count) {
+        const FloatPoint origin = load(points, 0);
+        const auto from_origin = [&](std::size_t i) {
+            const FloatPoint p = load(points, i);
+            return Point2{double{p.x} - double{origin.x}, double{p.y} - double{origin.y}};
+        };
+        double twice = 0;
+        Point2 a = from_origin(1);
+        for (std::size_t i = 2; i < count; ++i) {
+            const Point2 b = from_origin(i);
+            twice += a.x * b.y - a.y * b.x;
+            a = b;
+        }
+        return 0.5 * twice;
+    }
+
+    static void reverse(char* points, std::size_t count) {
+        for (std::size_t i = 0, j = count - 1; i < j; ++i, --j) {
+            const FloatPoint a = load(points, i);
+            const FloatPoint b = load(points, j);
+            std::memcpy(points + i * sizeof b, &b, sizeof b);
+            std::memcpy(points + j * sizeof a, &a, sizeof a);
+        }
+    }
+
+    double units_;
+    double per_unit_;
+};
+
+// 16-bit numbers are unsigned by the standard and signed in some readers and writers: only those that mean
+// the same in both are written.
+constexpr std::int64_t most_short = 32767;
+
+// The next of 1, 2, 5, 10, 20, 50 ... that is not below `needed`.
+double round_units(double needed) {
+    double power = std::pow(10.0, std::floor(std::log10(needed)));
+    for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
+        // So that 0.002 is not taken to lie above 2 * 0.001.
+        if (factor * power >= needed * (1 - 1e-9))
+            return factor * power;
+    }
+    return needed;
+}
+
+class ShortWriter final : public SequentialWriter {
+  public:
+    ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
+        : SequentialWriter(path, info, checked_head(info, options.units_mm), {}), units_(options.units_mm),
+          grid_(options.units_mm), last_height_(whole_units(info.bottom, options.units_mm)) {}
+
+  private:
+    // What does not fit is better said before an hour of slicing than after it.
+    static std::string checked_head(const LayerFileInfo& info, double units) {
+        const auto check = [&](const char* axis, double mm) {
+            check_short("the part", axis, whole_units(mm, units), units);
+        };
+        check("x", info.box.min.x);
+        check("x", info.box.max.x);
+        check("y", info.box.min.y);
+        check("y", info.box.max.y);
+        check("z", info.bottom);
+        check("z", info.box.max.z);
+        return header("BINARY", info, units) + layer_start(whole_units(info.bottom, units));
+    }
+
+    static void check_short(const std::string& what, const char* axis, std::int64_t value, double units) {
+        if (value >= 0 && value <= most_short)
+            return;
+        const double mm = static_cast<double>(value) * units;
+        if (value < 0)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{} reaches {} = {:.6g} mm, but the short form has no negative numbers; move "
+                            "the part to positive coordinates or use the long form",
+                            what, axis, mm));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{} reaches {} = {:.6g} mm, which is {} units of {} mm, but the short form ends at "
+                        "{}; use units of {:g} mm or the long form",
+                        what, axis, mm, value, units, most_short, round_units(mm / most_short)));
+    }
+
+    static std::int64_t whole_units(double mm, double units) {
+        const double value = std::nearbyint(mm / units);
+        constexpr double most = 1e15;
+        return static_cast<std::int64_t>(std::clamp(value, -most, most));
+    }
+
+    static std::string layer_start(std::int64_t height) {
+        std::array<char, 4> bytes{};
+        put(put(bytes.data(), Command::layer_short), static_cast<std::uint16_t>(height));
+        return {bytes.data(), bytes.size()};
+    }
+
+    std::string layer_head(const Place& place) override {
+        const std::int64_t height = whole_units(place.top, units_);
+        check_short(fmt::format("layer {}", place.index), "z", height, units_);
+        if (height <= last_height_)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("layer {} is thinner than half a unit of {} mm; use smaller units or the long "
+                            "form",
+                            place.index, units_));
+        last_height_ = height;
+        return layer_start(height);
+    }
+
+    void format(const Layer& layer, ByteBuffer& out) const override {
+        std::vector<GridPoint> scratch;
+        for_each_contour(layer, [&](std::span<const Point2> contour, Direction direction, double area) {
+            const bool closed = direction != open_line;
+            const auto points = grid_.snap(contour, closed, area, layer.index, scratch);
+            if (!points.empty())
+                put_polyline(points, direction, layer.index, out);
+        });
+    }
+
+    void put_polyline(std::span<const GridPoint> points, Direction direction, std::uint64_t layer,
+                      ByteBuffer& out) const {
+        for (const GridPoint& p : points) {
+            if (((p.x | p.y) & ~most_short) != 0) {
+                const std::string what = fmt::format("layer {}", layer);
+                check_short(what, "x", p.x, units_);
+                check_short(what, "y", p.y, units_);
+            }
+        }
+        const std::size_t listed = points.size() + (direction != open_line ? 1 : 0);
+        char* at = out.room(long_head + listed * sizeof(FloatPoint));
+        // A contour of more points than 16 bits count is written as a long one; a file may hold both.
+        const bool counted = listed <= std::numeric_limits<std::uint16_t>::max();
+        if (counted) {
+            at = put(at, Command::polyline_short);
+            at = put(at, std::uint16_t{part_id});
+            at = put(at, std::uint16_t{direction});
+            at = put(at, static_cast<std::uint16_t>(listed));
+        } else {
+            at = put_long_head(at, direction, listed, layer);
+        }
+        for (std::size_t i = 0; i < listed; ++i) {
+            const GridPoint& p = points[i < points.size() ? i : 0];
+            if (counted)
+                at = put(put(at, static_cast<std::uint16_t>(p.x)), static_cast<std::uint16_t>(p.y));
+            else
+                at = put(put(at, static_cast<float>(p.x)), static_cast<float>(p.y));
+        }
+        out.end_at(at);
+    }
+
+    double units_;
+    Grid grid_;
+    std::int64_t last_height_;
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_common_layer_ascii(const std::string& path, const LayerFileInfo& info,
+                                                     const LayerWriteOptions& options) {
+    check_units(options.units_mm);
+    return std::make_unique<AsciiWriter>(path, info, options);
+}
+
+std::unique_ptr<LayerWriter> open_common_layer_binary(const std::string& path, const LayerFileInfo& info,
+                                                      const LayerWriteOptions& options) {
+    check_units(options.units_mm);
+    if (options.short_form)
+        return std::make_unique<ShortWriter>(path, info, options);
+    return std::make_unique<LongWriter>(path, info, options);
+}
+
+} // namespace lamella

@@ -1,0 +1,74 @@
+#include "write/grid.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+namespace lamella {
+
+namespace {
+
+// Added to a number of at most 2^51, this leaves its nearest whole number in the low bits of the sum:
+// rounding by two instructions that every processor has for vectors.
+constexpr double round_to_whole = 6755399441055744.0; // 1.5 * 2^52
+constexpr double largest = 2251799813685248.0;        // 2^51
+
+} // namespace
+
+double grid_area(std::span<const GridPoint> ring) noexcept {
+    if (ring.size() < 3)
+        return 0;
+    const GridPoint origin = ring.front();
+    double twice = 0;
+    auto ax = static_cast<double>(ring[1].x - origin.x);
+    auto ay = static_cast<double>(ring[1].y - origin.y);
+    for (const GridPoint& p : ring.subspan(2)) {
+        const auto bx = static_cast<double>(p.x - origin.x);
+        const auto by = static_cast<double>(p.y - origin.y);
+        twice += ax * by - ay * bx;
+        ax = bx;
+        ay = by;
+    }
+    return 0.5 * twice;
+}
+
+Grid::Grid(double step_mm) : step_(step_mm), per_step_(1 / step_mm) {}
+
+std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool closed, double area,
+                                      std::uint64_t layer, std::vector<GridPoint>& scratch) const {
+    if (scratch.size() < contour.size())
+        scratch.resize(contour.size());
+    GridPoint* const points = scratch.data();
+    std::size_t beyond = 0;
+    const auto whole = [](double v) {
+        return std::bit_cast<std::int64_t>(v + round_to_whole) - std::bit_cast<std::int64_t>(round_to_whole);
+    };
+    for (std::size_t i = 0; i < contour.size(); ++i) {
+        const double x = contour[i].x * per_step_;
+        const double y = contour[i].y * per_step_;
+        beyond += std::abs(x) <= largest && std::abs(y) <= largest ? 0 : 1;
+        points[i] = {whole(x), whole(y)};
+    }
+    if (beyond != 0)
+        throw Error(ErrorKind::usage,
+                    fmt::format("layer {} has coordinates beyond 2^51 steps of {} mm; use larger units",
+                                layer, step_));
+
+    GridPoint* end = std::unique(points, points + contour.size());
+    while (closed && end - points > 1 && end[-1] == points[0])
+        --end;
+    if (end - points < (closed ? 3 : 2))
+        return {};
+    const std::span<GridPoint> kept(points, end);
+    if (closed && area * grid_area(kept) < 0)
+        std::reverse(kept.begin(), kept.end());
+    return kept;
+}
+
+} // namespace lamella

@@ -1,0 +1,44 @@
+#pragma once
+
+// Contours on a grid of whole numbers, as text and 16-bit formats store them.
+
+#include "lamella/core/point.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+struct GridPoint {
+    std::int64_t x = 0;
+    std::int64_t y = 0;
+
+    friend bool operator==(const GridPoint&, const GridPoint&) = default;
+};
+
+/// Signed area of a ring in square steps.
+[[nodiscard]] double grid_area(std::span<const GridPoint> ring) noexcept;
+
+class Grid {
+  public:
+    /// Points at whole multiples of `step_mm`.
+    explicit Grid(double step_mm);
+
+    /// The nearest point for each of a contour, half-way cases to the even one. Points that fall together
+    /// with the one before are dropped; what is left of a ring of fewer than three, or of a chain of fewer
+    /// than two points, is nothing. `area` is the ring's before rounding: a ring so thin that rounding turned
+    /// it over is listed the other way round, so that outer rings stay outer rings. The result lives in
+    /// `scratch`.
+    ///
+    /// Throws Error{usage}, naming the layer, for coordinates beyond 2^51 steps.
+    std::span<const GridPoint> snap(std::span<const Point2> contour, bool closed, double area,
+                                    std::uint64_t layer, std::vector<GridPoint>& scratch) const;
+
+  private:
+    double step_;
+    double per_step_;
+};
+
+} // namespace lamella

@@ -1,0 +1,101 @@
+#include "lamella/write/layer_writer.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "write/common_layer.hpp"
+#include "write/layered_svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::array formats{
+    LayerFormat{"cli", ".cli",
+                "Common Layer Interface, binary; single precision, or 16 bits in the short form"},
+    LayerFormat{"cli-ascii", "", "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm"},
+    LayerFormat{"svg", ".svg", "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm"},
+    LayerFormat{"svg-layers", "", "a folder with one SVG picture per layer; coordinates to 0.001 mm", true},
+};
+
+std::string names() {
+    std::string text;
+    for (const LayerFormat& format : formats) {
+        text += text.empty() ? "" : ", ";
+        text += format.name;
+        if (!format.extension.empty())
+            text += fmt::format(" ({})", format.extension);
+    }
+    return text;
+}
+
+std::string lower_case(std::string text) {
+    for (char& c : text)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+}
+
+void check_info(const LayerFileInfo& info) {
+    const Box3& box = info.box;
+    const std::array values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z, info.bottom};
+    const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    if (box.empty() || !finite)
+        throw Error(ErrorKind::usage,
+                    "a slice file needs the box of its part, and that is empty or not finite");
+}
+
+} // namespace
+
+std::span<const LayerFormat> layer_formats() noexcept {
+    return formats;
+}
+
+const LayerFormat& layer_format(std::string_view name, const std::string& path) {
+    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+    for (const LayerFormat& format : formats) {
+        if (name.empty() ? !extension.empty() && format.extension == extension : format.name == name)
+            return format;
+    }
+    if (!name.empty())
+        throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
+    if (path == "-")
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("standard output has no extension to tell the format; name one of {}", names()));
+    throw Error(ErrorKind::usage,
+                fmt::format("the extension of '{}' tells no format; name one of {}", path, names()));
+}
+
+std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const LayerFormat& format,
+                                               const LayerFileInfo& info, const LayerWriteOptions& options) {
+    check_info(info);
+    if (format.directory && path == "-")
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} writes a folder and standard output is none; give a path", format.name));
+    if (format.name == "cli")
+        return open_common_layer_binary(path, info, options);
+    if (format.name == "cli-ascii")
+        return open_common_layer_ascii(path, info, options);
+    if (format.name == "svg")
+        return open_layered_svg(path, info, options);
+    if (format.name == "svg-layers")
+        return open_svg_layers(path, info);
+    throw Error(ErrorKind::usage,
+                fmt::format("there is no format '{}'; choose from {}", format.name, names()));
+}
+
+void write_layers(const std::string& path, const LayerFormat& format, std::span<const Layer> layers,
+                  const LayerFileInfo& info, const LayerWriteOptions& options) {
+    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
+    for (const Layer& layer : layers)
+        writer->prepare(layer)();
+    writer->finish();
+}
+
+} // namespace lamella

@@ -1,0 +1,236 @@
+#include "write/layered_svg.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/atomic_directory.hpp"
+#include "container/atomic_file.hpp"
+#include "write/decimal.hpp"
+#include "write/grid.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double step_mm = 0.001;
+// Sign, digits, point and three decimals, a separator.
+constexpr std::size_t per_number = most_integer_digits + 6;
+
+// The grid point at or below a coordinate; relative coordinates are then on the same grid as absolute ones.
+std::int64_t steps_below(double mm) {
+    constexpr double most = 1e15;
+    return static_cast<std::int64_t>(std::clamp(std::floor(mm / step_mm + 1e-6), -most, most));
+}
+
+GridPoint steps_below(const Point3& p) {
+    return {steps_below(p.x), steps_below(p.y)};
+}
+
+// "1,2 3.5,4 " with a blank after each point but the last; less `origin`.
+void put_points(std::span<const GridPoint> points, const GridPoint& origin, ByteBuffer& out) {
+    char* at = out.room(points.size() * 2 * per_number);
+    for (const GridPoint& p : points) {
+        at = put_thousandths(at, p.x - origin.x);
+        *at++ = ',';
+        at = put_thousandths(at, p.y - origin.y);
+        *at++ = ' ';
+    }
+    out.end_at(at - 1);
+}
+
+// Heights need more than the four decimals that Slic3r gives them when layers are thin.
+std::string height_text(double mm) {
+    return decimal_text(mm, 9, 4);
+}
+
+class LayeredSvgWriter final : public SequentialWriter {
+  public:
+    LayeredSvgWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
+        : SequentialWriter(path, info, head(info), "</svg>\n"), origin_(steps_below(info.box.min)),
+          legacy_z_(options.slic3r_legacy_z) {}
+
+  private:
+    // Width and height are plain millimetres without a viewBox: importers know Slic3r's files by that.
+    static std::string head(const LayerFileInfo& info) {
+        const Box3& box = info.box;
+        const auto mm = [](std::int64_t steps) {
+            return decimal_text(static_cast<double>(steps) * step_mm, 3, 0);
+        };
+        const GridPoint origin = steps_below(box.min);
+        return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>\n"
+                           "<svg width=\"{}\" height=\"{}\" xmlns=\"http://www.w3.org/2000/svg\" "
+                           "xmlns:svg=\"http://www.w3.org/2000/svg\" "
+                           "xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
+                           "xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\" "
+                           "data-lamella-origin=\"{} {}\">\n",
+                           decimal_text(box.max.x - box.min.x, 6, 0),
+                           decimal_text(box.max.y - box.min.y, 6, 0), mm(origin.x), mm(origin.y));
+    }
+
+    std::string layer_head(const Place& place) override {
+        if (legacy_z_) // the cut, in Slic3r's scaled units taken for unscaled ones
+            return fmt::format("  <g id=\"layer{}\" slic3r:z=\"{}\">\n", place.position, place.z * 1e-6);
+        return fmt::format(
+            "  <g id=\"layer{}\" slic3r:z=\"{}\" slic3r:slice-z=\"{}\" slic3r:layer-height=\"{}\">\n",
+            place.position, height_text(place.top), height_text(place.z),
+            height_text(place.top - place.bottom));
+    }
+
+    void format(const Layer& layer, ByteBuffer& out) const override {
+        // Painted one after the other, each ring must come after those around it, which are larger.
+        std::vector<MeasuredRing> rings = measured_rings(layer);
+        std::stable_sort(rings.begin(), rings.end(), [](const MeasuredRing& a, const MeasuredRing& b) {
+            return std::abs(a.area) > std::abs(b.area);
+        });
+        std::vector<GridPoint> scratch;
+        for (const MeasuredRing& ring : rings) {
+            const auto points =
+                grid_.snap(layer.contour(ring.contour), true, ring.area, layer.index, scratch);
+            if (points.empty())
+                continue;
+            const bool hole = ring.area < 0;
+            out.append(hole ? R"(    <polygon slic3r:type="hole" points=")"
+                            : R"(    <polygon slic3r:type="contour" points=")");
+            put_points(points, origin_, out);
+            out.append(hole ? R"(" style="fill: black" />)"
+                              "\n"
+                            : R"(" style="fill: white" />)"
+                              "\n");
+        }
+        // Kept, but not painted: a projector would cure them.
+        for (std::size_t i = layer.rings; i < layer.contours(); ++i) {
+            const auto points = grid_.snap(layer.contour(i), false, 0, layer.index, scratch);
+            if (points.empty())
+                continue;
+            out.append(R"(    <polyline slic3r:type="open" points=")");
+            put_points(points, origin_, out);
+            out.append("\" style=\"fill: none\" />\n");
+        }
+        out.append("  </g>\n");
+    }
+
+    GridPoint origin_;
+    bool legacy_z_;
+    Grid grid_{step_mm};
+};
+
+// How each picture begins, and how a folder of pictures is known again that may be replaced.
+constexpr std::string_view picture_mark =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- A layer cut by Lamella -->\n";
+
+bool is_our_picture(const fs::path& path) {
+    const std::string name = path.filename().string();
+    constexpr std::string_view prefix = "layer_";
+    constexpr std::string_view suffix = ".svg";
+    if (!name.starts_with(prefix) || !name.ends_with(suffix) ||
+        !fs::is_regular_file(fs::symlink_status(path)))
+        return false;
+    std::string begin(picture_mark.size(), '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    return file && begin == picture_mark;
+}
+
+class SvgLayersWriter final : public LayerWriter {
+  public:
+    SvgLayersWriter(const std::string& path, const LayerFileInfo& info)
+        : directory_(path, is_our_picture), order_(info.layers), head_(head(info)) {}
+
+    // Each layer has a file of its own, so it is written here and not in order.
+    std::function<void()> prepare(const Layer& layer) override {
+        const std::shared_ptr<ByteBuffer> buffer = buffers_->take();
+        format(layer, *buffer);
+        const fs::path path = directory_.working_path() / fmt::format("layer_{:05}.svg", layer.index);
+        if (fs::exists(path))
+            throw Error(ErrorKind::usage, fmt::format("two layers have the index {}", layer.index));
+        AtomicFile file(path.string());
+        file.append(buffer->view());
+        file.commit();
+        return [this, z = layer.z, size = buffer->view().size()] {
+            order_.next(z);
+            bytes_.fetch_add(size, std::memory_order_relaxed);
+        };
+    }
+
+    void finish() override {
+        order_.end();
+        directory_.commit();
+    }
+
+    std::uint64_t bytes() const noexcept override { return bytes_.load(std::memory_order_relaxed); }
+
+  private:
+    // Millimetres, with y upwards and a margin around the part, so that all pictures have the same frame.
+    static std::string head(const LayerFileInfo& info) {
+        const Box3& box = info.box;
+        const double margin = 0.03 * std::max(box.max.x - box.min.x, box.max.y - box.min.y) + 0.1;
+        const double width = box.max.x - box.min.x + 2 * margin;
+        const double height = box.max.y - box.min.y + 2 * margin;
+        const auto mm = [](double v) {
+            return decimal_text(v, 3, 0);
+        };
+        return fmt::format("{0}<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{1}mm\" height=\"{2}mm\" "
+                           "viewBox=\"{3} {4} {1} {2}\">\n"
+                           "<rect x=\"{3}\" y=\"{4}\" width=\"{1}\" height=\"{2}\" fill=\"#fdfdfb\"/>\n",
+                           picture_mark, mm(width), mm(height), mm(box.min.x - margin),
+                           mm(-box.max.y - margin));
+    }
+
+    void format(const Layer& layer, ByteBuffer& out) const {
+        out.append(head_);
+        out.append(fmt::format("<title>Layer {}, z = {} mm</title>\n", layer.index, height_text(layer.z)));
+        out.append("<g transform=\"scale(1,-1)\" stroke-width=\"1\" stroke-linejoin=\"round\">\n");
+        std::vector<GridPoint> scratch;
+        const auto put_path = [&](std::size_t begin, std::size_t end, std::string_view style) {
+            bool empty = true;
+            for (std::size_t i = begin; i < end; ++i) {
+                const bool closed = layer.closed(i);
+                const auto points = grid_.snap(layer.contour(i), closed, 0, layer.index, scratch);
+                if (points.empty())
+                    continue;
+                if (empty)
+                    out.append(fmt::format("<path {} vector-effect=\"non-scaling-stroke\" d=\"", style));
+                empty = false;
+                out.append("M");
+                put_points(points, {}, out);
+                out.append(closed ? "Z\n" : "\n");
+            }
+            if (!empty)
+                out.append("\"/>\n");
+        };
+        put_path(0, layer.rings, R"(fill="#8fb3cc" fill-rule="evenodd" stroke="#1d4e6b")");
+        put_path(layer.rings, layer.contours(), R"(fill="none" stroke="#d62728")");
+        out.append("</g>\n</svg>\n");
+    }
+
+    AtomicDirectory directory_;
+    LayerOrder order_;
+    std::string head_;
+    Grid grid_{step_mm};
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+    std::atomic<std::uint64_t> bytes_{0};
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_layered_svg(const std::string& path, const LayerFileInfo& info,
+                                              const LayerWriteOptions& options) {
+    return std::make_unique<LayeredSvgWriter>(path, info, options);
+}
+
+std::unique_ptr<LayerWriter> open_svg_layers(const std::string& path, const LayerFileInfo& info) {
+    return std::make_unique<SvgLayersWriter>(path, info);
+}
+
+} // namespace lamella

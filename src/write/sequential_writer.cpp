@@ -1,0 +1,53 @@
+#include "write/sequential_writer.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+namespace lamella {
+
+void LayerOrder::next(double z) {
+    if (count_ > 0 && !(z > last_z_))
+        throw Error(ErrorKind::usage,
+                    fmt::format("layers must be written in ascending z: z = {} follows z = {}", z, last_z_));
+    last_z_ = z;
+    ++count_;
+}
+
+void LayerOrder::end() const {
+    if (count_ != announced_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} layers were announced and {} were written", announced_, count_));
+}
+
+std::vector<MeasuredRing> measured_rings(const Layer& layer) {
+    std::vector<MeasuredRing> rings(layer.rings);
+    for (std::size_t i = 0; i < rings.size(); ++i)
+        rings[i] = {i, ring_area(layer.contour(i))};
+    return rings;
+}
+
+SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
+                                   std::string_view tail)
+    : file_(path), order_(info.layers), tail_(tail) {
+    file_.append(head);
+}
+
+std::function<void()> SequentialWriter::prepare(const Layer& layer) {
+    const std::shared_ptr<ByteBuffer> buffer = buffers_->take();
+    format(layer, *buffer);
+    return [this, buffer, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
+        order_.next(z);
+        file_.append(layer_head({order_.count() - 1, index, z, bottom, top}));
+        file_.append(buffer->view());
+    };
+}
+
+void SequentialWriter::finish() {
+    order_.end();
+    file_.append(tail_);
+    file_.commit();
+}
+
+} // namespace lamella

@@ -1,0 +1,79 @@
+#pragma once
+
+// What all formats have in common whose layers follow one another in one file.
+
+#include "lamella/write/layer_writer.hpp"
+
+#include "container/atomic_file.hpp"
+#include "write/byte_buffer.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// The order of layers, checked as they are written: ascending z, and as many as were announced.
+class LayerOrder {
+  public:
+    explicit LayerOrder(std::uint64_t announced) : announced_(announced) {}
+
+    /// Throws Error{usage} when this layer does not lie above the one before.
+    void next(double z);
+    /// Throws Error{usage} when there were more or fewer layers than announced.
+    void end() const;
+    /// Layers so far.
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+
+  private:
+    std::uint64_t announced_;
+    std::uint64_t count_ = 0;
+    double last_z_ = 0;
+};
+
+/// Rings by how they are listed in a file, with their signed areas: computed once, used for order, direction
+/// and rounding.
+struct MeasuredRing {
+    std::size_t contour;
+    double area;
+};
+
+/// All rings of a layer in its order.
+[[nodiscard]] std::vector<MeasuredRing> measured_rings(const Layer& layer);
+
+class SequentialWriter : public LayerWriter {
+  public:
+    [[nodiscard]] std::function<void()> prepare(const Layer& layer) final;
+    void finish() final;
+    [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_.bytes(); }
+
+  protected:
+    /// Where a layer lies; known when it is written.
+    struct Place {
+        std::uint64_t position; ///< 0 for the first of the file
+        std::uint64_t index;
+        double z;
+        double bottom;
+        double top;
+    };
+
+    /// Creates the file and writes `head`. `tail` will end it.
+    SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
+                     std::string_view tail);
+
+    /// What stands before the contours of a layer. Called in order.
+    [[nodiscard]] virtual std::string layer_head(const Place& place) = 0;
+    /// Appends the contours of a layer and what stands after them. Called from any threads.
+    virtual void format(const Layer& layer, ByteBuffer& out) const = 0;
+
+  private:
+    AtomicFile file_;
+    LayerOrder order_;
+    std::string tail_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+};
+
+} // namespace lamella

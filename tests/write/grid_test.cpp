@@ -1,0 +1,84 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+
+#include "write/grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+std::vector<GridPoint> snapped(double step, const std::vector<Point2>& contour, bool closed = true) {
+    std::vector<GridPoint> scratch;
+    const auto points = Grid(step).snap(contour, closed, closed ? ring_area(contour) : 0, 0, scratch);
+    return {points.begin(), points.end()};
+}
+
+TEST(Grid, RoundsToTheNearestPointAndHalvesToEven) {
+    const std::vector<Point2> chain{{0.4, -0.4}, {0.5, -0.5}, {1.5, -1.5}, {2.6, -2.6}, {1e9 + 0.4, -1e9}};
+    const std::vector<GridPoint> expected{{0, 0}, {2, -2}, {3, -3}, {1'000'000'000, -1'000'000'000}};
+    EXPECT_EQ(snapped(1, chain, false), expected);
+}
+
+TEST(Grid, AgreesWithTheRoundingOfTheStandardLibrary) {
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 20'000; ++i) {
+        const double x =
+            std::ldexp(static_cast<double>(random() >> 11U), static_cast<int>(random() % 62) - 64);
+        const double y =
+            -std::ldexp(static_cast<double>(random() >> 11U), static_cast<int>(random() % 62) - 64);
+        const auto points = snapped(1, {{x, y}, {x + 5, y}}, false);
+        ASSERT_EQ(points.front().x, static_cast<std::int64_t>(std::nearbyint(x))) << x;
+        ASSERT_EQ(points.front().y, static_cast<std::int64_t>(std::nearbyint(y))) << y;
+    }
+}
+
+TEST(Grid, DropsPointsThatFallTogetherAlsoAcrossTheEnd) {
+    const std::vector<Point2> ring{{0, 0}, {4, 0}, {4.1, 0.1}, {4, 4}, {0.2, 0.3}, {0.1, -0.1}};
+    EXPECT_EQ(snapped(1, ring), (std::vector<GridPoint>{{0, 0}, {4, 0}, {4, 4}}));
+    const std::vector<Point2> chain{{0, 0}, {0.1, 0}, {4, 0}, {0, 0}};
+    EXPECT_EQ(snapped(1, chain, false), (std::vector<GridPoint>{{0, 0}, {4, 0}, {0, 0}}));
+}
+
+TEST(Grid, ForgetsContoursThatShrinkToAPointOrALine) {
+    EXPECT_TRUE(snapped(1, {{0, 0}, {0.3, 0}, {0, 0.3}}).empty());
+    EXPECT_TRUE(snapped(1, {{0, 0}, {5, 0}, {5, 0.3}}).empty());
+    EXPECT_TRUE(snapped(1, {{0, 0}, {0.3, 0}}, false).empty());
+    EXPECT_TRUE(snapped(1, {}).empty());
+}
+
+TEST(Grid, KeepsTheDirectionOfARingThatRoundingTurnsOver) {
+    // A counter-clockwise sliver whose corners round to a clockwise triangle.
+    const std::vector<Point2> sliver{{0, 0.4}, {10, 0.6}, {20, 0.6}};
+    const std::vector<Point2> flipped{{0, 0}, {10, 1}, {20, 1}};
+    ASSERT_GT(ring_area(sliver) * -1, 0); // it is clockwise as given
+    std::vector<Point2> turned(sliver.rbegin(), sliver.rend());
+    ASSERT_GT(ring_area(turned), 0);
+    EXPECT_GT(grid_area(snapped(1, turned)), 0);
+    EXPECT_LT(grid_area(snapped(1, sliver)), 0);
+
+    const std::vector<Point2> bent{{0, 0.45}, {10, 0.55}, {20, 0.70}};
+    ASSERT_GT(ring_area(bent), 0);
+    ASSERT_LT(grid_area(std::vector<GridPoint>{{0, 0}, {10, 1}, {20, 1}}), 0); // what rounding alone makes
+    EXPECT_GT(grid_area(snapped(1, bent)), 0);
+}
+
+TEST(Grid, RefusesWhatItCannotHold) {
+    EXPECT_THROW((void)snapped(0.001, {{0, 0}, {1e13, 0}, {0, 1}}), Error);
+    EXPECT_THROW((void)snapped(0.001, {{0, 0}, {0, -1e13}, {0, 1}}), Error);
+    EXPECT_THROW((void)snapped(1, {{0, 0}, {std::nan(""), 0}, {0, 1}}), Error);
+    EXPECT_EQ(snapped(1, {{0, 0}, {0x1p51, 0}, {0, -0x1p51}})[1].x, std::int64_t{1} << 51);
+}
+
+TEST(GridArea, IsExactForWholeNumbers) {
+    EXPECT_EQ(grid_area(std::vector<GridPoint>{{0, 0}, {10, 0}, {10, 10}, {0, 10}}), 100);
+    EXPECT_EQ(grid_area(std::vector<GridPoint>{{0, 0}, {0, 10}, {10, 10}, {10, 0}}), -100);
+    EXPECT_EQ(grid_area(std::vector<GridPoint>{{0, 0}, {0, 10}}), 0);
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,152 @@
+#include "lamella/core/error.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include "sample_layers.hpp"
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+std::string error_of(ErrorKind kind, const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind) << error.what();
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        return error.what();
+    }
+    ADD_FAILURE() << "no error";
+    return {};
+}
+
+TEST(LayerFormat, IsChosenByNameOrElseByExtension) {
+    EXPECT_EQ(layer_format("", "out/part.cli").name, "cli");
+    EXPECT_EQ(layer_format("", "PART.CLI").name, "cli");
+    EXPECT_EQ(layer_format("", "a.svg").name, "svg");
+    EXPECT_EQ(layer_format("cli-ascii", "a.svg").name, "cli-ascii");
+    EXPECT_EQ(layer_format("svg-layers", "folder").name, "svg-layers");
+    for (const LayerFormat& format : layer_formats()) {
+        EXPECT_EQ(&layer_format(format.name, ""), &format);
+        EXPECT_FALSE(format.summary.empty());
+    }
+}
+
+TEST(LayerFormat, ListsWhatThereIsWhenItIsUnknown) {
+    const auto error = [](const char* name, const char* path) {
+        return error_of(ErrorKind::usage, [&] { (void)layer_format(name, path); });
+    };
+    for (const std::string& text : {error("gcode", "a.cli"), error("", "a.gcode"), error("", "folder/"),
+                                    error("", "-"), error("", "")}) {
+        for (const LayerFormat& format : layer_formats())
+            EXPECT_NE(text.find(format.name), std::string::npos) << text;
+    }
+    EXPECT_NE(error("", "a.gcode").find("a.gcode"), std::string::npos);
+}
+
+TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
+    const LayerStack layers = random_layers(1, 40, 30, {10, -5}, true);
+    for (const char* name : {"cli", "cli-ascii", "svg"}) {
+        const TemporaryFolder folder;
+        const LayerFormat& format = layer_format(name, "");
+        write_layers(folder.file("expected"), format, layers, info_of(layers));
+
+        const auto writer = open_layer_writer(folder.file("parallel"), format, info_of(layers));
+        std::vector<std::function<void()>> writes(layers.size());
+        std::vector<std::thread> threads;
+        for (std::size_t t = 0; t < 3; ++t) {
+            threads.emplace_back([&, t] {
+                for (std::size_t i = layers.size(); i-- > 0;) {
+                    if (i % 3 == t)
+                        writes[i] = writer->prepare(layers[i]);
+                }
+            });
+        }
+        for (std::thread& thread : threads)
+            thread.join();
+        for (const auto& write : writes)
+            write();
+        writer->finish();
+        EXPECT_TRUE(file_bytes(folder.file("parallel")) == file_bytes(folder.file("expected"))) << name;
+        EXPECT_EQ(writer->bytes(), file_bytes(folder.file("expected")).size());
+    }
+}
+
+TEST(LayerWriter, LeavesNothingWhenItIsNotFinished) {
+    const LayerStack layers = square_with_hole();
+    for (const LayerFormat& format : layer_formats()) {
+        const TemporaryFolder folder;
+        {
+            const auto writer = open_layer_writer(folder.file("out"), format, info_of(layers));
+            writer->prepare(layers[0])();
+            EXPECT_FALSE(std::filesystem::exists(folder.file("out")));
+        }
+        EXPECT_TRUE(folder.entries().empty()) << format.name;
+    }
+}
+
+TEST(LayerWriter, RefusesLayersOutOfOrderAndOfAnotherNumberThanAnnounced) {
+    LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    for (const LayerFormat& format : layer_formats()) {
+        const TemporaryFolder folder;
+        const auto write = [&] {
+            write_layers(folder.file("out"), format, layers, info);
+        };
+        std::swap(layers[0], layers[1]);
+        EXPECT_NE(error_of(ErrorKind::usage, write).find("ascending"), std::string::npos);
+        std::swap(layers[0], layers[1]);
+        info.layers = 3;
+        EXPECT_NE(error_of(ErrorKind::usage, write).find("3 layers were announced and 2"), std::string::npos);
+        info.layers = 2;
+        EXPECT_TRUE(folder.entries().empty()) << format.name;
+    }
+}
+
+TEST(LayerWriter, WritesStacksWithoutContoursAndWithoutLayers) {
+    LayerBuilder builder;
+    for (const LayerStack& layers : {LayerStack{}, LayerStack{builder.finish(0, 0.5, 0, 1)}}) {
+        for (const LayerFormat& format : layer_formats()) {
+            const TemporaryFolder folder;
+            write_layers(folder.file("out"), format, layers, info_of(layers));
+            EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
+        }
+    }
+}
+
+TEST(LayerWriter, ReportsAFullDiskAndAMissingFolder) {
+    const LayerStack layers = square_with_hole();
+    for (const LayerFormat& format : layer_formats()) {
+        if (!format.directory) {
+            const auto fill = [&] {
+                write_layers("/dev/full", format, layers, info_of(layers));
+            };
+            EXPECT_NE(error_of(ErrorKind::output, fill).find("disk is full"), std::string::npos);
+        }
+        const TemporaryFolder folder;
+        const auto lose = [&] {
+            write_layers(folder.file("no/out"), format, layers, info_of(layers));
+        };
+        EXPECT_NE(error_of(ErrorKind::output, lose).find("does not exist"), std::string::npos);
+    }
+}
+
+TEST(LayerWriter, RefusesAPartWithoutABox) {
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    info.box = {};
+    for (const LayerFormat& format : layer_formats()) {
+        const TemporaryFolder folder;
+        (void)error_of(ErrorKind::usage, [&] { write_layers(folder.file("out"), format, layers, info); });
+    }
+}
+
+} // namespace
+} // namespace lamella
