@@ -59,13 +59,13 @@ std::string Table::text() const {
         for (std::size_t c = 0; c < rows_[r].size(); ++c)
             text += c == 0 ? fmt::format("| {:<{}} |", rows_[r][c], width[c])
                            : fmt::format(" {:>{}} |", rows_[r][c], width[c]);
-        text += "\n";
-        if (r == 0) {
-            for (std::size_t c = 0; c < width.size(); ++c)
-                text += c == 0 ? "|" + std::string(width[c] + 2, '-') + "|"
-                               : std::string(width[c] + 1, '-') + ":|";
-            text += "\n";
-        }
+        text += '\n';
+        if (r != 0)
+            continue;
+        for (std::size_t c = 0; c < width.size(); ++c)
+            text += c == 0 ? fmt::format("|{:-<{}}|", "", width[c] + 2)
+                           : fmt::format("{:-<{}}:|", "", width[c] + 1);
+        text += '\n';
     }
     return text;
 }

@@ -36,12 +36,12 @@ struct Plan {
 /// Layers of one height, the first one possibly of another. Lengths in mm.
 struct UniformLayers {
     double layer_height = 0.1;
-    std::optional<double> first_layer_height; ///< default: layer_height
+    std::optional<double> first_layer_height = {}; ///< default: layer_height
     SliceAt slice_at = SliceAt::middle;
     /// Keep only the layers whose cut lies in [first, second]; absolute z.
-    std::optional<std::pair<double, double>> z_range;
+    std::optional<std::pair<double, double>> z_range = {};
     /// Keep only the layers with index in [first, second).
-    std::optional<std::pair<std::uint64_t, std::uint64_t>> index_range;
+    std::optional<std::pair<std::uint64_t, std::uint64_t>> index_range = {};
 };
 
 /// Layers of material stacked from z_min: layer i fills [z_min + i h, z_min + (i + 1) h] and exists when its

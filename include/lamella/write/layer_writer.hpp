@@ -16,7 +16,7 @@ namespace lamella {
 
 /// What the head of a slice file says, known before the first layer is.
 struct LayerFileInfo {
-    Box3 box;                 ///< of the part, mm; never empty
+    Box3 box = {};            ///< of the part, mm; never empty
     std::uint64_t layers = 0; ///< how many will follow
     double bottom = 0;        ///< of the first layer
     std::string label = "part";
