@@ -58,14 +58,17 @@ test-fuzz: packages-all
 
 test-shared: packages-all
 	cmake --preset shared
-	cmake --build build-shared --target lamella_app lamella_example_slice_part
+	cmake --build build-shared --target lamella_app_files lamella_example_slice_part
 	$(CTEST) --test-dir build-shared --label-regex '^house$$'
 
 bench: packages  ## build and run the benchmarks (bench/README.md)
 	@tools/install_packages.sh tools/packages-bench.txt
 	cmake --preset bench
 	cmake --build build-bench
-	bench/run.sh build-bench
+	build-bench/bench/limit
+	build-bench/bench/growth
+	build-bench/bench/files
+	build-bench/bench/kernels
 
 format:  ## lay out the sources by .clang-format
 	@tools/install_packages.sh tools/packages-lint.txt
@@ -81,6 +84,7 @@ lint: packages  ## static analysis by .clang-tidy
 	run-clang-tidy -quiet -j $(JOBS) -p build
 
 install: build  ## install to PREFIX (default /usr/local)
+	cmake --build build --target lamella_app_files
 	cmake --install build --prefix '$(PREFIX)'
 
 clean:  ## remove what was built

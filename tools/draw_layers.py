@@ -3,8 +3,8 @@
 
 usage: tools/draw_layers.py LAYERED.svg PICTURE.svg [HEIGHT]
 
-HEIGHT is where the stack is opened, as a part of the whole (default 0.9). The geometry is that of the file;
-only every few layers are drawn, and points closer than a fifth of a pixel to a straight line are left out.
+HEIGHT is where the stack is opened, as a part of the whole (default 0.93). The geometry is that of the file;
+only every few layers are drawn, and points less than a fifth of a pixel off a straight line are left out.
 """
 
 import math
@@ -20,16 +20,17 @@ PAPER, INK, LOW, HIGH, CUT = "#fbfaf7", "#2f3437", (0x8f, 0xa3, 0xad), (0xe9, 0x
 
 
 def read_layers(path):
-    """A list of layers, each a list of rings, each a list of (x, y)."""
-    layers = []
+    """Tops and layers: a list of z and a list of layers, each a list of rings, each a list of (x, y)."""
+    tops, layers = [], []
     for group in xml.parse(path).getroot().iter("{http://www.w3.org/2000/svg}g"):
         rings = []
         for shape in group.iter("{http://www.w3.org/2000/svg}polygon"):
             numbers = [float(number) for number in shape.get("points").replace(",", " ").split()]
             rings.append(list(zip(numbers[0::2], numbers[1::2])))
         if rings:
+            tops.append(float(group.get("{http://slic3r.org/namespaces/slic3r}z")))
             layers.append(rings)
-    return layers
+    return tops, layers
 
 
 def path_data(rings, project):
@@ -67,12 +68,12 @@ def shade(part):
     return "#" + "".join(f"{round(low + (high - low) * part):02x}" for low, high in zip(LOW, HIGH))
 
 
-def draw(layers, thickness, opened_at):
+def draw(tops, layers, opened_at):
     points = [point for rings in layers for ring in rings for point in ring]
     (x0, x1), (y0, y1) = ((min(c), max(c)) for c in zip(*points))
     cx, cy, radius = (x0 + x1) / 2, (y0 + y1) / 2, math.hypot(x1 - x0, y1 - y0) / 2
-    tall = thickness * len(layers)
-    opened = min(len(layers) - 1, round(opened_at * len(layers)))
+    tall = tops[-1] - tops[0]
+    opened = min(range(len(layers)), key=lambda i: abs(tops[i] - tops[0] - opened_at * tall))
 
     # The stack, seen from the side, fills the left half; the layer, seen from above, the right half.
     reach = max(x1 - x0, y1 - y0) / 2 * 1.1
@@ -103,7 +104,7 @@ def draw(layers, thickness, opened_at):
     for i in shown:
         lift = tall * GAP * ((i >= opened) + (i > opened))
         fill = CUT if i == opened else shade(i / len(layers))
-        out.append(f'<path fill="{fill}" d="{path_data(layers[i], in_stack(i * thickness + lift))}"/>')
+        out.append(f'<path fill="{fill}" d="{path_data(layers[i], in_stack(tops[i] - tops[0] + lift))}"/>')
     out.append(f'<path fill="{CUT}" stroke-width="1" d="{path_data(layers[opened], from_above)}"/>')
     out += ["</g>", "</svg>", ""]
     return "\n".join(out)
@@ -112,12 +113,10 @@ def draw(layers, thickness, opened_at):
 def main(arguments):
     if len(arguments) not in (3, 4):
         sys.exit(__doc__.strip())
-    layers = read_layers(arguments[1])
-    if not layers:
-        sys.exit(f"draw_layers: {arguments[1]} has no layer with a ring in it")
-    # Layers are drawn as thick as makes them about as tall as a chess piece; heights are not read from the file.
-    thickness = 0.1
-    picture = draw(layers, thickness, float(arguments[3]) if len(arguments) == 4 else 0.9)
+    tops, layers = read_layers(arguments[1])
+    if len(layers) < 2:
+        sys.exit(f"draw_layers: {arguments[1]} has fewer than two layers with a ring in them")
+    picture = draw(tops, layers, float(arguments[3]) if len(arguments) == 4 else 0.93)
     with open(arguments[2], "w", encoding="utf-8") as file:
         file.write(picture)
 
