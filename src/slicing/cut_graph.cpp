@@ -283,7 +283,7 @@ class Builder {
         for (std::uint64_t w = 0; w < workers_; ++w) {
             const std::uint64_t begin = graph_.count * w / workers_;
             const std::uint64_t end = graph_.count * (w + 1) / workers_;
-            parts.push_back(hashes_.span().subspan(begin, end - begin));
+            parts.emplace_back(hashes_.span().subspan(begin, end - begin));
         }
         join_equal_keys<std::uint64_t>(
             executor_, parts, [](std::uint64_t hash) { return hash; },

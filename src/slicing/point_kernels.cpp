@@ -151,6 +151,7 @@ template <int width>
 }
 
 // One set of kernels, compiled for one instruction set.
+// NOLINTBEGIN(bugprone-macro-parentheses): a name and an attribute cannot stand in parentheses.
 #define LAMELLA_POINT_KERNELS(name, target, width)                                                           \
     struct name {                                                                                            \
         target static Survey survey(EdgeColumns edges, double z, double* x, double* y) {                     \
@@ -166,6 +167,7 @@ template <int width>
         }                                                                                                    \
         static constexpr PointKernels kernels{survey, cut, find_not_above};                                  \
     }
+// NOLINTEND(bugprone-macro-parentheses)
 
 LAMELLA_POINT_KERNELS(Plain, , 2);
 #if defined(__x86_64__)

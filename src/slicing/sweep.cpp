@@ -446,11 +446,11 @@ class SlabSweep {
                     std::swap(walker_[w], walker_[--active]);
             }
         }
-        while (active == 1) {
-            while (step(walker_[0], plane)) {
-            }
-            if (!set_out(walker_[0], plane, candidates))
-                break;
+        if (active == 1) {
+            do {
+                while (step(walker_[0], plane)) {
+                }
+            } while (set_out(walker_[0], plane, candidates));
         }
     }
 

@@ -20,9 +20,9 @@ std::int64_t twice_area(const GridPoint& a, const GridPoint& b, const GridPoint&
 void expect_triangulation(const Chain& lower, const Chain& upper) {
     std::map<std::uint32_t, GridPoint> points;
     Chain ring = lower;
-    for (auto p = upper.rbegin(); p != upper.rend(); ++p)
-        if (!(*p == ring.back()) && !(*p == ring.front()))
-            ring.push_back(*p);
+    for (std::size_t i = upper.size(); i-- > 0;)
+        if (!(upper[i] == ring.back()) && !(upper[i] == ring.front()))
+            ring.push_back(upper[i]);
     for (const GridPoint& p : ring)
         points[p.id] = p;
     std::int64_t expected = 0;

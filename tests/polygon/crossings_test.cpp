@@ -48,7 +48,7 @@ std::vector<Key> by_all_pairs(const Layer& layer) {
             const Line& t = lines[j];
             if (sign(s.a, s.b, t.a) * sign(s.a, s.b, t.b) < 0 &&
                 sign(t.a, t.b, s.a) * sign(t.a, t.b, s.b) < 0)
-                result.push_back({s.contour, s.segment, t.contour, t.segment});
+                result.emplace_back(s.contour, s.segment, t.contour, t.segment);
         }
     return result;
 }
