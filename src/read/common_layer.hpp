@@ -1,0 +1,20 @@
+#pragma once
+
+// Reading the Common Layer Interface 2.0, ASCII and binary (docs/formats.md).
+
+#include "lamella/core/execution.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// Whether the bytes hold a Common Layer Interface header. Comments may come before it.
+[[nodiscard]] bool is_common_layer(std::string_view bytes);
+
+/// Throws Error{input} naming byte or line.
+[[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name,
+                                          const Execution& execution);
+
+} // namespace lamella

@@ -1,0 +1,320 @@
+#include "read/layered_svg.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "container/xml.hpp"
+#include "core/executor.hpp"
+#include "read/layer_assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::size_t longest_preface = 1U << 16;
+
+/// Numbers out of an attribute.
+class Numbers {
+  public:
+    Numbers(std::string_view text, const std::string& name, std::size_t line)
+        : text_(text), name_(name), line_(line) {}
+
+    [[nodiscard]] bool done() {
+        skip_separators();
+        return text_.empty();
+    }
+    /// A letter, when one is next: a command of path data.
+    [[nodiscard]] std::optional<char> letter() {
+        skip_separators();
+        const char c = text_.empty() ? '\0' : text_.front();
+        const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        if (!is_letter)
+            return std::nullopt;
+        text_.remove_prefix(1);
+        return c;
+    }
+    double next() {
+        skip_separators();
+        double value = 0;
+        const char* from = text_.data();
+        const char* const end = from + text_.size();
+        if (from != end && *from == '+')
+            ++from;
+        const auto [to, error] = std::from_chars(from, end, value);
+        if (error != std::errc() || !std::isfinite(value))
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, line {}: found '{}'; a coordinate must be a number", name_, line_,
+                                    printable(text_.substr(0, text_.find_first_of(" ,")), 40)));
+        text_.remove_prefix(static_cast<std::size_t>(to - text_.data()));
+        return value;
+    }
+
+  private:
+    void skip_separators() {
+        text_.remove_prefix(std::min(text_.find_first_not_of(" ,\t\r\n"), text_.size()));
+    }
+
+    std::string_view text_;
+    const std::string& name_;
+    std::size_t line_;
+};
+
+/// One <g> of the file.
+struct Group {
+    RawLayer contours; ///< z as the file has it
+    std::optional<double> slice_z;
+    std::optional<double> height;
+};
+
+class SvgReader {
+  public:
+    SvgReader(const std::string& name, LayerFile& file) : name_(name), file_(file) {}
+
+    void start(std::string_view element, const XmlAttributes& attributes, std::size_t line) {
+        if (depth_++ == 0) {
+            if (local(element) != "svg")
+                fail(line, fmt::format("found <{}>; the document must be <svg>", printable(element, 40)));
+            height_ = number(attributes, "height", line).value_or(0);
+            if (const std::string_view origin = attributes.find("data-lamella-origin");
+                origin.data() != nullptr) {
+                Numbers numbers(origin, name_, line);
+                origin_.x = numbers.next();
+                origin_.y = numbers.next();
+            }
+        } else if (depth_ == 2 && local(element) == "g") {
+            start_layer(attributes, line);
+        } else if (in_layer_) {
+            const std::string_view kind = local(element);
+            if (kind == "polygon" || kind == "polyline")
+                add_points(attributes, kind == "polygon", line);
+            else if (kind == "path")
+                add_path(attributes, line);
+            else if (kind != "g" && kind != "title" && kind != "desc")
+                other_.note([&] { return fmt::format("line {}", line); });
+        }
+    }
+
+    void end() {
+        if (--depth_ == 1)
+            in_layer_ = false;
+    }
+
+    void finish() {
+        if (groups_.empty())
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: found no layer; a layered SVG holds one <g> with slic3r:z for "
+                                    "each layer",
+                                    name_));
+        open_.say(file_.warnings);
+        other_.say(file_.warnings);
+        dropped_.say(file_.warnings);
+        set_heights();
+    }
+
+  private:
+    static std::string_view local(std::string_view element) {
+        const std::size_t colon = element.find(':');
+        return colon == std::string_view::npos ? element : element.substr(colon + 1);
+    }
+
+    [[noreturn]] void fail(std::size_t line, const std::string& text) const {
+        throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", name_, line, text));
+    }
+
+    std::optional<double> number(const XmlAttributes& attributes, std::string_view name,
+                                 std::size_t line) const {
+        const std::string_view text = attributes.find(name);
+        if (text.data() == nullptr)
+            return std::nullopt;
+        return Numbers(text, name_, line).next();
+    }
+
+    void start_layer(const XmlAttributes& attributes, std::size_t line) {
+        const auto z = number(attributes, "slic3r:z", line);
+        if (!z)
+            return; // a group of something else, such as a legend
+        in_layer_ = true;
+        Group group;
+        group.contours.z = *z;
+        group.contours.place = fmt::format("line {}", line);
+        group.slice_z = number(attributes, "slic3r:slice-z", line);
+        group.height = number(attributes, "slic3r:layer-height", line);
+        groups_.push_back(std::move(group));
+    }
+
+    void add_points(const XmlAttributes& attributes, bool closed, std::size_t line) {
+        RawLayer& layer = groups_.back().contours;
+        const std::size_t begin = layer.points.size();
+        Numbers numbers(attributes.find("points"), name_, line);
+        while (!numbers.done()) {
+            const double x = numbers.next();
+            layer.points.push_back({x + origin_.x, numbers.next() + origin_.y});
+        }
+        end_contour(begin, closed, line);
+        if (!closed)
+            open_.note([&] { return fmt::format("line {}", line); });
+    }
+
+    /// Straight outlines: M, L, H, V and Z in both cases. Slic3r turns y upside down in paths.
+    void add_path(const XmlAttributes& attributes, std::size_t line) {
+        if (const std::string_view type = attributes.find("slic3r:type");
+            type == "infill" || type == "perimeter")
+            return; // tool paths inside the outlines
+        RawLayer& layer = groups_.back().contours;
+        Numbers numbers(attributes.find("d"), name_, line);
+        std::size_t begin = layer.points.size();
+        Point2 at;
+        char command = 'M';
+        while (!numbers.done()) {
+            if (const auto letter = numbers.letter())
+                command = *letter;
+            if (command == 'z' || command == 'Z') {
+                end_contour(begin, true, line);
+                begin = layer.points.size();
+                command = 'M';
+                continue;
+            }
+            const bool relative = command >= 'a';
+            switch (command) {
+            case 'M':
+            case 'm':
+                if (layer.points.size() != begin)
+                    end_contour(begin, false, line);
+                begin = layer.points.size();
+                [[fallthrough]];
+            case 'L':
+            case 'l': {
+                const double x = numbers.next();
+                const double y = numbers.next();
+                at = relative ? Point2{at.x + x, at.y + y} : Point2{x, y};
+                break;
+            }
+            case 'H':
+            case 'h':
+                at.x = numbers.next() + (relative ? at.x : 0);
+                break;
+            case 'V':
+            case 'v':
+                at.y = numbers.next() + (relative ? at.y : 0);
+                break;
+            default:
+                fail(line,
+                     fmt::format("found path command '{}'; outlines of layers are straight (M, L, H, V, Z)",
+                                 command));
+            }
+            if (command == 'M' || command == 'm')
+                command = relative ? 'l' : 'L'; // further pairs are lines
+            layer.points.push_back({at.x + origin_.x, height_ - at.y + origin_.y});
+        }
+        if (layer.points.size() != begin)
+            end_contour(begin, false, line);
+    }
+
+    void end_contour(std::size_t begin, bool closed, std::size_t line) {
+        RawLayer& layer = groups_.back().contours;
+        const auto contour = layer.points.begin() + static_cast<std::ptrdiff_t>(begin);
+        auto end = std::unique(contour, layer.points.end());
+        while (closed && end - contour > 1 && *(end - 1) == *contour)
+            --end;
+        layer.points.erase(end, layer.points.end());
+        if (layer.points.size() - begin < (closed ? 3U : 2U)) {
+            if (layer.points.size() != begin)
+                dropped_.note([&] { return fmt::format("line {}", line); });
+            layer.points.resize(begin);
+            return;
+        }
+        layer.end_contour(closed);
+    }
+
+    /// Slic3r 1.x writes the cut in its scaled units, a millionth of the millimetres; later ones the top in
+    /// millimetres.
+    void set_heights() {
+        double highest = 0;
+        bool has_slice_z = false;
+        for (const Group& group : groups_) {
+            highest = std::max(highest, std::abs(group.contours.z));
+            has_slice_z = has_slice_z || group.slice_z.has_value();
+        }
+        const bool legacy = !has_slice_z && highest < 0.01;
+        for (Group& group : groups_)
+            group.contours.z *= legacy ? 1e6 : 1;
+        const auto below = [](const Group& a, const Group& b) {
+            return a.contours.z < b.contours.z;
+        };
+        if (!std::is_sorted(groups_.begin(), groups_.end(), below)) {
+            file_.warnings.emplace_back("layers do not ascend; they were sorted");
+            std::stable_sort(groups_.begin(), groups_.end(), below);
+        }
+        const std::size_t n = groups_.size();
+        const auto step_below = [&](std::size_t i) {
+            const auto z = [&](std::size_t k) {
+                return groups_[k].contours.z;
+            };
+            if (i > 0)
+                return z(i) - z(i - 1);
+            return n > 1 ? z(1) - z(0) : z(0);
+        };
+        std::vector<double> z(n);
+        std::vector<double> bottom(n);
+        std::vector<double> top(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Group& group = groups_[i];
+            const double thickness = group.height.value_or(step_below(i));
+            top[i] = legacy ? group.contours.z + thickness / 2 : group.contours.z;
+            bottom[i] = top[i] - thickness;
+            z[i] = legacy ? group.contours.z : group.slice_z.value_or(top[i] - thickness / 2);
+        }
+        file_.layers.reserve(n);
+        for (std::size_t i = 0; i < n; ++i)
+            file_.layers.push_back(make_layer(groups_[i].contours, i, z[i], bottom[i], top[i]));
+    }
+
+    const std::string& name_;
+    LayerFile& file_;
+    int depth_ = 0;
+    bool in_layer_ = false;
+    double height_ = 0;
+    Point2 origin_; ///< of the part, where our own files tell it; else coordinates are relative to its corner
+    std::vector<Group> groups_;
+    Oddity open_{"contours are open"};
+    Oddity other_{"elements are no outlines; they were passed over"};
+    Oddity dropped_{"contours had too few different points; they were dropped"};
+};
+
+} // namespace
+
+bool is_svg(std::string_view bytes) {
+    return bytes.substr(0, longest_preface).find("<svg") != std::string_view::npos ||
+           bytes.substr(0, longest_preface).find(":svg") != std::string_view::npos;
+}
+
+LayerFile read_layered_svg(std::string_view bytes, const std::string& name, const Execution& execution) {
+    LayerFile file;
+    file.path = name;
+    file.format = "svg";
+    file.units_mm = 1;
+    SvgReader reader(name, file);
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, bytes.size());
+    parse_xml(bytes, name,
+              {[&](std::string_view element, const XmlAttributes& attributes, std::size_t line) {
+                   reader.start(element, attributes, line);
+               },
+               [&](std::string_view) { reader.end(); },
+               [&](std::size_t read) {
+                   executor.check_cancelled();
+                   progress.add(read);
+               }});
+    reader.finish();
+    progress.finish();
+    return file;
+}
+
+} // namespace lamella

@@ -1,0 +1,267 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <random>
+
+namespace lamella {
+
+namespace {
+
+LayerFile read(const std::string& bytes) {
+    // Exactly as long as the bytes, so that a sanitizer sees one byte too far.
+    const auto copy = std::make_unique<std::byte[]>(bytes.size());
+    std::memcpy(copy.get(), bytes.data(), bytes.size());
+    return read_layers(std::span(copy.get(), bytes.size()), "test.cli");
+}
+
+std::string error_of(const std::string& bytes) {
+    try {
+        static_cast<void>(read(bytes));
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+        return error.what();
+    }
+    return "no error";
+}
+
+void expect_error(const std::string& bytes, const std::string& part) {
+    EXPECT_NE(error_of(bytes).find(part), std::string::npos) << error_of(bytes);
+}
+
+std::string ascii(const std::string& geometry, const std::string& head = "$$UNITS/0.01\n$$VERSION/200\n") {
+    return "$$HEADERSTART\n$$ASCII\n" + head + "$$HEADEREND\n$$GEOMETRYSTART\n" + geometry +
+           "$$GEOMETRYEND\n";
+}
+
+// A square of 10 mm with a hole of 2 mm, in units of 0.01 mm, from z = 0 to 0.5 mm.
+const std::string ring = "$$LAYER/0.0\n$$LAYER/50.0\n"
+                         "$$POLYLINE/1,1,5,0.0,0.0,1000.0,0.0,1000.0,1000.0,0.0,1000.0,0.0,0.0\n"
+                         "$$POLYLINE/1,0,5,200.0,200.0,200.0,400.0,400.0,400.0,400.0,200.0,200.0,200.0\n";
+
+template <class T>
+std::string bits(T value) {
+    std::string bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    return bytes;
+}
+
+template <class... T>
+std::string u16(T... values) {
+    return (bits(static_cast<std::uint16_t>(values)) + ...);
+}
+
+std::string binary(const std::string& geometry, const std::string& head = "$$UNITS/0.01\n") {
+    return "$$HEADERSTART\n$$BINARY\n" + head + "$$HEADEREND" + geometry;
+}
+
+std::string long_square(float to) {
+    std::string bytes = u16(130) + bits(1) + bits(1) + bits(5);
+    for (const float v : {0.0F, 0.0F, to, 0.0F, to, to, 0.0F, to, 0.0F, 0.0F})
+        bytes += bits(v);
+    return bytes;
+}
+
+const std::string long_ring = u16(127) + bits(0.0F) + u16(127) + bits(50.0F) + long_square(1000);
+const std::string short_ring = u16(128, 0, 128, 50, 129, 1, 1, 5, 0, 0, 1000, 0, 1000, 1000, 0, 1000, 0, 0);
+
+void expect_ring(const LayerFile& file, double area) {
+    ASSERT_EQ(file.layers.size(), 1U);
+    const Layer& layer = file.layers.front();
+    EXPECT_DOUBLE_EQ(measure(layer).area_mm2, area);
+    EXPECT_DOUBLE_EQ(layer.bottom, 0);
+    EXPECT_DOUBLE_EQ(layer.z, 0.25);
+    EXPECT_DOUBLE_EQ(layer.top, 0.5);
+    EXPECT_TRUE(in_normal_form(layer));
+}
+
+} // namespace
+
+TEST(ReadCommonLayer, AsciiTellsHeightsAndContours) {
+    const LayerFile file = read(ascii(ring));
+    expect_ring(file, 96);
+    EXPECT_EQ(file.format, "cli-ascii");
+    EXPECT_EQ(file.layers.front().rings, 2U);
+    EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
+}
+
+TEST(ReadCommonLayer, BinaryLongAndShortFormsAgree) {
+    const LayerFile by_long = read(binary(long_ring));
+    const LayerFile by_short = read(binary(short_ring));
+    expect_ring(by_long, 100);
+    expect_ring(by_short, 100);
+    EXPECT_EQ(by_long.format, "cli");
+    EXPECT_TRUE(same_contours(by_long.layers.front(), by_short.layers.front()));
+}
+
+TEST(ReadCommonLayer, IntegersLeadingZerosCommentsAndUnknownCommandsAreFine) {
+    const LayerFile file = read(
+        "// made by hand //\n$$HEADERSTART\r\n$$ASCII // text //\r\n$$UNITS/00000000.010000\r\n"
+        "$$DATE/20240702\r\n$$LABEL/1,\"a part\"\r\n$$LAYERS/000002\r\n$$HEADEREND\r\n$$GEOMETRYSTART\r\n"
+        "$$LAYER/0\r\n$$LAYER/50 // top //\r\n$$POWER/100.0\r\n$$POLYLINE/1,1,5,0,0,1000,0,\r\n"
+        "1000,1000,0,+1000,.0,0.\r\n$$GEOMETRYEND\r\nanything");
+    expect_ring(file, 100);
+    EXPECT_EQ(file.label, "a part");
+    EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
+}
+
+TEST(ReadCommonLayer, UserDataMayHoldCommands) {
+    expect_ring(read(ascii(ring, "$$USERDATA/me,12,$$HEADEREND\n\n$$UNITS/0.01\n")), 96);
+    expect_error(ascii(ring, "$$USERDATA/me,99999,x\n$$UNITS/0.01\n"), "user data of 99999 bytes");
+}
+
+TEST(ReadCommonLayer, StatedDirectionHoldsAgainstTheOrderOfPoints) {
+    const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,0,4,0,0,10,0,10,10,0,0\n"));
+    EXPECT_LT(measure(file.layers.front()).area_mm2, 0);
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_NE(file.warnings.front().find("turned round"), std::string::npos);
+}
+
+TEST(ReadCommonLayer, UnclosedRingsAreClosedAndSlightOnesDropped) {
+    const LayerFile file =
+        read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,1,3,0,0,10,0,10,10\n$$POLYLINE/1,1,3,0,0,1,1,0,0\n"));
+    EXPECT_EQ(file.layers.front().rings, 1U);
+    EXPECT_EQ(file.warnings.size(), 2U);
+}
+
+TEST(ReadCommonLayer, OpenLinesStayOpen) {
+    const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,2,3,0,0,10,0,10,10\n"));
+    EXPECT_EQ(file.layers.front().open_chains(), 1U);
+}
+
+TEST(ReadCommonLayer, WithoutAZeroLayerTheFirstLayerIsAsThickAsTheNext) {
+    const LayerFile file = read(ascii("$$LAYER/30\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"
+                                      "$$LAYER/50\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"));
+    ASSERT_EQ(file.layers.size(), 2U);
+    EXPECT_NEAR(file.layers[0].bottom, 0.1, 1e-12);
+    EXPECT_NEAR(file.layers[1].bottom, 0.3, 1e-12);
+}
+
+TEST(ReadCommonLayer, ContoursOnTheBottomMakeHeightsBottoms) {
+    const LayerFile file = read(ascii("$$LAYER/0\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"
+                                      "$$LAYER/20\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"));
+    ASSERT_EQ(file.layers.size(), 2U);
+    EXPECT_NEAR(file.layers[1].bottom, 0.2, 1e-12);
+    EXPECT_NEAR(file.layers[1].top, 0.4, 1e-12);
+    EXPECT_EQ(file.warnings.size(), 1U);
+}
+
+TEST(ReadCommonLayer, LayersOutOfOrderAreSortedAndEqualOnesJoined) {
+    const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
+    const LayerFile file = read(
+        ascii("$$LAYER/0\n$$LAYER/50\n" + triangle + "$$LAYER/20\n" + triangle + "$$LAYER/50\n" + triangle));
+    ASSERT_EQ(file.layers.size(), 2U);
+    EXPECT_EQ(file.layers[1].rings, 2U);
+    EXPECT_EQ(file.warnings.size(), 2U);
+}
+
+TEST(ReadCommonLayer, HatchesAreReadOver) {
+    const LayerFile text = read(ascii(ring + "$$HATCHES/1,2,0,0,1,1,2,2,3,3\n"));
+    expect_ring(text, 96);
+    EXPECT_EQ(text.warnings.size(), 1U);
+    const LayerFile bytes = read(binary(short_ring + u16(131, 1, 1, 1, 2, 3, 4) + u16(132) + bits(1) +
+                                        bits(1) + bits(1.0F) + bits(2.0F) + bits(3.0F) + bits(4.0F)));
+    expect_ring(bytes, 100);
+    EXPECT_EQ(bytes.warnings.size(), 1U);
+}
+
+TEST(ReadCommonLayer, ShortNumbersAreSignedWhereTheBoxIsNegative) {
+    const std::string geometry = u16(128, 0, 128, 50, 129, 1, 1, 5, 65036, 65036, 500, 65036, 500, 500, 65036,
+                                     500, 65036, 65036); // 65036 is -500
+    expect_ring(read(binary(geometry, "$$UNITS/0.01\n$$DIMENSION/-5,-5,0,5,5,0.5\n")), 100);
+}
+
+TEST(ReadCommonLayer, AlignedGeometryStartsOnAWordAndPadsShortNumbers) {
+    std::string head = "$$HEADERSTART\n$$BINARY\n$$UNITS/0.01\n$$ALIGN\n";
+    while ((head.size() + 12) % 4 != 0)
+        head += ' ';
+    head += "$$HEADEREND";
+    while (head.size() % 4 != 0)
+        head += '\n';
+    const std::string square = u16(0, 0, 1000, 0, 1000, 1000, 0, 1000, 0, 0);
+    expect_ring(read(head + u16(128, 0, 0, 0, 128, 0, 50, 0, 129, 0, 1, 0, 1, 0, 5, 0) + square), 100);
+}
+
+TEST(ReadCommonLayer, ALineEndBehindTheHeaderOrPaddingAtTheEndDoesNoHarm) {
+    expect_ring(read(binary("\n" + long_ring)), 100);
+    expect_ring(read(binary("\r\n" + long_ring + "\r\n")), 100);
+    expect_ring(read(binary(long_ring + std::string(3, '\0'))), 100);
+}
+
+TEST(ReadCommonLayer, HeadersThatSayTooLittleOrTooMuchAreRefused) {
+    expect_error("$$HEADERSTART\n$$ASCII\n$$UNITS/1\n", "$$HEADEREND");
+    expect_error(ascii(ring, ""), "no $$UNITS");
+    expect_error(ascii(ring, "$$UNITS/0\n"), "above 0");
+    expect_error(ascii(ring, "$$UNITS/-1\n"), "above 0");
+    expect_error(ascii(ring, "$$UNITS/nan\n"), "must be a number");
+    expect_error(ascii(ring, "$$UNITS/1\n$$BINARY\n"), "both");
+    expect_error("$$HEADERSTART\n$$UNITS/1\n$$HEADEREND", "neither");
+    expect_error(ascii("", "$$UNITS/1\n"), "no layer");
+    expect_error(ascii(ring, "$$UNITS/1 // unfinished\n"), "comment");
+}
+
+TEST(ReadCommonLayer, BrokenGeometryIsRefusedWithItsPlace) {
+    expect_error(ascii("$$POLYLINE/1,1,3,0,0,1,0,1,1\n"), "before the first $$LAYER");
+    expect_error(ascii("$$LAYER/1\n$$POLYLINE/1,3,3,0,0,1,0,1,1\n"), "line 8: found direction 3");
+    expect_error(ascii("$$LAYER/1\n$$POLYLINE/1,1,4,0,0,1,0,1,1\n"), "','");
+    expect_error(ascii("$$LAYER/1\n$$POLYLINE/1,1,2,0,0,1,0,1,1\n"), "count of 2");
+    expect_error(ascii("$$LAYER/1\n$$POLYLINE/1,1,4000000000,0,0,1,0,1,1\n"), "count of 4000000000");
+    expect_error(ascii("$$LAYER/1\n$$POLYLINE/1,1,-1,0,0,1,0,1,1\n"), "count of -1");
+    expect_error(ascii("$$LAYER/1\n$$POLYLINE/1,1,3,0,0,1e999,0,1,1\n"), "must be a number");
+    expect_error(ascii("$$LAYER/1\n").substr(0, 80), "$$GEOMETRYEND");
+    expect_error(binary(long_square(1)), "before the first layer");
+    expect_error(binary(u16(127) + bits(0.0F) + u16(140)), "command 140");
+    expect_error(binary(u16(127) + bits(0.0F) + u16(130) + bits(1) + bits(1) + bits(-1)), "count of -1");
+    expect_error(binary(u16(127) + bits(0.0F) + u16(130) + bits(1) + bits(1) + bits(0x7FFFFFFF)),
+                 "count of 2147483647");
+    expect_error(binary(u16(127) + bits(std::numeric_limits<float>::quiet_NaN())), "not finite");
+}
+
+TEST(ReadCommonLayer, EveryTruncatedFileIsAnErrorOrFewerContours) {
+    for (const std::string& whole : {ascii(ring), binary(long_ring), binary(short_ring)}) {
+        for (std::size_t n = 1; n < whole.size(); ++n) {
+            try {
+                EXPECT_LE(read(whole.substr(0, n)).layers.size(), 2U);
+            } catch (const Error& error) {
+                EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+            }
+        }
+    }
+}
+
+TEST(ReadCommonLayer, MutatedFilesNeverCrash) {
+    std::mt19937 random(7);
+    for (const std::string& whole : {ascii(ring), binary(long_ring), binary(short_ring)}) {
+        for (int round = 0; round < 1500; ++round) {
+            std::string bytes = whole;
+            for (int change = 0; change < 3; ++change)
+                bytes[random() % bytes.size()] = static_cast<char>(random());
+            try {
+                static_cast<void>(read(bytes));
+            } catch (const Error& error) {
+                EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+            }
+        }
+    }
+}
+
+TEST(ReadCommonLayer, PublishedSamplesHaveTheirArea) {
+    const std::filesystem::path folder =
+        std::filesystem::path(LAMELLA_SHARED) / "formats" / "samples" / "own";
+    if (!std::filesystem::exists(folder))
+        GTEST_SKIP() << "no samples at " << folder;
+    for (const char* name : {"ring_ascii.cli", "ring_long.cli", "ring_short.cli", "ring_short_align.cli"}) {
+        const LayerFile file = read_layers((folder / name).string());
+        ASSERT_EQ(file.layers.size(), 2U) << name;
+        for (const Layer& layer : file.layers)
+            EXPECT_NEAR(measure(layer).area_mm2, 96, 1e-9) << name;
+    }
+}
+
+} // namespace lamella

@@ -1,0 +1,125 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <random>
+
+namespace lamella {
+
+namespace {
+
+LayerFile read(const std::string& bytes) {
+    const auto copy = std::make_unique<std::byte[]>(bytes.size());
+    std::memcpy(copy.get(), bytes.data(), bytes.size());
+    return read_layers(std::span(copy.get(), bytes.size()), "test.svg");
+}
+
+void expect_error(const std::string& bytes, const std::string& part) {
+    try {
+        static_cast<void>(read(bytes));
+        ADD_FAILURE() << "no error, expected " << part;
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+}
+
+std::string svg(const std::string& content) {
+    return "<?xml version=\"1.0\"?>\n<svg width=\"10\" height=\"10\" xmlns=\"http://www.w3.org/2000/svg\" "
+           "xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\">\n" +
+           content + "</svg>\n";
+}
+
+const std::string square =
+    R"(<polygon slic3r:type="contour" points="0,0 10,0 10,10 0,10" style="fill: white" />)";
+const std::string hole = R"(<polygon slic3r:type="hole" points="2,2 2,4 4,4 4,2" style="fill: black" />)";
+
+} // namespace
+
+TEST(ReadLayeredSvg, HeightsAndPolygonsOfTheNewerForm) {
+    const LayerFile file = read(svg("<g id=\"layer0\" slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\" "
+                                    "slic3r:layer-height=\"0.5\">" +
+                                    square + hole + "</g>\n"));
+    ASSERT_EQ(file.layers.size(), 1U);
+    EXPECT_DOUBLE_EQ(measure(file.layers[0]).area_mm2, 96);
+    EXPECT_DOUBLE_EQ(file.layers[0].z, 0.25);
+    EXPECT_DOUBLE_EQ(file.layers[0].bottom, 0);
+    EXPECT_DOUBLE_EQ(file.layers[0].top, 0.5);
+}
+
+TEST(ReadLayeredSvg, HeightsOfTheOlderFormAreMillionths) {
+    const LayerFile file = read(svg("<g id=\"layer0\" slic3r:z=\"2.5e-07\">" + square +
+                                    "</g><g id=\"layer1\" slic3r:z=\"7.5e-07\">" + square + "</g>"));
+    ASSERT_EQ(file.layers.size(), 2U);
+    EXPECT_NEAR(file.layers[0].z, 0.25, 1e-12);
+    EXPECT_NEAR(file.layers[1].bottom, 0.5, 1e-12);
+    EXPECT_NEAR(file.layers[1].top, 1.0, 1e-12);
+}
+
+TEST(ReadLayeredSvg, PathsAreTurnedBackUpright) {
+    const LayerFile file = read(svg("<g slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\" slic3r:layer-height=\"0.5\">"
+                                    "<path d=\"M 0 10 10 10 10 0 0 0 z M 2 6 L 2 8 h 2 V 6 Z\"/></g>"));
+    ASSERT_EQ(file.layers[0].rings, 2U);
+    EXPECT_GT(ring_area(file.layers[0].contour(0)), 0);
+    EXPECT_DOUBLE_EQ(std::abs(ring_area(file.layers[0].contour(1))), 4);
+}
+
+TEST(ReadLayeredSvg, PolylinesAreOpenChains) {
+    const LayerFile file = read(svg("<g slic3r:z=\"0.5\">" + square + "<polyline points=\"1,1 2,2\"/></g>"));
+    EXPECT_EQ(file.layers[0].open_chains(), 1U);
+    EXPECT_EQ(file.warnings.size(), 1U);
+}
+
+TEST(ReadLayeredSvg, WhatIsNoLayeredSvgIsRefused) {
+    expect_error(svg(""), "no layer");
+    expect_error("<html><svg></html>", "must be <svg>");
+    expect_error(svg("<g>"), "broken");
+    expect_error("<a xmlns:svg=\"x\"><svg/></a>", "must be <svg>");
+    expect_error(svg("<g slic3r:z=\"x\"></g>"), "must be a number");
+    expect_error(svg("<g slic3r:z=\"1\"><polygon points=\"1,2 3\"/></g>"), "must be a number");
+    expect_error(svg("<g slic3r:z=\"1\"><path d=\"M 0 0 C 1 1 2 2 3 3\"/></g>"), "path command 'C'");
+    expect_error("<!DOCTYPE svg [<!ENTITY a \"b\">]>" + svg(""), "document type");
+    std::string deep;
+    for (int i = 0; i < 1000; ++i)
+        deep += "<g>";
+    expect_error(svg(deep), "deeper");
+}
+
+TEST(ReadLayeredSvg, TruncatedAndMutatedFilesNeverCrash) {
+    const std::string whole =
+        svg("<g id=\"layer0\" slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\">" + square + hole + "</g>\n");
+    const auto survives = [](const std::string& bytes) {
+        try {
+            static_cast<void>(read(bytes));
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+        }
+    };
+    for (std::size_t n = 1; n < whole.size(); ++n)
+        survives(whole.substr(0, n));
+    std::mt19937 random(11);
+    for (int round = 0; round < 1500; ++round) {
+        std::string bytes = whole;
+        for (int change = 0; change < 3; ++change)
+            bytes[random() % bytes.size()] = static_cast<char>(random());
+        survives(bytes);
+    }
+}
+
+TEST(ReadLayeredSvg, APublishedSampleHasItsArea) {
+    const std::filesystem::path path =
+        std::filesystem::path(LAMELLA_SHARED) / "formats" / "samples" / "own" / "ring_slic3r.svg";
+    if (!std::filesystem::exists(path))
+        GTEST_SKIP() << "no sample at " << path;
+    const LayerFile file = read_layers(path.string());
+    ASSERT_EQ(file.layers.size(), 2U);
+    for (const Layer& layer : file.layers)
+        EXPECT_NEAR(measure(layer).area_mm2, 96, 1e-9);
+}
+
+} // namespace lamella
