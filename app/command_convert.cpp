@@ -1,0 +1,99 @@
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+struct ConvertArguments {
+    std::string input;
+    std::string output;
+    LayerOutputOptions writing;
+    RunOptions run;
+};
+
+Box3 box_of(const LayerStack& layers) {
+    Box3 box;
+    for (const Layer& layer : layers)
+        for (const Point2& p : layer.points)
+            box.add(Point3{p.x, p.y, layer.z});
+    if (box.empty())
+        box.add(Point3{});
+    box.min.z = layers.front().bottom;
+    box.max.z = layers.back().top;
+    return box;
+}
+
+int run_convert(const ConvertArguments& arguments, const Context& context) {
+    check_distinct(arguments.input, arguments.output);
+    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    const LayerWriteOptions options = arguments.writing.write_options(format);
+    const LayerFile file = read_layers(arguments.input, arguments.run.execution(context));
+    for (const std::string& warning : file.warnings)
+        context.messages.warn(warning);
+    if (file.layers.empty())
+        throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
+    LayerFileInfo info{
+        .box = box_of(file.layers), .layers = file.layers.size(), .bottom = file.layers.front().bottom};
+    if (!arguments.writing.label.empty())
+        info.label = arguments.writing.label;
+    else if (!file.label.empty())
+        info.label = file.label;
+    write_layers(arguments.output, format, file.layers, info, options);
+
+    const std::string text =
+        fmt::format("{}: {} from {} ({}) as {}\n", one_line(arguments.output),
+                    counted(file.layers.size(), "layer"), one_line(file.path), file.format, format.name);
+    if (arguments.output == "-")
+        context.messages.note(text);
+    else
+        print(text);
+    return 0;
+}
+
+} // namespace
+
+Command convert_command() {
+    const auto arguments = std::make_shared<ConvertArguments>();
+    return {
+        .name = "convert",
+        .summary = "turn a slice file into another format",
+        .description =
+            "Reads the layers of a slice file and writes them in another format. Contours stay as they "
+            "are, up to the rounding that the new format asks for.",
+        .operands = {{.placeholder = "IN",
+                      .help = "the slice file to read; - is standard input",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->input = text;
+                          }},
+                     {.placeholder = "OUT",
+                      .help = "the slice file to write; its extension says the format; - is standard output",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->output = text;
+                          }}},
+        .groups = {{"What is written", layer_output_options(arguments->writing)},
+                   run_options(arguments->run),
+                   common_options(true)},
+        .examples = {{"lamella convert part.cli part.svg", "to look at it"},
+                     {"lamella convert part.svg part.cli --units-mm 0.005", "for a machine with 5 um steps"}},
+        .run = [arguments](const Context& context) {
+            return run_convert(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

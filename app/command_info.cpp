@@ -1,0 +1,209 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/inspect.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "input_kind.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "stats_json.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+namespace lamella::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoArguments {
+    std::string input;
+    bool json = false;
+    bool strict = false;
+    PlacementOptions placement; ///< the unit only
+    RunOptions run;
+};
+
+struct Defect {
+    std::uint64_t count;
+    std::string_view name;
+    std::string_view meaning;
+};
+
+std::array<Defect, 6> defects_of(const Inspection& found) {
+    return {
+        {{found.boundary_edges, "boundary edges", "the surface has holes; contours stay open there"},
+         {found.orientation_conflicts, "orientation conflicts",
+          "neighbouring triangles face opposite ways; contours stay open there"},
+         {found.nonmanifold_edges, "crowded edges",
+          "more than two triangles share an edge; sliced as they stand"},
+         {found.duplicate_triangles, "duplicate triangles", "the same triangle more than once"},
+         {found.degenerate_triangles, "degenerate triangles", "two equal corners; left out of everything"},
+         {found.inverted_shells, "inverted shells", "inside out: their contours run the wrong way round"}}};
+}
+
+std::string line(std::string_view name, std::string_view value) {
+    return fmt::format("  {:<11} {}\n", name, value);
+}
+
+std::string point(const Point3& p) {
+    return fmt::format("({}, {}, {})", brief(p.x), brief(p.y), brief(p.z));
+}
+
+std::string mesh_text(const MeshFile& file, const Inspection& found) {
+    const Box3& box = found.box;
+    std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), format_name(file.format));
+    text += line("triangles", grouped(file.stored_triangles));
+    text += line("vertices", grouped(found.vertices));
+    text += line("size", fmt::format("{} x {} x {} mm", brief(box.max.x - box.min.x),
+                                     brief(box.max.y - box.min.y), brief(box.max.z - box.min.z)));
+    text += line("from", fmt::format("{} to {}", point(box.min), point(box.max)));
+    text += line("volume", found.closed() ? fmt::format("{} mm3", brief(found.volume_mm3))
+                                          : "none: the surface is not closed");
+    text += line("area", fmt::format("{} mm2", brief(found.area_mm2)));
+    text += line("shells", grouped(found.shells));
+    text += line("closed", found.closed() ? "yes" : "no");
+    text += line("defects", found.sound() ? "none" : "");
+    for (const Defect& defect : defects_of(found))
+        if (defect.count > 0)
+            text += fmt::format("    {:>9} {:<22} {}\n", grouped(defect.count), defect.name, defect.meaning);
+    return text;
+}
+
+Json mesh_json(const MeshFile& file, const Inspection& found, const std::string& unit) {
+    return {{"path", file.path},
+            {"format", format_name(file.format)},
+            {"unit", unit},
+            {"triangles", file.stored_triangles},
+            {"vertices", found.vertices},
+            {"bbox", box_json(found.box)},
+            {"volume_mm3", found.volume_mm3},
+            {"area_mm2", found.area_mm2},
+            {"closed", found.closed()},
+            {"shells", found.shells},
+            {"defects", defects_json(found)}};
+}
+
+int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
+              const Execution& execution) {
+    for (const std::string& warning : file.warnings)
+        context.messages.warn(warning);
+    const TriangleSoup placed = file.mesh.transformed(arguments.placement.transform());
+    const Inspection found = inspect(weld(placed, execution), execution);
+    print(arguments.json ? json_text(mesh_json(file, found, arguments.placement.unit))
+                         : mesh_text(file, found));
+    if (arguments.strict && !found.sound())
+        throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects", file.path));
+    return 0;
+}
+
+struct LayerTotals {
+    std::uint64_t contours = 0;
+    std::uint64_t open_chains = 0;
+    std::uint64_t points = 0;
+    double volume_mm3 = 0;
+};
+
+LayerTotals totals_of(const LayerStack& layers) {
+    LayerTotals totals;
+    for (const Layer& layer : layers) {
+        const LayerMeasure measured = measure(layer);
+        totals.contours += measured.contours;
+        totals.open_chains += measured.open_chains;
+        totals.points += measured.points;
+        totals.volume_mm3 += measured.area_mm2 * layer.thickness();
+    }
+    return totals;
+}
+
+std::string layers_text(const LayerFile& file, const LayerTotals& totals) {
+    std::string text = fmt::format("{}: slice file, {}\n", one_line(file.path), file.format);
+    if (!file.label.empty())
+        text += line("label", one_line(file.label));
+    text += line("layers", grouped(file.layers.size()));
+    if (!file.layers.empty())
+        text += line("from", fmt::format("z = {} to {} mm", brief(file.layers.front().bottom),
+                                         brief(file.layers.back().top)));
+    text += line("contours", grouped(totals.contours));
+    text += line("open chains", totals.open_chains == 0 ? "none" : grouped(totals.open_chains));
+    text += line("points", grouped(totals.points));
+    text += line("volume", fmt::format("{} mm3", brief(totals.volume_mm3)));
+    return text;
+}
+
+Json layers_json(const LayerFile& file, const LayerTotals& totals) {
+    const bool empty = file.layers.empty();
+    return {{"path", file.path},
+            {"format", file.format},
+            {"label", file.label},
+            {"units_mm", file.units_mm},
+            {"layers", file.layers.size()},
+            {"z_range", empty ? Json() : Json{file.layers.front().bottom, file.layers.back().top}},
+            {"contours", totals.contours},
+            {"open_chains", totals.open_chains},
+            {"points", totals.points},
+            {"volume_mm3", totals.volume_mm3}};
+}
+
+int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context) {
+    for (const std::string& warning : file.warnings)
+        context.messages.warn(warning);
+    if (arguments.placement.given())
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: --unit is for meshes; a slice file knows its unit", file.path));
+    const LayerTotals totals = totals_of(file.layers);
+    print(arguments.json ? json_text(layers_json(file, totals)) : layers_text(file, totals));
+    if (arguments.strict && totals.open_chains > 0)
+        throw Error(ErrorKind::defect,
+                    fmt::format("{}: has {}", file.path, counted(totals.open_chains, "open chain")));
+    return 0;
+}
+
+int run_info(const InfoArguments& arguments, const Context& context) {
+    const Execution execution = arguments.run.execution(context);
+    const auto file = read_either(arguments.input, {.strict = arguments.strict}, execution);
+    if (const auto* mesh = std::get_if<MeshFile>(&file))
+        return tell_mesh(arguments, *mesh, context, execution);
+    return tell_layers(arguments, std::get<LayerFile>(file), context);
+}
+
+} // namespace
+
+Command info_command() {
+    const auto arguments = std::make_shared<InfoArguments>();
+    return {.name = "info",
+            .summary = "what is in a mesh or slice file: size, volume, defects",
+            .description =
+                "Tells what a file holds. Of a mesh (STL): size, volume, area, shells, and every kind of "
+                "defect with what it means for slicing. Of a slice file (CLI, SVG): layers, contours, "
+                "points and volume. Nothing is repaired or written.",
+            .operands = {{.placeholder = "FILE",
+                          .help = "a mesh or a slice file; - is standard input",
+                          .set =
+                              [arguments](const std::string& text) {
+                                  arguments->input = text;
+                              }}},
+            .groups = {{"What is told",
+                        {flag("json", "print JSON", arguments->json), unit_option(arguments->placement.unit),
+                         flag("strict", "exit with code 4 where there is any defect", arguments->strict)}},
+                       run_options(arguments->run),
+                       common_options(true)},
+            .examples = {{"lamella info part.stl", "is it closed, how large is it?"},
+                         {"lamella info part.cli --json", "for programs"}},
+            .run = [arguments](const Context& context) {
+                return run_info(*arguments, context);
+            }};
+}
+
+} // namespace lamella::app

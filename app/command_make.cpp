@@ -1,0 +1,230 @@
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/shapes.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+struct MakeArguments {
+    std::string body;
+    std::string output;
+    bool ascii = false;
+
+    std::optional<std::uint64_t> holes;
+    std::optional<std::uint64_t> segments;
+    std::optional<std::vector<double>> size;
+    std::optional<double> thickness;
+    std::optional<std::uint64_t> cells;
+    std::optional<std::uint64_t> detail;
+    std::string order;
+    std::optional<std::uint64_t> shuffle;
+
+    PlacementOptions pose;
+};
+
+unsigned as_unsigned(const std::optional<std::uint64_t>& given, unsigned otherwise, std::string_view option) {
+    if (!given)
+        return otherwise;
+    if (*given > std::numeric_limits<unsigned>::max())
+        throw Error(ErrorKind::usage, fmt::format("--{}: {} are too many", option, *given));
+    return static_cast<unsigned>(*given);
+}
+
+double single_size(const MakeArguments& arguments, double otherwise) {
+    if (!arguments.size)
+        return otherwise;
+    if (arguments.size->size() != 1)
+        throw Error(ErrorKind::usage, fmt::format("--size: a {} takes one length", arguments.body));
+    return arguments.size->front();
+}
+
+TriangleSoup sheet(const MakeArguments& arguments) {
+    SheetShape shape;
+    shape.holes = as_unsigned(arguments.holes, shape.holes, "holes");
+    shape.segments = as_unsigned(arguments.segments, shape.segments, "segments");
+    shape.size_mm = single_size(arguments, shape.size_mm);
+    shape.thickness_mm = arguments.thickness.value_or(shape.thickness_mm);
+    if (arguments.order == "split")
+        shape.order = TriangleOrder::split;
+    return make_sheet(shape);
+}
+
+TriangleSoup rook(const MakeArguments& /*arguments*/) {
+    return make_rook();
+}
+
+TriangleSoup lattice(const MakeArguments& arguments) {
+    LatticeShape shape;
+    const unsigned cells = as_unsigned(arguments.cells, shape.cells_x, "cells");
+    shape.cells_x = shape.cells_y = shape.cells_z = cells;
+    shape.cell_mm = single_size(arguments, shape.cell_mm);
+    shape.strut_mm = arguments.thickness.value_or(shape.strut_mm);
+    shape.detail = as_unsigned(arguments.detail, shape.detail, "detail");
+    return make_lattice(shape);
+}
+
+TriangleSoup box(const MakeArguments& arguments) {
+    if (arguments.size && arguments.size->size() == 3)
+        return make_box((*arguments.size)[0], (*arguments.size)[1], (*arguments.size)[2]);
+    const double edge = single_size(arguments, 20);
+    return make_box(edge, edge, edge);
+}
+
+TriangleSoup sphere(const MakeArguments& arguments) {
+    return make_sphere(single_size(arguments, 20) / 2, as_unsigned(arguments.detail, 5, "detail"));
+}
+
+TriangleSoup torus(const MakeArguments& arguments) {
+    const double size = single_size(arguments, 40);
+    const double tube = arguments.thickness.value_or(size / 4);
+    const unsigned segments = as_unsigned(arguments.segments, 128, "segments");
+    return make_torus((size - tube) / 2, tube / 2, segments, std::max(segments / 2, 3U));
+}
+
+TriangleSoup cylinder(const MakeArguments& arguments) {
+    const double size = single_size(arguments, 20);
+    return make_cylinder(size / 2, arguments.thickness.value_or(size),
+                         as_unsigned(arguments.segments, 128, "segments"));
+}
+
+struct Body {
+    std::string_view name;
+    std::string_view options; ///< that it understands, besides the common ones
+    TriangleSoup (*make)(const MakeArguments& arguments);
+};
+constexpr std::array<Body, 7> bodies{{{"sheet", "holes segments size thickness order", sheet},
+                                      {"rook", "", rook},
+                                      {"lattice", "cells size thickness detail", lattice},
+                                      {"box", "size", box},
+                                      {"sphere", "size detail", sphere},
+                                      {"torus", "size thickness segments", torus},
+                                      {"cylinder", "size thickness segments", cylinder}}};
+
+std::vector<std::string> body_names() {
+    std::vector<std::string> names;
+    for (const Body& body : bodies)
+        names.emplace_back(body.name);
+    return names;
+}
+
+constexpr std::string_view shape_title = "What it is like";
+
+/// Refuses an option that this body would ignore.
+void check_options(const Body& body, const Command& command) {
+    const auto understands = [&](const Option& option) {
+        return fmt::format(" {} ", body.options).find(fmt::format(" {} ", option.name)) != std::string::npos;
+    };
+    for (const OptionGroup& group : command.groups)
+        for (const Option& option : group.options)
+            if (group.title == shape_title && option.given && !understands(option))
+                throw Error(ErrorKind::usage, body.options.empty()
+                                                  ? fmt::format("--{}: a {} is always the same; use --scale",
+                                                                option.name, body.name)
+                                                  : fmt::format("--{}: a {} has none; it has: {}",
+                                                                option.name, body.name, body.options));
+}
+
+OptionGroup shape_options(MakeArguments& target) {
+    return {
+        std::string(shape_title),
+        {count("holes", "N", "sheet: number of holes, a square such as 100, 225 or 1225", target.holes),
+         count("segments", "N", "sheet: corners of a hole; torus, cylinder: around the axis",
+               target.segments),
+         row("size", ValueKind::numbers, "MM|X,Y,Z",
+             "sheet: edge; lattice: cell; sphere, torus, cylinder: diameter; box: edge or edges",
+             [&target](const std::string& text) { target.size = parse_numbers(text); }),
+         length("thickness",
+                "sheet: thickness; lattice: diameter of a strut; torus: of the tube; cylinder: height",
+                target.thickness),
+         count("cells", "N", "lattice: cells along each axis", target.cells),
+         count("detail", "N", "lattice, sphere: how fine; the triangles grow fast with it", target.detail),
+         choice("order", "HOW",
+                "sheet: triangles of a wall together, or all lower ones first (hard for some algorithms)",
+                {"wall", "split"}, target.order)}};
+}
+
+int run_make(const MakeArguments& arguments, const Context& context) {
+    const Body& body = *std::ranges::find(bodies, std::string_view(arguments.body), &Body::name);
+    check_options(body, context.command);
+    const Transform pose = arguments.pose.transform();
+    const std::string output = arguments.output.empty() ? arguments.body + ".stl" : arguments.output;
+
+    TriangleSoup soup = body.make(arguments);
+    if (arguments.shuffle)
+        soup = shuffled(soup, *arguments.shuffle);
+    soup = soup.transformed(pose);
+    if (arguments.ascii)
+        write_stl_ascii(output, soup, arguments.body);
+    else
+        write_stl(output, soup);
+
+    const Box3 extent = bounding_box(soup);
+    const std::string text =
+        fmt::format("{}: {}, {}, {} x {} x {} mm\n", output == "-" ? "standard output" : one_line(output),
+                    arguments.body, counted(soup.size(), "triangle"), brief(extent.max.x - extent.min.x),
+                    brief(extent.max.y - extent.min.y), brief(extent.max.z - extent.min.z));
+    if (output == "-")
+        context.messages.note(text);
+    else
+        print(text);
+    return 0;
+}
+
+} // namespace
+
+Command make_command() {
+    const auto arguments = std::make_shared<MakeArguments>();
+    Option output =
+        file("output", "the STL file; - is standard output; without it, BODY.stl here", arguments->output);
+    output.letter = 'o';
+    return {
+        .name = "make",
+        .summary = "make a test body as STL: a sheet with holes, a chess rook, ...",
+        .description =
+            "Makes a closed body to try things with. The same options give the same bytes on every "
+            "machine.",
+        .operands = {{.placeholder = "BODY",
+                      .help = "which body",
+                      .choices = body_names(),
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->body = text;
+                          }}},
+        .groups = {{"What is written",
+                    {std::move(output), flag("ascii", "ASCII instead of binary", arguments->ascii),
+                     count("shuffle", "SEED", "put the triangles in a random order", arguments->shuffle)}},
+                   shape_options(*arguments),
+                   pose_options(arguments->pose),
+                   common_options(true)},
+        .examples = {{"lamella make rook", "writes rook.stl"},
+                     {"lamella make sheet --holes 1225 -o sheet.stl", "2.5 million triangles"},
+                     {"lamella make sheet --holes 100 --rotate-x 90", "a sheet on its edge"},
+                     {"lamella make box --size 20,30,2.5 --ascii", "a small file to read"}},
+        .run = [arguments](const Context& context) {
+            return run_make(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

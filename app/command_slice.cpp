@@ -1,0 +1,219 @@
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/slicing/slice.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "stats_json.hpp"
+#include "text_file.hpp"
+#include "z_list.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+struct SliceArguments {
+    std::string input;
+    std::string output;
+    LayerOutputOptions writing{.label = FileJob{}.label};
+
+    std::optional<double> layer_height;
+    std::optional<double> first_layer_height;
+    std::string slice_at = "middle";
+    std::optional<std::pair<double, double>> z_range;
+    std::optional<std::pair<std::uint64_t, std::uint64_t>> layers;
+    std::string z_list;
+
+    PlacementOptions placement;
+    std::string engine;
+    bool inspect = false;
+    bool strict = false;
+    std::string stats;
+    RunOptions run;
+};
+
+OptionGroup output_options(SliceArguments& target) {
+    OptionGroup group{"What is written", {}};
+    Option output =
+        file("output", "the slice file; its extension says the format; - is standard output", target.output);
+    output.letter = 'o';
+    group.options.push_back(std::move(output));
+    for (Option& option : layer_output_options(target.writing))
+        group.options.push_back(std::move(option));
+    group.options.push_back(file(
+        "stats", "write figures of the run and of every layer as JSON; - is standard output", target.stats));
+    return group;
+}
+
+OptionGroup plan_options(SliceArguments& target) {
+    Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
+    layer_height.preset = exact(UniformLayers{}.layer_height);
+    return {
+        "Where it is cut",
+        {std::move(layer_height),
+         length("first-layer-height", "thickness of the first layer, where it differs",
+                target.first_layer_height),
+         choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
+                target.slice_at),
+         row("z-range", ValueKind::text, "A:B", "only layers cut from z = A to z = B (millimetres)",
+             [&target](const std::string& text) { target.z_range = parse_range(text); }),
+         row("layers", ValueKind::text, "A:B", "only layers A to B - 1 of all, counted from 0",
+             [&target](const std::string& text) { target.layers = parse_index_range(text); }),
+         file(
+             "z-list",
+             "cut at the heights listed in this file instead: one a line, # starts a comment; or a JSON list",
+             target.z_list)}};
+}
+
+OptionGroup checking_options(SliceArguments& target) {
+    std::vector<std::string> names;
+    for (const Engine& engine : engines())
+        names.emplace_back(engine.name);
+    Option engine = choice("engine", "NAME", "the algorithm", names, target.engine);
+    engine.preset = names.front();
+    return {
+        "How it is sliced",
+        {std::move(engine),
+         flag("inspect", "count the defects of the mesh first, for --stats and the summary (takes a while)",
+              target.inspect),
+         flag("strict", "make an error of any defect of the file or its mesh, and write nothing",
+              target.strict)}};
+}
+
+/// Names two options that cannot go together.
+void check_conflict(bool first, bool second, const char* names, const char* reason) {
+    if (first && second)
+        throw Error(ErrorKind::usage, fmt::format("{} contradict each other: {}", names, reason));
+}
+
+FileJob make_job(const SliceArguments& arguments) {
+    if (arguments.output.empty() && arguments.stats.empty())
+        throw Error(ErrorKind::usage,
+                    "where should the result go? Say -o part.cli (or --stats - for figures only)");
+    check_conflict(arguments.output == "-", arguments.stats == "-", "--output - and --stats -",
+                   "both would go to standard output");
+    check_conflict(!arguments.z_list.empty(), arguments.layer_height.has_value(),
+                   "--z-list and --layer-height", "the list says where to cut");
+    check_conflict(!arguments.z_list.empty(), arguments.first_layer_height.has_value(),
+                   "--z-list and --first-layer-height", "the list says where to cut");
+    check_distinct(arguments.input, arguments.output);
+    check_distinct(arguments.input, arguments.stats);
+    check_conflict(!arguments.output.empty() && arguments.output != "-", arguments.output == arguments.stats,
+                   "--output and --stats", "both would go to the same file");
+
+    FileJob job;
+    job.input = arguments.input;
+    job.placement = arguments.placement.transform();
+    job.layers = {.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height),
+                  .first_layer_height = arguments.first_layer_height,
+                  .slice_at = slice_at_of(arguments.slice_at),
+                  .z_range = arguments.z_range,
+                  .index_range = arguments.layers};
+    if (!arguments.z_list.empty())
+        job.z = read_z_list(arguments.z_list);
+    job.engine = arguments.engine;
+    job.inspect = arguments.inspect;
+    job.strict = arguments.strict;
+    job.layer_statistics = !arguments.stats.empty();
+    job.output = arguments.output;
+    job.format = arguments.writing.format;
+    job.label = arguments.writing.label;
+    if (!job.output.empty())
+        job.write = arguments.writing.write_options(layer_format(job.format, job.output));
+    return job;
+}
+
+std::string summary(const FileJob& job, const FileResult& result) {
+    const Box3& box = result.box;
+    std::string text = fmt::format("read     {}: {}, {} x {} x {} mm\n", one_line(job.input),
+                                   counted(result.triangles, "triangle"), brief(box.max.x - box.min.x),
+                                   brief(box.max.y - box.min.y), brief(box.max.z - box.min.z));
+    text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}\n", counted(result.report.layers, "layer"),
+                        brief(result.bottom), brief(result.top), counted(result.report.contours, "contour"),
+                        counted(result.report.points, "point"));
+    if (result.inspection)
+        text += fmt::format("mesh     {}\n", result.inspection->sound()
+                                                 ? "closed, consistently oriented, no defects"
+                                                 : fmt::format("has defects; lamella info {} lists them",
+                                                               one_line(job.input)));
+    const FileResult::Seconds& s = result.seconds;
+    text += fmt::format("took     {:.2f} s on {} (read {:.2f}, ", s.total, counted(result.threads, "thread"),
+                        s.read);
+    if (s.weld > 0)
+        text += fmt::format("weld {:.2f}, ", s.weld);
+    text += fmt::format("link {:.2f}, slice {:.2f}, write {:.2f})\n", s.link, s.slice, s.write);
+    if (!result.format.empty())
+        text +=
+            fmt::format("written  {}: {}, {}\n", job.output == "-" ? "standard output" : one_line(job.output),
+                        result.format, byte_size(result.bytes));
+    return text;
+}
+
+int run_slice(const SliceArguments& arguments, const Context& context) {
+    const FileJob job = make_job(arguments);
+    const FileResult result = slice_file(job, arguments.run.execution(context));
+    for (const std::string& warning : result.warnings)
+        context.messages.warn(warning);
+    if (result.report.open_chains > 0)
+        context.messages.warn(fmt::format(
+            "{}: {} in {} of {}, first at z = {} mm: contours do not close where the mesh has holes or "
+            "flipped triangles; see lamella info {}",
+            job.input, counted(result.report.open_chains, "open chain"), grouped(result.open_layers),
+            counted(result.report.layers, "layer"), brief(result.first_open_z), job.input));
+    if (!arguments.stats.empty())
+        write_text_file(arguments.stats,
+                        json_text(stats_json(context.command, job, result, arguments.placement.unit)));
+    if (arguments.output == "-" || arguments.stats == "-")
+        context.messages.note(summary(job, result));
+    else
+        print(summary(job, result));
+    return 0;
+}
+
+} // namespace
+
+Command slice_command() {
+    const auto arguments = std::make_shared<SliceArguments>();
+    return {
+        .name = "slice",
+        .summary = "cut a mesh into layers and write a slice file",
+        .description =
+            "Cuts the mesh of an STL file into layers and writes their contours: outer rings "
+            "counter-clockwise, "
+            "holes clockwise. The mesh is taken as it is, never repaired: where it has a hole, contours stay "
+            "open, are marked as such in the file, and a warning says so. The result does not depend on the "
+            "number of threads nor on the order of the triangles.",
+        .operands = {{.placeholder = "FILE",
+                      .help = "the mesh, an STL file (binary or ASCII); - is standard input",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->input = text;
+                          }}},
+        .groups = {output_options(*arguments), plan_options(*arguments),
+                   placement_options(arguments->placement), checking_options(*arguments),
+                   run_options(arguments->run), common_options(true)},
+        .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
+                      "a binary CLI file, layers of 0.05 mm"},
+                     {"lamella slice part.stl -o part.svg --unit inch --rotate-x 90",
+                      "a part drawn in inches, stood up, as SVG"},
+                     {"lamella slice part.stl --stats - --layers 100:110", "only figures, of ten layers"},
+                     {"lamella slice part.stl -o part.cli --config machine.toml",
+                      "with options kept in a file"}},
+        .run = [arguments](const Context& context) {
+            return run_slice(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

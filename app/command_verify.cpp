@@ -1,0 +1,146 @@
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/verify.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/read/mesh_file.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "stats_json.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+struct VerifyArguments {
+    std::string input;
+    std::string mesh;
+    std::string slice_at;
+    bool json = false;
+    PlacementOptions placement;
+    RunOptions run;
+};
+
+/// Puts the cut of every layer where --slice-at says; formats that know only the slab of a layer are read as
+/// if it had been cut in the middle.
+void place_cuts(LayerStack& layers, SliceAt at) {
+    for (Layer& layer : layers)
+        layer.z = at == SliceAt::bottom ? layer.bottom
+                  : at == SliceAt::top  ? layer.top
+                                        : layer.bottom + (layer.top - layer.bottom) / 2;
+}
+
+nlohmann::ordered_json verification_json(const std::string& path, const Verification& found) {
+    nlohmann::ordered_json object{{"path", path},
+                                  {"ok", found.ok()},
+                                  {"layers", found.layers},
+                                  {"contours", found.contours},
+                                  {"open_chains", found.open_chains},
+                                  {"crossings", found.crossings},
+                                  {"misoriented", found.misoriented},
+                                  {"volume_mm3", found.volume_mm3},
+                                  {"max_area_error_mm2", nullptr}};
+    if (found.max_area_error_mm2)
+        object["max_area_error_mm2"] = *found.max_area_error_mm2;
+    return object;
+}
+
+std::string verification_text(const std::string& path, const std::string& mesh, const Verification& found) {
+    std::string text = fmt::format("{}: {}\n", one_line(path), found.ok() ? "ok" : "NOT ok");
+    for (const std::string& finding : found.findings)
+        text += fmt::format("  {}\n", finding);
+    text += fmt::format("  {}, {}, {}, volume {} mm3\n", counted(found.layers, "layer"),
+                        counted(found.contours, "contour"), counted(found.points, "point"),
+                        brief(found.volume_mm3));
+    if (found.max_area_error_mm2)
+        text +=
+            fmt::format("  areas differ from the sections of {} by at most {} mm2{}\n", one_line(mesh),
+                        brief(*found.max_area_error_mm2), found.areas_agree ? ", as rounding allows" : "");
+    if (found.ok())
+        text += fmt::format(
+            "  every contour is closed, none cross, holes and outer contours run the right way{}\n",
+            found.max_area_error_mm2 ? "" : "; --mesh part.stl would check the areas, too");
+    return text;
+}
+
+int run_verify(const VerifyArguments& arguments, const Context& context) {
+    if (arguments.mesh.empty() && arguments.placement.given())
+        throw Error(ErrorKind::usage,
+                    "unit, pose and direction are those of a mesh: name it with --mesh part.stl");
+    if (arguments.input == "-" && arguments.mesh == "-")
+        throw Error(ErrorKind::usage, "standard input holds one file only: name the slice file or the mesh");
+    const Transform placement = arguments.placement.transform();
+    const Execution execution = arguments.run.execution(context);
+
+    LayerFile file = read_layers(arguments.input, execution);
+    for (const std::string& warning : file.warnings)
+        context.messages.warn(warning);
+    VerifyOptions options{.mesh = {}, .quantum_mm = file.units_mm / 2};
+    if (!arguments.slice_at.empty()) {
+        const SliceAt at = slice_at_of(arguments.slice_at);
+        place_cuts(file.layers, at);
+        if (at == SliceAt::top)
+            options.rule = PlaneRule::section_below;
+    }
+    TriangleSoup mesh;
+    if (!arguments.mesh.empty()) {
+        const MeshFile part = read_mesh(arguments.mesh, {}, execution);
+        for (const std::string& warning : part.warnings)
+            context.messages.warn(warning);
+        mesh = part.mesh.transformed(placement);
+        options.mesh = mesh;
+    }
+    const Verification found = verify(file.layers, options, execution);
+    print(arguments.json ? json_text(verification_json(file.path, found))
+                         : verification_text(file.path, arguments.mesh, found));
+    if (!found.ok())
+        throw Error(ErrorKind::defect, fmt::format("{}: the check failed", file.path));
+    return 0;
+}
+
+} // namespace
+
+Command verify_command() {
+    const auto arguments = std::make_shared<VerifyArguments>();
+    return {
+        .name = "verify",
+        .summary = "check a slice file: closed, oriented, no crossings, areas",
+        .description =
+            "Checks the layers of a slice file: every contour closed, outer contours counter-clockwise and "
+            "holes "
+            "clockwise by their nesting, no contour crossing another or itself. With --mesh the area of "
+            "every layer is "
+            "compared with the section of that mesh, computed straight from its triangles. Exit code 4 says "
+            "that the check failed.",
+        .operands = {{.placeholder = "FILE",
+                      .help = "the slice file; - is standard input",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->input = text;
+                          }}},
+        .groups = {{"What is checked",
+                    {file("mesh", "the mesh that was sliced; give the same options for where it stands",
+                          arguments->mesh),
+                     choice("slice-at", "WHERE",
+                            "where in their thickness the layers were cut, if not where the file says",
+                            slice_at_names(), arguments->slice_at),
+                     flag("json", "print JSON", arguments->json)}},
+                   placement_options(arguments->placement),
+                   run_options(arguments->run),
+                   common_options(true)},
+        .examples = {{"lamella verify part.cli", "is the file sound in itself?"},
+                     {"lamella verify part.cli --mesh part.stl --rotate-x 90", "and true to its mesh?"}},
+        .run = [arguments](const Context& context) {
+            return run_verify(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

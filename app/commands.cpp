@@ -1,0 +1,31 @@
+#include "commands.hpp"
+
+#include <array>
+#include <utility>
+
+namespace lamella::app {
+
+std::vector<Command> all_commands() {
+    std::vector<Command> commands{slice_command(), info_command(),       verify_command(), convert_command(),
+                                  make_command(),  completion_command(), help_command()};
+    std::vector<std::string> names;
+    for (const Command& command : commands)
+        names.push_back(command.name);
+    commands.back().operands.front().choices = std::move(names);
+    return commands;
+}
+
+std::span<const ExitCode> exit_codes() noexcept {
+    static constexpr std::array<ExitCode, 8> codes{
+        {{0, "all went well"},
+         {1, "a fault of Lamella itself: please report it"},
+         {2, "the command line or a configuration file asks for what cannot be done"},
+         {3, "an input cannot be read or holds nothing to work on"},
+         {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify)"},
+         {5, "a limit was hit, such as memory"},
+         {6, "the output cannot be written; nothing was left at its path"},
+         {130, "cancelled, by Ctrl-C or the terminate signal"}}};
+    return codes;
+}
+
+} // namespace lamella::app

@@ -1,0 +1,199 @@
+#include "completion.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string_view>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+std::string replaced(std::string_view text, std::string_view what, std::string_view with) {
+    std::string out;
+    for (const char c : text) {
+        if (what.find(c) != std::string_view::npos)
+            out += fmt::format("{}{}", with, c);
+        else
+            out += c;
+    }
+    return out;
+}
+
+/// Inside single quotes.
+std::string shell_quoted(std::string_view text) {
+    std::string out;
+    for (const char c : text)
+        out += c == '\'' ? "'\\''" : std::string(1, c);
+    return out;
+}
+
+std::vector<std::string> command_names(std::span<const Command> commands) {
+    std::vector<std::string> names;
+    for (const Command& command : commands)
+        names.push_back(command.name);
+    return names;
+}
+
+/// All options of a command in one list.
+std::vector<const Option*> options_of(const Command& command) {
+    std::vector<const Option*> options;
+    for (const OptionGroup& group : command.groups)
+        for (const Option& option : group.options)
+            options.push_back(&option);
+    return options;
+}
+
+std::string bash_pattern(const Option& option) {
+    return option.letter != 0 ? fmt::format("-{}|--{}", option.letter, option.name) : "--" + option.name;
+}
+
+/// The case of one command: values after options that take one, option names, operands.
+std::string bash_case(const Command& command) {
+    std::string text = fmt::format("    {})\n        case \"$previous\" in\n", command.name);
+    std::vector<std::string> names;
+    for (const Option* option : options_of(command)) {
+        names.push_back("--" + option->name);
+        if (option->kind == ValueKind::flag)
+            continue;
+        const std::string action = !option->choices.empty()
+                                       ? fmt::format("words=\"{}\"", fmt::join(option->choices, " "))
+                                   : option->kind == ValueKind::file ? "compopt -o default; return"
+                                                                     : "return";
+        text += fmt::format("        {}) {} ;;\n", bash_pattern(*option), action);
+    }
+    std::string operands = "compopt -o default; return";
+    for (const Operand& operand : command.operands)
+        if (!operand.choices.empty())
+            operands = fmt::format("words=\"{}\"", fmt::join(operand.choices, " "));
+    text += fmt::format("        *) if [[ \"$current\" == -* ]]; then words=\"{}\"; else {}; fi ;;\n"
+                        "        esac ;;\n",
+                        fmt::join(names, " "), operands);
+    return text;
+}
+
+std::string zsh_value(const Option& option) {
+    if (option.kind == ValueKind::flag)
+        return "";
+    const std::string what = replaced(option.placeholder, ":", "\\");
+    if (!option.choices.empty())
+        return fmt::format(":{}:({})", what, fmt::join(option.choices, " "));
+    return fmt::format(":{}:{}", what, option.kind == ValueKind::file ? "_files" : "");
+}
+
+std::string zsh_option(const Option& option) {
+    const bool takes_value = option.kind != ValueKind::flag;
+    const std::string rest =
+        shell_quoted(fmt::format("[{}]{}", replaced(option.help, "[]:\\", "\\"), zsh_value(option)));
+    if (option.letter == 0)
+        return fmt::format("'--{}{}{}'", option.name, takes_value ? "=" : "", rest);
+    return fmt::format("'(-{0} --{1})'{{-{0}{2},--{1}{3}}}'{4}'", option.letter, option.name,
+                       takes_value ? "+" : "", takes_value ? "=" : "", rest);
+}
+
+std::string zsh_case(const Command& command) {
+    std::string text = fmt::format("    {})\n        _arguments", command.name);
+    for (const Option* option : options_of(command))
+        text += " \\\n            " + zsh_option(*option);
+    for (std::size_t i = 0; i < command.operands.size(); ++i) {
+        const Operand& operand = command.operands[i];
+        text += fmt::format(" \\\n            '{}:{}:{}'", i + 1, operand.placeholder,
+                            operand.choices.empty() ? "_files"
+                                                    : fmt::format("({})", fmt::join(operand.choices, " ")));
+    }
+    return text + "\n        ;;\n";
+}
+
+std::string fish_option(const Command& command, const Option& option) {
+    std::string text = fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}' -l {}",
+                                   command.name, option.name);
+    if (option.letter != 0)
+        text += fmt::format(" -s {}", option.letter);
+    if (option.kind == ValueKind::file)
+        text += " -r -F";
+    else if (option.kind != ValueKind::flag)
+        text += " -x";
+    if (!option.choices.empty())
+        text += fmt::format(" -a '{}'", fmt::join(option.choices, " "));
+    return text + fmt::format(" -d '{}'\n", replaced(option.help, "'\\", "\\"));
+}
+
+} // namespace
+
+std::string bash_completion(std::span<const Command> commands) {
+    std::string text = fmt::format(
+        "# bash completion for lamella; made by: lamella completion bash\n"
+        "_lamella() {{\n"
+        "    local current=\"${{COMP_WORDS[COMP_CWORD]}}\" previous=\"${{COMP_WORDS[COMP_CWORD-1]}}\"\n"
+        "    local words=\"\"\n"
+        "    COMPREPLY=()\n"
+        "    # bash takes --option=value for three words\n"
+        "    if [[ \"$current\" == \"=\" ]]; then\n"
+        "        current=\"\"\n"
+        "    elif [[ \"$previous\" == \"=\" ]] && ((COMP_CWORD > 2)); then\n"
+        "        previous=\"${{COMP_WORDS[COMP_CWORD-2]}}\"\n"
+        "    fi\n"
+        "    if ((COMP_CWORD == 1)); then\n"
+        "        COMPREPLY=($(compgen -W \"{} --help --version\" -- \"$current\"))\n"
+        "        return\n"
+        "    fi\n"
+        "    case \"${{COMP_WORDS[1]}}\" in\n",
+        fmt::join(command_names(commands), " "));
+    for (const Command& command : commands)
+        text += bash_case(command);
+    return text + "    esac\n"
+                  "    COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
+                  "}\n"
+                  "complete -F _lamella lamella\n";
+}
+
+std::string zsh_completion(std::span<const Command> commands) {
+    std::string text = "#compdef lamella\n"
+                       "# zsh completion for lamella; made by: lamella completion zsh\n"
+                       "_lamella() {\n"
+                       "    local -a commands\n"
+                       "    commands=(\n";
+    for (const Command& command : commands)
+        text += fmt::format("        '{}:{}'\n", command.name,
+                            shell_quoted(replaced(command.summary, ":", "\\")));
+    text += "    )\n"
+            "    if ((CURRENT == 2)); then\n"
+            "        _describe command commands\n"
+            "        return\n"
+            "    fi\n"
+            "    local command=$words[2]\n"
+            "    shift words\n"
+            "    ((CURRENT--))\n"
+            "    case $command in\n";
+    for (const Command& command : commands)
+        text += zsh_case(command);
+    return text + "    esac\n"
+                  "}\n"
+                  "# As a file in the function path, or read by: source <(lamella completion zsh)\n"
+                  "if [[ $funcstack[1] == _lamella ]]; then\n"
+                  "    _lamella \"$@\"\n"
+                  "else\n"
+                  "    compdef _lamella lamella\n"
+                  "fi\n";
+}
+
+std::string fish_completion(std::span<const Command> commands) {
+    std::string text =
+        "# fish completion for lamella; made by: lamella completion fish\n"
+        "complete -c lamella -f\n"
+        "complete -c lamella -n __fish_use_subcommand -l version -d 'print version and licence'\n";
+    for (const Command& command : commands) {
+        text += fmt::format("complete -c lamella -n __fish_use_subcommand -a {} -d '{}'\n", command.name,
+                            replaced(command.summary, "'\\", "\\"));
+        for (const Operand& operand : command.operands)
+            text += fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}' {}\n", command.name,
+                                operand.choices.empty()
+                                    ? std::string("-F")
+                                    : fmt::format("-a '{}'", fmt::join(operand.choices, " ")));
+        for (const Option* option : options_of(command))
+            text += fish_option(command, *option);
+    }
+    return text;
+}
+
+} // namespace lamella::app

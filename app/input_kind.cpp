@@ -1,0 +1,55 @@
+#include "input_kind.hpp"
+
+#include "text_file.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace lamella::app {
+namespace {
+
+/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag; STL files with
+/// neither.
+bool holds_layers(std::string_view head) {
+    if (head.starts_with("\xEF\xBB\xBF"))
+        head.remove_prefix(3);
+    const std::size_t first = head.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos)
+        return false;
+    head.remove_prefix(first);
+    return head.starts_with("$$") || head.starts_with("//") || head.starts_with("<");
+}
+
+std::string head_of(const std::string& path) {
+    struct Close {
+        void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
+    };
+    std::string head(512, '\0');
+    // What cannot be opened is reported by the reader.
+    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+    head.resize(file == nullptr ? 0 : std::fread(head.data(), 1, head.size(), file.get()));
+    return head;
+}
+
+} // namespace
+
+std::variant<MeshFile, LayerFile> read_either(const std::string& path, const MeshReadOptions& options,
+                                              const Execution& execution) {
+    if (path == "-") {
+        // Standard input can be read only once.
+        const std::string content = read_text_file("/dev/stdin");
+        const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
+        if (holds_layers(content))
+            return read_layers(bytes, path, execution);
+        return read_mesh(bytes, path, options, execution);
+    }
+    if (holds_layers(head_of(path)))
+        return read_layers(path, execution);
+    return read_mesh(path, options, execution);
+}
+
+} // namespace lamella::app

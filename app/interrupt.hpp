@@ -1,0 +1,31 @@
+#pragma once
+
+// Ctrl-C and the terminate signal.
+
+#include <stop_token>
+#include <thread>
+
+namespace lamella::app {
+
+/// While it lives, SIGINT and SIGTERM request a stop instead of ending the program, so that temporary files
+/// are removed. To be made before any other thread. Should the program be stuck (such as waiting for
+/// standard input) a short while after the signal, it is ended at once with exit code 130.
+class Interrupt {
+  public:
+    Interrupt();
+    ~Interrupt();
+    Interrupt(const Interrupt&) = delete;
+    Interrupt& operator=(const Interrupt&) = delete;
+
+    [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+
+  private:
+    void watch();
+
+    std::stop_source source_;
+    int signals_ = -1; ///< becomes readable when a signal arrives
+    int ending_ = -1;  ///< becomes readable when the watcher is no longer needed
+    std::thread watcher_;
+};
+
+} // namespace lamella::app

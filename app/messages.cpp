@@ -1,0 +1,104 @@
+#include "messages.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <string_view>
+
+namespace lamella::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void put(const std::string& text) {
+    // One write, so that lines of several programs on one terminal do not mix. Nobody is left to be told when
+    // standard error cannot be written.
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+    static_cast<void>(std::fflush(stderr));
+}
+
+void put_json(const Json& object) {
+    // Names of files need not be UTF-8.
+    put(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+/// What a stage does, in words.
+std::string_view deed(Stage stage) {
+    constexpr std::array<std::string_view, 6> deeds{"reading", "welding", "linking",
+                                                    "slicing", "joining", "writing"};
+    return deeds.at(static_cast<std::size_t>(stage));
+}
+
+} // namespace
+
+std::string one_line(std::string text) {
+    for (char& c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 0x20 || code == 0x7f)
+            c = c == '\n' || c == '\r' || c == '\t' ? ' ' : '?';
+    }
+    return text;
+}
+
+void Messages::progress(const Progress& progress) {
+    if (style_ == ProgressStyle::none)
+        return;
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+    if (style_ == ProgressStyle::json) {
+        put_json({{"stage", stage_name(progress.stage)},
+                  {"done", progress.done},
+                  {"total", progress.total},
+                  {"seconds", seconds.count()}});
+    } else if (isatty(STDERR_FILENO) != 0) {
+        draw_bar(progress, seconds.count());
+    }
+}
+
+void Messages::warn(const std::string& text) {
+    clear_bar();
+    if (style_ == ProgressStyle::json)
+        put_json({{"warning", text}});
+    else
+        put("lamella: warning: " + one_line(text) + "\n");
+}
+
+void Messages::error(const std::string& text, int exit_code) {
+    clear_bar();
+    if (style_ == ProgressStyle::json)
+        put_json({{"error", text}, {"exit_code", exit_code}});
+    else
+        put("lamella: error: " + one_line(text) + "\n");
+}
+
+void Messages::note(const std::string& text) {
+    clear_bar();
+    if (style_ != ProgressStyle::json)
+        put(text);
+}
+
+void Messages::draw_bar(const Progress& progress, double seconds) {
+    // A run that is over in the blink of an eye needs no bar.
+    constexpr double patience = 0.3;
+    if (seconds < patience || progress.total == 0)
+        return;
+    constexpr int width = 40;
+    const double part =
+        std::min(1.0, static_cast<double>(progress.done) / static_cast<double>(progress.total));
+    const int filled = static_cast<int>(part * width);
+    put(fmt::format("\r{:8} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} s ", deed(progress.stage), "", filled, "",
+                    width - filled, std::min(part * 100, 100.0), seconds));
+    bar_drawn_ = true;
+}
+
+void Messages::clear_bar() {
+    if (bar_drawn_)
+        put("\r\033[K");
+    bar_drawn_ = false;
+}
+
+} // namespace lamella::app

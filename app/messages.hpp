@@ -1,0 +1,49 @@
+#pragma once
+
+// Standard error: errors, warnings, notes and progress, for people or (JSON lines) for programs.
+
+#include "lamella/core/execution.hpp"
+
+#include <chrono>
+#include <string>
+
+namespace lamella::app {
+
+enum class ProgressStyle {
+    bar,  ///< a bar, but only where standard error is a terminal
+    json, ///< everything on standard error is one JSON object a line
+    none,
+};
+
+class Messages {
+  public:
+    Messages() = default;
+    ~Messages() { clear_bar(); }
+    Messages(const Messages&) = delete;
+    Messages& operator=(const Messages&) = delete;
+
+    void set_style(ProgressStyle style) { style_ = style; }
+
+    /// To be called from one thread at a time, as Execution::progress is.
+    void progress(const Progress& progress);
+
+    /// "lamella: warning: ...", on one line.
+    void warn(const std::string& text);
+    /// "lamella: error: ...", on one line.
+    void error(const std::string& text, int exit_code);
+    /// What is no result here because standard output carries data. Programs are spared it.
+    void note(const std::string& text);
+
+  private:
+    void draw_bar(const Progress& progress, double seconds);
+    void clear_bar();
+
+    ProgressStyle style_ = ProgressStyle::none;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    bool bar_drawn_ = false;
+};
+
+/// The text on one line, without characters that would move a terminal's cursor.
+[[nodiscard]] std::string one_line(std::string text);
+
+} // namespace lamella::app

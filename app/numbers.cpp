@@ -1,0 +1,146 @@
+#include "numbers.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+namespace lamella::app {
+namespace {
+
+[[noreturn]] void refuse(std::string_view found, std::string_view expected) {
+    throw Error(ErrorKind::usage, fmt::format("\"{}\" is not {}", found, expected));
+}
+
+std::string_view trimmed(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos)
+        return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// The whole of `text` as a number, or nothing.
+template <class Number>
+bool read(std::string_view text, Number& value) {
+    text = trimmed(text);
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+        text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+/// The two ends of "a:b"; an end that is left out keeps the value that it has.
+template <class Number>
+std::pair<Number, Number> read_range(std::string_view text, std::pair<Number, Number> range,
+                                     std::string_view expected) {
+    const auto colon = text.find(':');
+    if (colon == std::string_view::npos)
+        refuse(text, expected);
+    const std::string_view first = trimmed(text.substr(0, colon));
+    const std::string_view second = trimmed(text.substr(colon + 1));
+    if ((!first.empty() && !read(first, range.first)) || (!second.empty() && !read(second, range.second)))
+        refuse(text, expected);
+    return range;
+}
+
+} // namespace
+
+double parse_number(std::string_view text) {
+    double value = 0;
+    if (!read(text, value) || !std::isfinite(value))
+        refuse(text, "a number such as 0.1");
+    return value;
+}
+
+double parse_positive(std::string_view text) {
+    const double value = parse_number(text);
+    if (!(value > 0))
+        refuse(text, "a number above 0");
+    return value;
+}
+
+std::uint64_t parse_count(std::string_view text) {
+    std::uint64_t value = 0;
+    if (!read(text, value))
+        refuse(text, "a whole number such as 4");
+    return value;
+}
+
+std::vector<double> parse_numbers(std::string_view text) {
+    std::vector<double> numbers;
+    std::string_view rest = trimmed(text);
+    const std::string_view gaps = rest.find(',') == std::string_view::npos ? " \t" : ",";
+    while (true) {
+        const auto gap = rest.find_first_of(gaps);
+        numbers.push_back(parse_number(rest.substr(0, gap)));
+        if (gap == std::string_view::npos)
+            return numbers;
+        rest = trimmed(rest.substr(gap + 1));
+    }
+}
+
+std::array<double, 3> parse_triple(std::string_view text) {
+    const std::vector<double> numbers = parse_numbers(text);
+    if (numbers.size() != 3)
+        refuse(text, "three numbers such as 1,0,0.5");
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+std::pair<double, double> parse_range(std::string_view text) {
+    constexpr std::string_view expected = "a range such as 1.5:20 (or 1.5: or :20)";
+    constexpr double most = std::numeric_limits<double>::max();
+    const auto range = read_range<double>(text, {-most, most}, expected);
+    if (!std::isfinite(range.first) || !std::isfinite(range.second))
+        refuse(text, expected);
+    if (range.first > range.second)
+        throw Error(ErrorKind::usage, fmt::format("\"{}\" is empty: its end lies below its start", text));
+    return range;
+}
+
+std::pair<std::uint64_t, std::uint64_t> parse_index_range(std::string_view text) {
+    const auto range = read_range<std::uint64_t>(text, {0, std::numeric_limits<std::uint64_t>::max()},
+                                                 "a range such as 0:100 (or 10: or :100)");
+    if (range.first >= range.second)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("\"{}\" holds no layer: the second number is the first layer left out", text));
+    return range;
+}
+
+std::string exact(double value) {
+    return fmt::format("{}", value);
+}
+
+std::string brief(double value) {
+    return fmt::format("{:.6g}", value + 0.0);
+}
+
+std::string grouped(std::uint64_t value) {
+    std::string digits = std::to_string(value);
+    for (std::size_t i = digits.size(); i > 3;) {
+        i -= 3;
+        digits.insert(i, 1, ',');
+    }
+    return digits;
+}
+
+std::string counted(std::uint64_t n, std::string_view noun) {
+    return fmt::format("{} {}{}", grouped(n), noun, n == 1 ? "" : "s");
+}
+
+std::string byte_size(std::uint64_t bytes) {
+    constexpr std::array<const char*, 5> units{"bytes", "kB", "MB", "GB", "TB"};
+    auto value = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    while (value >= 999.5 && unit + 1 < units.size()) {
+        value /= 1000;
+        ++unit;
+    }
+    return fmt::format("{:.{}f} {}", value, unit > 0 && value < 9.95 ? 1 : 0, units[unit]);
+}
+
+} // namespace lamella::app

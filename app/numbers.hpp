@@ -1,0 +1,37 @@
+#pragma once
+
+// Numbers as people type and read them, independent of any locale.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella::app {
+
+/// These throw Error{usage} that says what was found and shows an example of what was expected. Decimal
+/// notation and exponents; finite numbers only.
+[[nodiscard]] double parse_number(std::string_view text);
+[[nodiscard]] double parse_positive(std::string_view text);
+[[nodiscard]] std::uint64_t parse_count(std::string_view text);
+/// "1,2,3" or "1 2 3".
+[[nodiscard]] std::vector<double> parse_numbers(std::string_view text);
+[[nodiscard]] std::array<double, 3> parse_triple(std::string_view text);
+/// "a:b"; either end may be left out.
+[[nodiscard]] std::pair<double, double> parse_range(std::string_view text);
+[[nodiscard]] std::pair<std::uint64_t, std::uint64_t> parse_index_range(std::string_view text);
+
+/// The shortest text that reads back to the same number.
+[[nodiscard]] std::string exact(double value);
+/// At most six digits: "31.75", "1.2e-07".
+[[nodiscard]] std::string brief(double value);
+/// "102,812".
+[[nodiscard]] std::string grouped(std::uint64_t value);
+/// "1 layer", "2 layers".
+[[nodiscard]] std::string counted(std::uint64_t n, std::string_view noun);
+/// "6.2 MB".
+[[nodiscard]] std::string byte_size(std::uint64_t bytes);
+
+} // namespace lamella::app

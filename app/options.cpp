@@ -1,0 +1,245 @@
+#include "options.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+struct Unit {
+    std::string_view name;
+    double mm;
+};
+constexpr std::array<Unit, 6> units{Unit{"mm", 1},  {"cm", 10},    {"m", 1000},
+                                    {"inch", 25.4}, {"ft", 304.8}, {"um", 0.001}};
+
+Option scale_option(std::optional<std::vector<double>>& target) {
+    return row("scale", ValueKind::numbers, "F|X,Y,Z",
+               "make it larger (or smaller) by a factor, or by one along each axis",
+               [&target](const std::string& text) {
+                   std::vector<double> factors = parse_numbers(text);
+                   if (factors.size() != 1 && factors.size() != 3)
+                       throw Error(ErrorKind::usage,
+                                   fmt::format("\"{}\" is neither one number nor three", text));
+                   if (std::ranges::find(factors, 0.0) != factors.end())
+                       throw Error(ErrorKind::usage, "a factor of 0 leaves nothing to slice");
+                   target = std::move(factors);
+               });
+}
+
+} // namespace
+
+Option row(std::string name, ValueKind kind, std::string placeholder, std::string help,
+           std::function<void(const std::string&)> set) {
+    return {.name = std::move(name),
+            .kind = kind,
+            .placeholder = std::move(placeholder),
+            .help = std::move(help),
+            .set = std::move(set)};
+}
+
+Option flag(std::string name, std::string help, bool& target) {
+    return row(std::move(name), ValueKind::flag, "", std::move(help),
+               [&target](const std::string& text) { target = text == "true"; });
+}
+
+Option count(std::string name, std::string placeholder, std::string help,
+             std::optional<std::uint64_t>& target) {
+    Option option = row(std::move(name), ValueKind::count, std::move(placeholder), std::move(help),
+                        [&target](const std::string& text) { target = parse_count(text); });
+    if (target)
+        option.preset = std::to_string(*target);
+    return option;
+}
+
+Option length(std::string name, std::string help, std::optional<double>& target) {
+    Option option = row(std::move(name), ValueKind::number, "MM", std::move(help),
+                        [&target](const std::string& text) { target = parse_positive(text); });
+    if (target)
+        option.preset = exact(*target);
+    return option;
+}
+
+Option number(std::string name, std::string placeholder, std::string help, std::optional<double>& target) {
+    Option option = row(std::move(name), ValueKind::number, std::move(placeholder), std::move(help),
+                        [&target](const std::string& text) { target = parse_number(text); });
+    if (target)
+        option.preset = exact(*target);
+    return option;
+}
+
+Option triple(std::string name, std::string placeholder, std::string help,
+              std::optional<std::array<double, 3>>& target) {
+    return row(std::move(name), ValueKind::numbers, std::move(placeholder), std::move(help),
+               [&target](const std::string& text) { target = parse_triple(text); });
+}
+
+Option choice(std::string name, std::string placeholder, std::string help, std::vector<std::string> choices,
+              std::string& target) {
+    Option option = row(std::move(name), ValueKind::choice, std::move(placeholder), std::move(help),
+                        [&target](const std::string& text) { target = text; });
+    option.choices = std::move(choices);
+    option.preset = target;
+    return option;
+}
+
+Option text(std::string name, std::string placeholder, std::string help, std::string& target) {
+    Option option = row(std::move(name), ValueKind::text, std::move(placeholder), std::move(help),
+                        [&target](const std::string& value) { target = value; });
+    option.preset = target;
+    return option;
+}
+
+Option file(std::string name, std::string help, std::string& target) {
+    Option option = text(std::move(name), "FILE", std::move(help), target);
+    option.kind = ValueKind::file;
+    return option;
+}
+
+Option unit_option(std::string& target) {
+    std::vector<std::string> names;
+    for (const Unit& unit : units)
+        names.emplace_back(unit.name);
+    return choice("unit", "UNIT", "what a unit of the file is, for STL files do not say", std::move(names),
+                  target);
+}
+
+OptionGroup pose_options(PlacementOptions& target) {
+    OptionGroup group{"Where the part stands (in this order)", {}};
+    group.options.push_back(scale_option(target.scale));
+    group.options.push_back(
+        triple("rotate", "X,Y,Z", "turn it by degrees about the x axis, then y, then z", target.rotate));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const char letter = "xyz"[axis];
+        group.options.push_back(number(fmt::format("rotate-{}", letter), "DEG",
+                                       fmt::format("turn it about the {} axis only", letter),
+                                       target.rotate_axis[axis]));
+    }
+    group.options.push_back(triple("translate", "X,Y,Z", "move it by millimetres", target.translate));
+    return group;
+}
+
+OptionGroup placement_options(PlacementOptions& target) {
+    OptionGroup group = pose_options(target);
+    group.options.insert(group.options.begin(), unit_option(target.unit));
+    group.options.push_back(triple("direction", "X,Y,Z",
+                                   "slice along this direction instead of z: the part is turned so that it "
+                                   "points up; the matrix is kept in the statistics",
+                                   target.direction));
+    return group;
+}
+
+bool PlacementOptions::given() const {
+    return unit != "mm" || scale || rotate || rotate_axis[0] || rotate_axis[1] || rotate_axis[2] ||
+           translate || direction;
+}
+
+Transform PlacementOptions::transform() const {
+    const auto found = std::ranges::find(units, std::string_view(unit), &Unit::name);
+    Transform map = scaling(found->mm, found->mm, found->mm);
+    const auto then = [&map](const Transform& next) {
+        map = compose(next, map);
+    };
+    if (scale)
+        then(scale->size() == 1 ? scaling((*scale)[0], (*scale)[0], (*scale)[0])
+                                : scaling((*scale)[0], (*scale)[1], (*scale)[2]));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const char letter = "xyz"[axis];
+        if (rotate && rotate_axis[axis])
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("--rotate and --rotate-{} contradict each other: give one of them", letter));
+        if (rotate)
+            then(rotation(letter, (*rotate)[axis]));
+        else if (rotate_axis[axis])
+            then(rotation(letter, *rotate_axis[axis]));
+    }
+    if (translate)
+        then(translation((*translate)[0], (*translate)[1], (*translate)[2]));
+    if (direction)
+        then(upright({(*direction)[0], (*direction)[1], (*direction)[2]}));
+    return map;
+}
+
+OptionGroup run_options(RunOptions& target) {
+    return {"How it runs",
+            {count("threads", "N", "threads to use; 0 takes all processors; the result is always the same",
+                   target.threads),
+             choice("progress", "STYLE",
+                    "on standard error: a bar (on a terminal only), or JSON, one object a line",
+                    {"bar", "json", "none"}, target.progress)}};
+}
+
+Execution RunOptions::execution(const Context& context) const {
+    constexpr std::uint64_t most = 4096;
+    if (threads.value_or(0) > most)
+        throw Error(ErrorKind::usage,
+                    fmt::format("--threads: {} are too many, {} is the most", *threads, most));
+    context.messages.set_style(progress == "bar"    ? ProgressStyle::bar
+                               : progress == "json" ? ProgressStyle::json
+                                                    : ProgressStyle::none);
+    return {.threads = static_cast<unsigned>(threads.value_or(0)),
+            .progress = [&messages = context.messages](const Progress& p) { messages.progress(p); },
+            .cancel = context.cancel};
+}
+
+std::vector<Option> layer_output_options(LayerOutputOptions& target) {
+    std::vector<std::string> formats;
+    for (const LayerFormat& format : layer_formats())
+        formats.emplace_back(format.name);
+    std::vector<Option> options{
+        choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
+               std::move(formats), target.format),
+        text("label", "TEXT", "name of the part inside the slice file", target.label),
+        length("units-mm",
+               "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded",
+               target.units_mm),
+        flag("short", "cli: 16-bit coordinates, half the size", target.short_form)};
+    options[2].preset = exact(LayerWriteOptions{}.units_mm);
+    return options;
+}
+
+LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) const {
+    if (units_mm && !with.name.starts_with("cli"))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("--units-mm goes with the formats cli and cli-ascii, not with {}", with.name));
+    if (short_form && with.name != "cli")
+        throw Error(ErrorKind::usage,
+                    fmt::format("--short goes with the format cli, not with {}", with.name));
+    LayerWriteOptions options;
+    options.units_mm = units_mm.value_or(options.units_mm);
+    options.short_form = short_form;
+    return options;
+}
+
+const std::vector<std::string>& slice_at_names() {
+    static const std::vector<std::string> names{"bottom", "middle", "top"};
+    return names;
+}
+
+SliceAt slice_at_of(std::string_view name) {
+    if (name == "bottom")
+        return SliceAt::bottom;
+    return name == "top" ? SliceAt::top : SliceAt::middle;
+}
+
+void check_distinct(const std::string& input, const std::string& output) {
+    if (input == "-" || output == "-")
+        return;
+    std::error_code ignored;
+    if (input == output || std::filesystem::equivalent(input, output, ignored))
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: the output would overwrite the input; choose another name", output));
+}
+
+} // namespace lamella::app

@@ -1,0 +1,86 @@
+#pragma once
+
+// Rows for the tables of options, and the groups of them that several commands share.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include "command.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella::app {
+
+// Rows. Each refers to its target, which must outlive the command; the target's value is the preset.
+
+[[nodiscard]] Option row(std::string name, ValueKind kind, std::string placeholder, std::string help,
+                         std::function<void(const std::string&)> set);
+[[nodiscard]] Option flag(std::string name, std::string help, bool& target);
+[[nodiscard]] Option count(std::string name, std::string placeholder, std::string help,
+                           std::optional<std::uint64_t>& target);
+[[nodiscard]] Option length(std::string name, std::string help, std::optional<double>& target);
+[[nodiscard]] Option number(std::string name, std::string placeholder, std::string help,
+                            std::optional<double>& target);
+[[nodiscard]] Option triple(std::string name, std::string placeholder, std::string help,
+                            std::optional<std::array<double, 3>>& target);
+[[nodiscard]] Option choice(std::string name, std::string placeholder, std::string help,
+                            std::vector<std::string> choices, std::string& target);
+[[nodiscard]] Option text(std::string name, std::string placeholder, std::string help, std::string& target);
+[[nodiscard]] Option file(std::string name, std::string help, std::string& target);
+
+/// Where the part stands: unit, scale, rotation, translation, then the slicing direction.
+struct PlacementOptions {
+    std::string unit = "mm";
+    std::optional<std::vector<double>> scale;
+    std::optional<std::array<double, 3>> rotate;
+    std::array<std::optional<double>, 3> rotate_axis;
+    std::optional<std::array<double, 3>> translate;
+    std::optional<std::array<double, 3>> direction;
+
+    /// Throws Error{usage}.
+    [[nodiscard]] Transform transform() const;
+    [[nodiscard]] bool given() const;
+};
+[[nodiscard]] Option unit_option(std::string& target);
+[[nodiscard]] OptionGroup placement_options(PlacementOptions& target);
+/// The same without unit and direction: for bodies that are made.
+[[nodiscard]] OptionGroup pose_options(PlacementOptions& target);
+
+/// How the computation runs and what it says meanwhile.
+struct RunOptions {
+    std::optional<std::uint64_t> threads;
+    std::string progress = "bar";
+
+    /// Sets the style of the messages, too.
+    [[nodiscard]] Execution execution(const Context& context) const;
+};
+[[nodiscard]] OptionGroup run_options(RunOptions& target);
+
+/// What is written and how.
+struct LayerOutputOptions {
+    std::string format = {};
+    std::string label = {};
+    std::optional<double> units_mm = {};
+    bool short_form = false;
+
+    /// Throws Error{usage} where options do not go with the format.
+    [[nodiscard]] LayerWriteOptions write_options(const LayerFormat& with) const;
+};
+/// To be appended to a group.
+[[nodiscard]] std::vector<Option> layer_output_options(LayerOutputOptions& target);
+
+[[nodiscard]] const std::vector<std::string>& slice_at_names();
+[[nodiscard]] SliceAt slice_at_of(std::string_view name);
+
+/// Throws Error{usage} when a result would overwrite the file that it is made from.
+void check_distinct(const std::string& input, const std::string& output);
+
+} // namespace lamella::app

@@ -1,0 +1,125 @@
+#include "stats_json.hpp"
+
+#include "config_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace lamella::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::uint64_t peak_rss_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Rows of the 4 by 4 matrix from the file's coordinates to the layers'.
+Json matrix_json(const Transform& map) {
+    Json rows = Json::array();
+    for (std::size_t r = 0; r < 3; ++r)
+        rows.push_back({map.linear[r][0], map.linear[r][1], map.linear[r][2], map.offset[r]});
+    rows.push_back({0, 0, 0, 1});
+    return rows;
+}
+
+Json layers_json(const FileResult& result) {
+    Json layers = Json::array();
+    for (const LayerStatistics& layer : result.layers)
+        layers.push_back({{"index", layer.index},
+                          {"z", layer.z},
+                          {"thickness", layer.thickness},
+                          {"contours", layer.measure.contours},
+                          {"holes", layer.measure.holes},
+                          {"points", layer.measure.points},
+                          {"area_mm2", layer.measure.area_mm2},
+                          {"perimeter_mm", layer.measure.perimeter_mm},
+                          {"open_chains", layer.measure.open_chains},
+                          // As text: a JSON number loses digits beyond 2^53.
+                          {"hash", fmt::format("{:016x}", layer.hash)}});
+    return layers;
+}
+
+/// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
+void append_json(std::string& text, const Json& value, std::size_t depth) {
+    if (std::ranges::none_of(value, [](const Json& item) { return item.is_structured(); })) {
+        text += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+        return;
+    }
+    const bool is_object = value.is_object();
+    text += is_object ? '{' : '[';
+    const char* separator = "\n";
+    for (const auto& [key, item] : value.items()) {
+        text.append(separator).append(2 * depth + 2, ' ');
+        if (is_object)
+            text.append(Json(key).dump()).append(": ");
+        append_json(text, item, depth + 1);
+        separator = ",\n";
+    }
+    text.append(1, '\n').append(2 * depth, ' ');
+    text += is_object ? '}' : ']';
+}
+
+} // namespace
+
+Json defects_json(const Inspection& found) {
+    return {{"boundary_edges", found.boundary_edges},
+            {"nonmanifold_edges", found.nonmanifold_edges},
+            {"orientation_conflicts", found.orientation_conflicts},
+            {"duplicate_triangles", found.duplicate_triangles},
+            {"degenerate_triangles", found.degenerate_triangles},
+            {"inverted_shells", found.inverted_shells}};
+}
+
+Json box_json(const Box3& box) {
+    return {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}};
+}
+
+Json stats_json(const Command& command, const FileJob& job, const FileResult& result,
+                const std::string& unit) {
+    Json options = options_in_effect(command);
+    options["matrix"] = matrix_json(job.placement);
+    const bool inspected = result.inspection.has_value();
+    const FileResult::Seconds& seconds = result.seconds;
+    return {{"lamella", LAMELLA_VERSION},
+            {"options", std::move(options)},
+            {"input",
+             {{"path", job.input},
+              {"triangles", result.triangles},
+              {"vertices", inspected ? Json(result.inspection->vertices) : Json()},
+              {"bbox", box_json(result.box)},
+              {"unit", unit},
+              {"volume_mm3", result.mesh_volume_mm3},
+              {"defects", inspected ? defects_json(*result.inspection) : Json()}}},
+            {"engine", result.engine},
+            {"threads", result.threads},
+            {"seconds",
+             {{"read", seconds.read},
+              {"weld", seconds.weld},
+              {"link", seconds.link},
+              {"slice", seconds.slice},
+              {"polygon", 0.0},
+              {"write", seconds.write},
+              {"total", seconds.total}}},
+            {"peak_rss_bytes", peak_rss_bytes()},
+            {"points", result.report.points},
+            {"contours", result.report.contours},
+            {"open_chains", result.report.open_chains},
+            {"volume_mm3", result.volume_mm3},
+            {"layers", layers_json(result)}};
+}
+
+std::string json_text(const Json& object) {
+    std::string text;
+    append_json(text, object, 0);
+    return text + "\n";
+}
+
+} // namespace lamella::app

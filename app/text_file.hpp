@@ -1,0 +1,23 @@
+#pragma once
+
+// Small text files and standard output.
+
+#include <string>
+#include <string_view>
+
+namespace lamella::app {
+
+/// The whole file. Throws Error{input}.
+[[nodiscard]] std::string read_text_file(const std::string& path);
+
+/// Writes to a temporary name and renames, so that nobody sees half a file; "-" is standard output and
+/// special files are written in place. Throws Error{output}.
+void write_text_file(const std::string& path, std::string_view text);
+
+/// Prints a result on standard output. Throws Error{output}.
+void print(std::string_view text);
+
+/// Makes sure that everything printed has arrived. Throws Error{output}.
+void finish_printing();
+
+} // namespace lamella::app

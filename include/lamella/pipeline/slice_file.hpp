@@ -1,0 +1,99 @@
+#pragma once
+
+// The whole way: mesh file in, slice file out, layer by layer.
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/inspect.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/read/mesh_file.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+/// What is to be sliced, how, and where to.
+struct FileJob {
+    std::string input; ///< "-" is standard input
+    /// Applied to the mesh as the file has it: unit, pose and slicing direction.
+    Transform placement;
+
+    /// Layers of one height, stacked from the bottom of the placed mesh.
+    UniformLayers layers;
+    /// Where not empty: cuts at exactly these z instead. Of `layers`, slice_at and the two ranges still
+    /// count.
+    std::vector<double> z;
+
+    std::string engine; ///< by name; "" is the default engine
+    /// Weld the mesh and count its defects first.
+    bool inspect = false;
+    /// Inspect, and make an Error{defect} of any defect, before anything is written.
+    bool strict = false;
+    /// Measure and hash every layer.
+    bool layer_statistics = false;
+
+    std::string output; ///< "" writes nothing, "-" is standard output
+    std::string format; ///< by name; "" goes by the extension of `output`
+    std::string label = "part";
+    LayerWriteOptions write;
+};
+
+struct LayerStatistics {
+    std::uint64_t index = 0;
+    double z = 0;
+    double thickness = 0;
+    LayerMeasure measure;
+    std::uint64_t hash = 0; ///< content_hash
+};
+
+/// What was read, done and written.
+struct FileResult {
+    MeshFormat mesh_format = MeshFormat::stl_binary;
+    std::uint64_t triangles = 0;       ///< as the file stores them
+    std::vector<std::string> warnings; ///< of the reader
+    Box3 box;                          ///< of the placed mesh
+    double mesh_volume_mm3 = 0;        ///< signed, of the placed mesh; meaningful when it is closed
+    std::optional<Inspection> inspection;
+
+    std::string engine;
+    unsigned threads = 0;
+    SliceReport report;
+    std::uint64_t open_layers = 0; ///< layers with open chains
+    double first_open_z = 0;       ///< where the lowest of them was cut
+    double bottom = 0;             ///< of the first layer
+    double top = 0;                ///< of the last layer
+    std::string format;            ///< of the slice file, "" when none was written
+    std::uint64_t bytes = 0;       ///< written
+
+    /// With FileJob::layer_statistics: in ascending z, and the sum of area times thickness.
+    std::vector<LayerStatistics> layers;
+    double volume_mm3 = 0;
+
+    /// Wall time. `read` includes finding the bounding box, for that is when a mapped file is read;
+    /// `weld` includes the inspection; `write` is the part of writing that must be done in order, while
+    /// formatting is done in parallel and part of `slice`.
+    struct Seconds {
+        double read = 0;
+        double weld = 0;
+        double link = 0;
+        double slice = 0;
+        double write = 0;
+        double total = 0;
+    } seconds;
+};
+
+/// Slices a file into a file. Layers are written while slicing goes on, so that memory holds a bounded number
+/// of them; nothing appears at the output path before all went well.
+///
+/// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
+/// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.
+[[nodiscard]] FileResult slice_file(const FileJob& job, const Execution& execution = {});
+
+} // namespace lamella

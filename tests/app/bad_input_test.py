@@ -1,0 +1,172 @@
+"""Bad input: one line that says what to do, the documented exit code, and no file left behind."""
+
+import os
+import resource
+import unittest
+
+from program import ProgramTest, binary_stl, box_triangles, main
+
+
+class BadInput(ProgramTest):
+    def refuse(self, code, pattern, mesh, *arguments, **keywords):
+        self.fail_with(code, pattern, "slice", mesh, "-o", "out.cli", *arguments, **keywords)
+
+    def test_a_missing_file(self):
+        self.refuse(3, r"nowhere\.stl", "nowhere.stl")
+
+    def test_a_folder(self):
+        self.path("folder.stl").mkdir()
+        self.refuse(3, r"folder\.stl.*(director|folder)", "folder.stl")
+
+    def test_an_empty_file(self):
+        self.write("empty.stl", b"")
+        self.refuse(3, r"empty\.stl.*empty", "empty.stl")
+        self.refuse(3, "empty", "-", stdin=b"")
+
+    def test_a_file_cut_off_in_its_head(self):
+        self.write("cut.stl", binary_stl(box_triangles(1, 1, 1))[:60])
+        self.refuse(3, r"cut\.stl", "cut.stl")
+
+    def test_a_file_cut_off_in_a_triangle_is_sliced_with_a_warning_and_refused_when_strict(self):
+        self.write("cut.stl", binary_stl(box_triangles(20, 20, 20))[:-30])
+        result = self.succeed("slice", "cut.stl", "-o", "out.cli")
+        self.assertRegex(result.err, r"lamella: warning: .*cut\.stl")
+        self.path("out.cli").unlink()
+        result = self.run_program("slice", "cut.stl", "-o", "out.cli", "--strict")
+        self.assertIn(result.code, (3, 4))
+        self.assertEqual(self.listing(), ["cut.stl"])
+
+    def test_corners_that_are_no_numbers(self):
+        nan = float("nan")
+        self.write("nan.stl", binary_stl([((nan, 0, 0), (1, 0, 0), (0, 1, 1))]))
+        self.refuse(3, r"nan\.stl", "nan.stl")
+        self.write("one.stl", binary_stl(box_triangles(20, 20, 20) + [((nan, 0, 0), (1, 0, 0), (0, 1, 1))]))
+        self.assertIn("warning", self.succeed("slice", "one.stl", "-o", "out.cli").err)
+
+    def test_no_triangles(self):
+        self.write("none.stl", binary_stl([]))
+        self.refuse(3, r"none\.stl", "none.stl")
+        self.write("none-ascii.stl", "solid nothing\nendsolid nothing\n")
+        self.refuse(3, r"none-ascii\.stl", "none-ascii.stl")
+
+    def test_not_a_mesh(self):
+        self.write("text.stl", "This is a letter, not a mesh.\n" * 20)
+        self.refuse(3, r"text\.stl", "text.stl")
+
+    def test_a_flat_mesh(self):
+        self.write("flat.stl", binary_stl([((0, 0, 5), (1, 0, 5), (0, 1, 5))]))
+        self.refuse(3, r"flat\.stl.*flat.*z = 5.*rotate", "flat.stl")
+
+    def test_planes_that_miss_the_part(self):
+        self.box()
+        self.write("z.txt", "100\n200\n")
+        self.refuse(2, "none of the planes meets the part.*from z = 0 to 10", "box.stl", "--z-list", "z.txt")
+        self.refuse(2, "lamella: error: ", "box.stl", "--z-range", "100:200")
+        self.refuse(2, "lamella: error: ", "box.stl", "--layers", "500:600")
+
+    def test_impossible_layer_heights(self):
+        self.box()
+        for height in ["0", "-0.1", "nan", "inf", "1e999", "", "thin", "0,1", "0x10"]:
+            with self.subTest(height):
+                self.refuse(2, "--layer-height: ", "box.stl", f"--layer-height={height}")
+        self.refuse(2, "above the part's height of 10 mm", "box.stl", "--layer-height", "10.5")
+        self.refuse(2, "--first-layer-height: ", "box.stl", "--first-layer-height", "0")
+        self.refuse(2, "lamella: error: ", "box.stl", "--layer-height", "1e-12")
+
+    def test_unwritable_outputs(self):
+        self.box()
+        self.path("folder.cli").mkdir()
+        for output in ["no/such/folder/out.cli", "folder.cli", "box.stl/out.cli"]:
+            with self.subTest(output):
+                self.fail_with(6, output.split("/")[0], "slice", "box.stl", "-o", output)
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_a_folder_without_permission(self):
+        self.box()
+        locked = self.path("locked")
+        locked.mkdir()
+        locked.chmod(0o500)
+        self.fail_with(6, "locked", "slice", "box.stl", "-o", "locked/out.cli")
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full here")
+    def test_a_full_disk(self):
+        self.box()
+        self.fail_with(6, "/dev/full", "slice", "box.stl", "-o", "/dev/full", "--format", "cli")
+        self.fail_with(6, "/dev/full", "slice", "box.stl", "--stats", "/dev/full")
+        self.fail_with(6, "/dev/full", "make", "box", "-o", "/dev/full")
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full here")
+    def test_standard_output_that_is_full(self):
+        import subprocess
+        from program import PROGRAM
+        self.box()
+        for arguments in [["info", "box.stl"], ["--help"], ["slice", "box.stl", "--stats", "-"],
+                          ["slice", "box.stl", "-o", "-", "--format", "svg"]]:
+            with self.subTest(arguments[0]), open("/dev/full", "wb") as full:
+                done = subprocess.run([PROGRAM] + arguments, cwd=self.folder, stdout=full, stderr=subprocess.PIPE,
+                                      timeout=60)
+                self.assertEqual(done.returncode, 6, done.stderr)
+                self.assertIn(b"lamella: error: ", done.stderr)
+
+    def test_a_disk_that_fills_up_on_the_way_leaves_nothing(self):
+        self.box()
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+        self.refuse(6, r"out\.cli", "box.stl", "--layer-height", "0.01", preexec_fn=limit)
+        self.fail_with(6, r"box2\.stl", "make", "torus", "-o", "box2.stl", preexec_fn=limit)
+        self.fail_with(6, r"s\.json", "slice", "box.stl", "--stats", "s.json", preexec_fn=limit)
+
+    def test_extensions_and_formats_that_nobody_knows(self):
+        self.box()
+        self.fail_with(2, r"cli.*svg", "slice", "box.stl", "-o", "out.gcode")
+        self.fail_with(2, r"cli.*svg", "slice", "box.stl", "-o", "out")
+        self.fail_with(2, r"cli.*svg", "slice", "box.stl", "-o", "-")
+        self.refuse(2, '--format: "clii".*did you mean cli', "box.stl", "--format", "clii")
+        self.refuse(2, '--engine: "quick".*sweep', "box.stl", "--engine", "quick")
+
+    def test_options_that_contradict_each_other(self):
+        self.box()
+        self.write("z.txt", "1\n")
+        for arguments in [["--z-list", "z.txt", "--layer-height", "1"], ["--z-list", "z.txt", "--first-layer-height", "1"],
+                          ["--rotate", "1,2,3", "--rotate-z", "4"], ["--format", "svg", "--short"],
+                          ["--format", "svg", "--units-mm", "0.01"], ["--stats", "out.cli"],
+                          ["--scale", "0"], ["--scale", "1,2"], ["--direction", "0,0,0"], ["--rotate", "1,2"],
+                          ["--translate", "1;2;3"], ["--unit", "furlong"], ["--layers", "5:5"], ["--layers", "7"],
+                          ["--z-range", "3:1"], ["--z-range", "nan:1"], ["--threads", "-1"], ["--threads", "1000000"],
+                          ["--translate", "1e308,0,0", "--scale", "1e300"]]:
+            with self.subTest(arguments):
+                self.refuse(2, "lamella: error: ", "box.stl", *arguments)
+        self.fail_with(2, "standard output", "slice", "box.stl", "-o", "-", "--format", "cli", "--stats", "-")
+        self.fail_with(2, "-o part.cli", "slice", "box.stl")
+
+    def test_lists_of_heights_that_are_none(self):
+        self.box()
+        for content, code, pattern in [("1\ntwo\n", 2, r"z\.txt:2: \"two\""), ("2\n1\n", 2, "ascending|order"),
+                                       ("1\n1\n", 2, "ascending|order"), ("# nothing\n", 3, r"z\.txt"),
+                                       ("[1, \"2\"]", 2, r"z\.txt.*item 1"), ("[1, 2", 2, r"z\.txt"), ("nan\n", 2, r"z\.txt:1")]:
+            with self.subTest(content):
+                self.write("z.txt", content)
+                self.refuse(code, pattern, "box.stl", "--z-list", "z.txt")
+        self.refuse(3, r"missing\.txt", "box.stl", "--z-list", "missing.txt")
+
+    def test_an_output_that_would_overwrite_the_input(self):
+        self.box()
+        os.link(self.path("box.stl"), self.path("twin.cli"))
+        before = self.bytes_of("box.stl")
+        self.fail_with(2, "overwrite", "slice", "box.stl", "-o", "box.stl", "--format", "cli")
+        self.fail_with(2, "overwrite", "slice", "box.stl", "-o", "./box.stl", "--format", "cli")
+        self.fail_with(2, "overwrite", "slice", "box.stl", "-o", "twin.cli")
+        self.fail_with(2, "overwrite", "slice", "box.stl", "--stats", "box.stl")
+        self.assertEqual(self.bytes_of("box.stl"), before)
+
+    def test_a_failed_run_leaves_an_older_result_alone(self):
+        self.write("out.cli", "older result")
+        self.write("empty.stl", b"")
+        self.refuse(3, "empty", "empty.stl")
+        self.assertEqual(self.bytes_of("out.cli"), b"older result")
+
+    def test_errors_stay_on_one_line_whatever_a_file_is_called(self):
+        self.refuse(3, "bad name", "bad\nname\x1b[31m.stl")
+
+
+if __name__ == "__main__":
+    main()

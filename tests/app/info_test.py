@@ -1,0 +1,86 @@
+"""lamella info, of meshes and of slice files."""
+
+from program import ProgramTest, binary_stl, box_triangles, main, open_box
+
+MESH_KEYS = ["path", "format", "unit", "triangles", "vertices", "bbox", "volume_mm3", "area_mm2", "closed",
+             "shells", "defects"]
+
+
+class Info(ProgramTest):
+    def info(self, *arguments, **keywords):
+        return self.succeed("info", "--json", *arguments, **keywords).json()
+
+    def test_a_box(self):
+        found = self.info(self.box())
+        self.assertEqual(list(found), MESH_KEYS)
+        self.assertEqual((found["path"], found["format"], found["unit"]), ("box.stl", "stl-binary", "mm"))
+        self.assertEqual((found["triangles"], found["vertices"], found["shells"]), (12, 8, 1))
+        self.assertEqual([round(b - a, 6) for a, b in zip(*found["bbox"])], [20, 30, 10])
+        self.assertAlmostEqual(found["volume_mm3"], 6000, places=3)
+        self.assertAlmostEqual(found["area_mm2"], 2200, places=3)
+        self.assertTrue(found["closed"])
+        self.assertEqual(set(found["defects"].values()), {0})
+
+    def test_the_text_names_what_matters(self):
+        text = self.succeed("info", self.box()).text
+        for word in ["12", "20 x 30 x 10 mm", "6000 mm3", "closed", "defects"]:
+            self.assertIn(word, text)
+
+    def test_an_open_box_has_boundary_edges_and_no_volume(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        found = self.info("open.stl")
+        self.assertFalse(found["closed"])
+        self.assertEqual(found["defects"]["boundary_edges"], 4)
+        text = self.succeed("info", "open.stl").text
+        self.assertRegex(text, "4 boundary edges .*hole")
+        self.assertIn("not closed", text)
+
+    def test_strict_turns_a_defect_into_an_exit_code(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        result = self.run_program("info", "--strict", "open.stl")
+        self.assertEqual(result.code, 4)
+        self.assertIn("boundary edges", result.text)
+        self.succeed("info", "--strict", self.box())
+
+    def test_a_duplicate_and_a_degenerate_triangle(self):
+        triangles = box_triangles(1, 1, 1)
+        self.write("odd.stl", binary_stl(triangles + [triangles[0], ((0, 0, 0), (0, 0, 0), (1, 0, 0))]))
+        found = self.info("odd.stl")
+        self.assertEqual(found["triangles"], 14)
+        self.assertEqual(found["defects"]["duplicate_triangles"], 1)
+        self.assertEqual(found["defects"]["degenerate_triangles"], 1)
+
+    def test_a_unit(self):
+        found = self.info(self.box(), "--unit", "cm")
+        self.assertEqual(found["unit"], "cm")
+        self.assertAlmostEqual(found["volume_mm3"], 6e6, delta=1)
+
+    def test_ascii_and_standard_input(self):
+        self.succeed("make", "box", "--ascii", "-o", "box.stl")
+        found = self.info("-", stdin=self.bytes_of("box.stl"))
+        self.assertEqual((found["path"], found["format"], found["triangles"]), ("-", "stl-ascii", 12))
+
+    def test_slice_files(self):
+        self.box()
+        for name in ["box.cli", "box.svg"]:
+            with self.subTest(name):
+                self.succeed("slice", "box.stl", "-o", name, "--layer-height", "1")
+                found = self.info(name)
+                self.assertEqual((found["layers"], found["contours"], found["open_chains"]), (10, 10, 0))
+                for value, expected in zip(found["z_range"], [0, 10]):
+                    self.assertAlmostEqual(value, expected, places=4)
+                self.assertAlmostEqual(found["volume_mm3"], 6000, delta=1)
+                self.assertIn("slice file", self.succeed("info", name).text)
+                self.assertEqual(self.info("-", stdin=self.bytes_of(name))["layers"], 10)
+
+    def test_bad_files(self):
+        self.write("empty", b"")
+        self.fail_with(3, "empty", "info", "empty")
+        self.fail_with(3, "nowhere", "info", "nowhere")
+        self.fail_with(3, "lamella: error: ", "info", ".")
+        self.write("cut.cli", "$$HEADERSTART\n")
+        self.fail_with(3, r"cut\.cli", "info", "cut.cli")
+
+
+if __name__ == "__main__":
+    main()

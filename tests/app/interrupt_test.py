@@ -1,0 +1,50 @@
+"""Ctrl-C: the program stops, says so with exit code 130, and leaves no file."""
+
+import json
+import signal
+import subprocess
+
+from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main
+
+
+class Interrupt(ProgramTest):
+    def start(self, *arguments):
+        process = subprocess.Popen([PROGRAM] + list(arguments), cwd=self.folder, stdin=subprocess.PIPE,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_a_run_that_is_stopped_leaves_nothing(self):
+        self.succeed("make", "rook")
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            with self.subTest(number):
+                # Half a million layers: minutes of work and gigabytes of output, had it been left alone.
+                process = self.start("slice", "rook.stl", "-o", "rook.svg", "--layer-height", "0.0001",
+                                     "--progress", "json")
+                for line in process.stderr:
+                    event = json.loads(line)
+                    if event["stage"] == "slice" and event["done"] > 0:
+                        break
+                process.send_signal(number)
+                out, err = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 130)
+                self.assertEqual(out, b"")
+                self.assertEqual(json.loads(err.splitlines()[-1])["exit_code"], 130)
+                self.assertEqual(self.listing(), ["rook.stl"])
+
+    def test_waiting_for_standard_input_can_be_stopped(self):
+        process = self.start("slice", "-", "-o", "out.cli")
+        # More than a pipe holds: once it is written, the program is known to be reading.
+        process.stdin.write(binary_stl(box_triangles(1, 1, 1) * 5000))
+        process.stdin.flush()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), 130)
+        self.assertIn(b"cancelled", process.stderr.read())
+        self.assertEqual(self.listing(), [])
+        process.stdin.close()
+        process.stdout.close()
+        process.stderr.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""What the tests of the program share: starting it in a folder of its own, and small STL files."""
+
+import json
+import os
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ.get("LAMELLA_PROGRAM", "build/lamella")
+SOURCE = Path(os.environ.get("LAMELLA_SOURCE", Path(__file__).resolve().parent.parent.parent))
+
+
+class Result:
+    def __init__(self, finished):
+        self.code = finished.returncode
+        self.out = finished.stdout
+        self.err = finished.stderr.decode("utf-8", "replace")
+
+    @property
+    def text(self):
+        return self.out.decode("utf-8")
+
+    def json(self):
+        return json.loads(self.text)
+
+
+class ProgramTest(unittest.TestCase):
+    """Every test runs in an empty folder, self.folder."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="lamella-test-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_program(self, *arguments, stdin=b"", **keywords):
+        command = [PROGRAM] + [str(a) for a in arguments]
+        return Result(subprocess.run(command, cwd=self.folder, input=stdin, capture_output=True, timeout=240,
+                                     **keywords))
+
+    def succeed(self, *arguments, **keywords):
+        result = self.run_program(*arguments, **keywords)
+        self.assertEqual(result.code, 0, f"{arguments}: {result.err}")
+        return result
+
+    def fail_with(self, code, pattern, *arguments, **keywords):
+        """One line of error, nothing on standard output, no file that was not there before."""
+        before = self.listing()
+        result = self.run_program(*arguments, **keywords)
+        self.assertEqual(result.code, code, f"{arguments}: {result.err}")
+        self.assertRegex(result.err, pattern)
+        lines = [line for line in result.err.splitlines() if not line.startswith("lamella: warning: ")]
+        self.assertEqual(len(lines), 1, result.err)
+        self.assertTrue(lines[0].startswith("lamella: error: "), result.err)
+        self.assertEqual(result.out, b"")
+        self.assertEqual(self.listing(), before)
+        return result
+
+    def listing(self):
+        return sorted(p.relative_to(self.folder).as_posix() for p in self.folder.rglob("*"))
+
+    def path(self, name):
+        return self.folder / name
+
+    def bytes_of(self, name):
+        return self.path(name).read_bytes()
+
+    def write(self, name, content):
+        path = self.path(name)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def box(self, name="box.stl", size="20,30,10"):
+        self.succeed("make", "box", "--size", size, "-o", name)
+        return name
+
+
+def binary_stl(triangles):
+    """A binary STL file of triangles given as three corners each."""
+    body = b"".join(struct.pack("<12fH", 0, 0, 0, *(c for corner in t for c in corner), 0) for t in triangles)
+    return b"made for a test".ljust(80) + struct.pack("<I", len(triangles)) + body
+
+
+def box_triangles(x, y, z):
+    """The twelve triangles of a box with one corner at the origin, counter-clockwise seen from outside."""
+    p = [(i * x, j * y, k * z) for k in (0, 1) for j in (0, 1) for i in (0, 1)]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return [(p[a], p[b], p[c]) for q in faces for a, b, c in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))]
+
+
+def open_box(x, y, z):
+    """A box without one of its walls: every layer has an open chain."""
+    return box_triangles(x, y, z)[:-2]
+
+
+main = unittest.main

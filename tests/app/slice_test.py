@@ -1,0 +1,259 @@
+"""lamella slice: what it writes, what it tells, and that nothing but the solid decides the bytes."""
+
+import json
+import math
+import re
+
+from program import ProgramTest, binary_stl, box_triangles, main, open_box
+
+STATS_KEYS = ["lamella", "options", "input", "engine", "threads", "seconds", "peak_rss_bytes", "points",
+              "contours", "open_chains", "volume_mm3", "layers"]
+INPUT_KEYS = ["path", "triangles", "vertices", "bbox", "unit", "volume_mm3", "defects"]
+DEFECT_KEYS = ["boundary_edges", "nonmanifold_edges", "orientation_conflicts", "duplicate_triangles",
+               "degenerate_triangles", "inverted_shells"]
+SECONDS_KEYS = ["read", "weld", "link", "slice", "polygon", "write", "total"]
+LAYER_KEYS = ["index", "z", "thickness", "contours", "holes", "points", "area_mm2", "perimeter_mm",
+              "open_chains", "hash"]
+
+
+class Slice(ProgramTest):
+    def stats(self, *arguments, **keywords):
+        return self.succeed("slice", *arguments, "--stats", "-", **keywords).json()
+
+    def test_a_box_gives_layers_of_its_section(self):
+        stats = self.stats(self.box(), "--layer-height", "0.5")
+        self.assertEqual(len(stats["layers"]), 20)
+        for i, layer in enumerate(stats["layers"]):
+            self.assertEqual(layer["index"], i)
+            self.assertAlmostEqual(layer["z"], 0.25 + 0.5 * i, places=9)
+            self.assertAlmostEqual(layer["thickness"], 0.5, places=9)
+            self.assertEqual((layer["contours"], layer["holes"], layer["open_chains"]), (1, 0, 0))
+            self.assertAlmostEqual(layer["area_mm2"], 600, places=3)
+            self.assertAlmostEqual(layer["perimeter_mm"], 100, places=3)
+        self.assertAlmostEqual(stats["volume_mm3"], 6000, places=2)
+        self.assertAlmostEqual(stats["input"]["volume_mm3"], 6000, places=2)
+
+    def test_statistics_have_exactly_the_documented_keys(self):
+        stats = self.stats(self.box(), "--inspect")
+        self.assertEqual(list(stats), STATS_KEYS)
+        self.assertEqual(list(stats["input"]), INPUT_KEYS)
+        self.assertEqual(list(stats["input"]["defects"]), DEFECT_KEYS)
+        self.assertEqual(list(stats["seconds"]), SECONDS_KEYS)
+        for layer in stats["layers"]:
+            self.assertEqual(list(layer), LAYER_KEYS)
+            self.assertRegex(layer["hash"], "^[0-9a-f]{16}$")
+        self.assertEqual(stats["input"]["vertices"], 8)
+        self.assertEqual(stats["input"]["triangles"], 12)
+        self.assertEqual(set(stats["input"]["defects"].values()), {0})
+        self.assertGreater(stats["peak_rss_bytes"], 1 << 20)
+        self.assertGreater(stats["seconds"]["total"], 0)
+
+    def test_nothing_is_welded_unless_asked(self):
+        stats = self.stats(self.box())
+        self.assertEqual(stats["seconds"]["weld"], 0)
+        self.assertIsNone(stats["input"]["vertices"])
+        self.assertIsNone(stats["input"]["defects"])
+
+    def test_totals_are_the_sums_of_the_layers(self):
+        self.succeed("make", "torus", "-o", "torus.stl")
+        stats = self.stats("torus.stl", "--layer-height", "0.7")
+        for key in ["points", "contours", "open_chains"]:
+            self.assertEqual(stats[key], sum(layer[key] for layer in stats["layers"]))
+        self.assertAlmostEqual(stats["volume_mm3"],
+                               sum(layer["area_mm2"] * layer["thickness"] for layer in stats["layers"]))
+        self.assertTrue(any(layer["holes"] == 1 for layer in stats["layers"]))
+
+    def test_the_summary_says_what_was_done_and_where_the_result_is(self):
+        result = self.succeed("slice", self.box(), "-o", "box.cli")
+        self.assertIn("12 triangles", result.text)
+        self.assertIn("20 x 30 x 10 mm", result.text)
+        self.assertIn("100 layers", result.text)
+        self.assertIn("box.cli", result.text)
+        self.assertEqual(result.err, "")
+
+    def test_every_format_can_be_written_and_read_back(self):
+        self.box()
+        for name, arguments in {"a.cli": [], "b.cli": ["--short"], "c.cli": ["--format", "cli-ascii"],
+                                "d.svg": []}.items():
+            with self.subTest(name):
+                self.succeed("slice", "box.stl", "-o", name, "--layer-height", "1", *arguments)
+                found = self.succeed("info", name, "--json").json()
+                self.assertEqual((found["layers"], found["contours"]), (10, 10))
+                self.assertAlmostEqual(found["volume_mm3"], 6000, delta=3)
+
+    def test_a_folder_of_svg_files_has_one_for_each_layer(self):
+        self.succeed("slice", self.box(), "-o", "layers", "--format", "svg-layers", "--layer-height", "1")
+        self.assertEqual(len([p for p in self.path("layers").iterdir() if p.suffix == ".svg"]), 10)
+
+    def test_the_bytes_do_not_depend_on_threads_nor_on_the_order_of_triangles(self):
+        self.succeed("make", "torus", "-o", "torus.stl")
+        self.succeed("make", "torus", "-o", "mixed.stl", "--shuffle", "7")
+        self.assertNotEqual(self.bytes_of("torus.stl"), self.bytes_of("mixed.stl"))
+        for extension in ["cli", "svg"]:
+            written = set()
+            for mesh in ["torus.stl", "mixed.stl"]:
+                for threads in [1, 2, 7]:
+                    self.succeed("slice", mesh, "-o", f"out.{extension}", "--threads", threads)
+                    written.add(self.bytes_of(f"out.{extension}"))
+            self.assertEqual(len(written), 1, extension)
+
+    def test_hashes_agree_between_whole_and_part(self):
+        self.succeed("make", "torus", "-o", "torus.stl")
+        whole = self.stats("torus.stl")["layers"]
+        part = self.stats("torus.stl", "--layers", "20:30")["layers"]
+        self.assertEqual(part, whole[20:30])
+
+    def test_standard_input_and_output(self):
+        self.box()
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        result = self.succeed("slice", "-", "-o", "-", "--format", "cli", stdin=self.bytes_of("box.stl"))
+        self.assertEqual(result.out, self.bytes_of("box.cli"))
+        self.assertIn("100 layers", result.err)
+
+    def test_slice_at_moves_the_cuts(self):
+        self.box()
+        first = {at: self.stats("box.stl", "--slice-at", at, "--layer-height=1")["layers"][0]["z"]
+                 for at in ["bottom", "middle", "top"]}
+        self.assertEqual(first, {"bottom": 0, "middle": 0.5, "top": 1})
+
+    def test_the_first_layer_may_have_its_own_height(self):
+        layers = self.stats(self.box(), "--layer-height", "1", "--first-layer-height", "2")["layers"]
+        self.assertEqual([layers[0]["thickness"], layers[1]["thickness"]], [2, 1])
+        self.assertEqual(layers[0]["z"], 1)
+
+    def test_a_range_of_heights_selects_layers(self):
+        layers = self.stats(self.box(), "--layer-height", "1", "--z-range", "2:4")["layers"]
+        self.assertEqual([layer["index"] for layer in layers], [2, 3])
+        layers = self.stats("box.stl", "--layer-height", "1", "--z-range", "7:")["layers"]
+        self.assertEqual([layer["index"] for layer in layers], [7, 8, 9])
+
+    def test_a_list_of_heights_says_where_to_cut(self):
+        self.box()
+        self.write("z.txt", "# heights\n0.25\n\n  1.5 # the second\r\n9e0\n")
+        self.write("z.json", "[0.25, 1.5, 9]")
+        for name in ["z.txt", "z.json"]:
+            layers = self.stats("box.stl", "--z-list", name)["layers"]
+            self.assertEqual([layer["z"] for layer in layers], [0.25, 1.5, 9])
+        layers = self.stats("box.stl", "--z-list", "z.txt", "--layers", "1:2")["layers"]
+        self.assertEqual([(layer["index"], layer["z"]) for layer in layers], [(1, 1.5)])
+
+    def test_placement_is_unit_scale_rotation_translation(self):
+        self.box(size="1,2,3")
+        stats = self.stats("box.stl", "--unit", "cm", "--scale", "1,1,2", "--rotate", "90,0,0", "--translate",
+                           "-1,2,3", "--layer-height=1")
+        low, high = stats["input"]["bbox"]
+        # 10 x 20 x 60 mm after scaling; a quarter turn about x swaps y and z.
+        self.assertEqual([round(h - l, 6) for l, h in zip(low, high)], [10, 60, 20])
+        self.assertEqual(stats["options"]["translate"], [-1, 2, 3])
+        self.assertEqual(stats["input"]["unit"], "cm")
+
+    def test_turning_about_one_axis_is_turning_about_three_by_nothing_else(self):
+        self.box()
+        self.assertEqual(self.stats("box.stl", "--rotate-x", "30")["layers"],
+                         self.stats("box.stl", "--rotate", "30,0,0")["layers"])
+
+    def test_a_direction_keeps_its_matrix(self):
+        stats = self.stats(self.box(), "--direction", "1,0,0", "--layer-height", "1")
+        self.assertEqual(len(stats["layers"]), 20)
+        self.assertAlmostEqual(stats["layers"][3]["area_mm2"], 300, places=3)
+        matrix = stats["options"]["matrix"]
+        self.assertEqual(len(matrix), 4)
+        # The direction (1, 0, 0) becomes (0, 0, 1).
+        self.assertEqual([row[0] for row in matrix], [0, 0, 1, 0])
+
+    def test_a_mirrored_part_keeps_its_material(self):
+        stats = self.stats(self.box(), "--scale", "-1,1,1", "--layer-height", "1")
+        self.assertAlmostEqual(stats["volume_mm3"], 6000, places=2)
+
+    def test_open_chains_are_counted_and_warned_about(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        result = self.succeed("slice", "open.stl", "-o", "open.cli", "--layer-height", "1")
+        self.assertEqual(len(result.err.splitlines()), 1)
+        self.assertRegex(result.err, r"^lamella: warning: open\.stl: 10 open chains in 10 of 10 layers")
+        self.assertIn("lamella info open.stl", result.err)
+
+    def test_strict_refuses_a_defect_before_writing(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        self.fail_with(4, "boundary edges", "slice", "open.stl", "-o", "open.cli", "--strict")
+        self.succeed("slice", self.box(), "-o", "box.cli", "--strict")
+
+    def test_figures_alone_need_no_output(self):
+        self.box()
+        before = self.listing()
+        self.stats("box.stl")
+        self.assertEqual(self.listing(), before)
+
+    def test_statistics_go_to_a_file_beside_the_result(self):
+        self.box()
+        result = self.succeed("slice", "box.stl", "-o", "box.cli", "--stats", "box.json")
+        self.assertIn("100 layers", result.text)
+        self.assertEqual(len(json.loads(self.bytes_of("box.json"))["layers"]), 100)
+        self.assertEqual(self.listing(), ["box.cli", "box.json", "box.stl"])
+
+    def test_an_existing_result_is_replaced(self):
+        self.box()
+        self.write("box.cli", "old")
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        self.assertNotEqual(self.bytes_of("box.cli"), b"old")
+
+    def test_progress_as_json_is_one_object_a_line_and_never_falls(self):
+        self.succeed("make", "torus", "-o", "torus.stl")
+        result = self.succeed("slice", "torus.stl", "-o", "torus.cli", "--progress", "json", "--inspect")
+        events = [json.loads(line) for line in result.err.splitlines()]
+        self.assertGreater(len(events), 3)
+        done, totals = {}, {}
+        for event in events:
+            self.assertEqual(list(event), ["stage", "done", "total", "seconds"])
+            stage = event["stage"]
+            self.assertGreaterEqual(event["done"], done.get(stage, 0))
+            self.assertLessEqual(event["done"], event["total"])
+            self.assertEqual(event["total"], totals.setdefault(stage, event["total"]))
+            done[stage] = event["done"]
+        self.assertEqual(done, totals)
+        self.assertEqual(sorted(e["seconds"] for e in events), [e["seconds"] for e in events])
+        self.assertIn("slice", done)
+
+    def test_with_json_progress_warnings_are_objects_too(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        result = self.succeed("slice", "open.stl", "-o", "open.cli", "--progress", "json")
+        events = [json.loads(line) for line in result.err.splitlines()]
+        self.assertEqual(sum("warning" in event for event in events), 1)
+        result = self.run_program("slice", "open.stl", "-o", "open2.cli", "--progress", "json", "--strict")
+        last = json.loads(result.err.splitlines()[-1])
+        self.assertEqual((result.code, last["exit_code"]), (4, 4))
+
+    def test_there_is_no_progress_where_standard_error_is_no_terminal(self):
+        self.assertEqual(self.succeed("slice", self.box(), "-o", "box.cli", "--layer-height=0.001").err, "")
+
+    def test_names_of_files_may_be_anything(self):
+        for name in ["čřšřěá.stl", "with blanks.stl", "-dash.stl", "new\nline.stl", "quote\"'.stl"]:
+            with self.subTest(name):
+                self.write(name, binary_stl(box_triangles(20, 30, 10)))
+                result = self.succeed("slice", "--stats", "-", "--layer-height=1", "--", name)
+                self.assertEqual(result.json()["input"]["path"], name)
+                self.succeed("slice", "-o", f"{name}.cli", "--", name)
+        self.write(b"latin-\xe9.stl".decode("utf-8", "surrogateescape"), binary_stl(box_triangles(1, 1, 1)))
+        result = self.succeed("slice", b"latin-\xe9.stl".decode("utf-8", "surrogateescape"), "--stats", "-")
+        self.assertIn("latin-", result.json()["input"]["path"])
+
+    def test_the_locale_changes_nothing(self):
+        self.box()
+        outputs = set()
+        for locale in ["C", "de_DE.UTF-8", "tr_TR.UTF-8"]:
+            stats = self.succeed("slice", "box.stl", "-o", "-", "--format", "cli-ascii", "--layer-height", "0.3",
+                                 env={"LC_ALL": locale}).out
+            outputs.add(stats)
+        self.assertEqual(len(outputs), 1)
+
+    def test_the_volume_tends_to_that_of_the_mesh(self):
+        self.succeed("make", "sphere", "-o", "ball.stl", "--size", "20")
+        stats = self.stats("ball.stl", "--layer-height", "0.01")
+        self.assertTrue(math.isclose(stats["volume_mm3"], stats["input"]["volume_mm3"], rel_tol=1e-5))
+
+    def test_numbers_in_the_summary_are_readable(self):
+        self.succeed("make", "torus", "-o", "torus.stl", "--segments", "256")
+        self.assertTrue(re.search(r"\d,\d{3} triangles", self.succeed("slice", "torus.stl", "-o", "t.cli").text))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,96 @@
+"""lamella verify: a right file passes, each kind of wrong file does not."""
+
+from program import ProgramTest, main
+
+KEYS = ["path", "ok", "layers", "contours", "open_chains", "crossings", "misoriented", "volume_mm3",
+        "max_area_error_mm2"]
+
+
+def ascii_cli(*polylines):
+    """One layer of 1 mm with the given (direction, points)."""
+    lines = ["$$HEADERSTART", "$$ASCII", "$$UNITS/1", "$$VERSION/200", "$$LABEL/1,part", "$$LAYERS/000002",
+             "$$HEADEREND", "$$GEOMETRYSTART", "$$LAYER/0.0", "$$LAYER/1.0"]
+    for direction, points in polylines:
+        numbers = ",".join(f"{float(c)}" for p in points for c in p)
+        lines.append(f"$$POLYLINE/1,{direction},{len(points)},{numbers}")
+    return "\n".join(lines + ["$$GEOMETRYEND", ""])
+
+
+SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)]
+SMALL = [(2, 2), (4, 2), (4, 4), (2, 4), (2, 2)]
+
+
+class Verify(ProgramTest):
+    def verify(self, *arguments, code=0, **keywords):
+        result = self.run_program("verify", "--json", *arguments, **keywords)
+        self.assertEqual(result.code, code, result.err)
+        found = result.json()
+        self.assertEqual(list(found), KEYS)
+        self.assertEqual(found["ok"], code == 0)
+        return found
+
+    def test_what_was_sliced_is_right(self):
+        self.succeed("make", "torus", "-o", "torus.stl")
+        for name in ["torus.cli", "torus.svg"]:
+            for arguments in [[], ["--rotate-x", "90"], ["--direction", "1,1,0"]]:
+                with self.subTest(name, arguments=arguments):
+                    self.succeed("slice", "torus.stl", "-o", name, "--layer-height", "0.4", *arguments)
+                    found = self.verify(name, "--mesh", "torus.stl", *arguments)
+                    self.assertIsNotNone(found["max_area_error_mm2"])
+                    self.assertIsNone(self.verify(name)["max_area_error_mm2"])
+
+    def test_cuts_at_the_bottom_and_at_the_top(self):
+        self.succeed("make", "sphere", "-o", "ball.stl")
+        for at in ["bottom", "middle", "top"]:
+            with self.subTest(at):
+                self.succeed("slice", "ball.stl", "-o", "ball.cli", "--slice-at", at, "--layer-height", "0.5")
+                self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", at)
+        self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", "bottom", code=4)
+
+    def test_another_mesh_is_noticed(self):
+        self.succeed("slice", self.box(), "-o", "box.cli")
+        self.box("wider.stl", "21,30,10")
+        found = self.verify("box.cli", "--mesh", "wider.stl", code=4)
+        self.assertGreater(found["max_area_error_mm2"], 20)
+
+    def test_a_sound_file_from_elsewhere(self):
+        self.write("a.cli", ascii_cli((1, SQUARE), (0, SMALL[::-1])))
+        found = self.verify("a.cli")
+        self.assertEqual((found["contours"], found["misoriented"], found["crossings"]), (2, 0, 0))
+        self.assertAlmostEqual(found["volume_mm3"], 96)
+
+    def test_an_open_chain(self):
+        self.write("a.cli", ascii_cli((2, SQUARE[:3])))
+        self.assertEqual(self.verify("a.cli", code=4)["open_chains"], 1)
+
+    def test_a_hole_that_runs_the_wrong_way(self):
+        self.write("a.cli", ascii_cli((0, SQUARE[::-1])))
+        self.assertEqual(self.verify("a.cli", code=4)["misoriented"], 1)
+
+    def test_contours_that_cross(self):
+        shifted = [(x + 5, y + 5) for x, y in SQUARE]
+        self.write("a.cli", ascii_cli((1, SQUARE), (1, shifted)))
+        self.assertEqual(self.verify("a.cli", code=4)["crossings"], 2)
+
+    def test_the_text_says_whether_all_is_well(self):
+        self.succeed("slice", self.box(), "-o", "box.cli")
+        self.assertRegex(self.succeed("verify", "box.cli", "--mesh", "box.stl").text, r"^box\.cli: ok\n")
+        self.write("a.cli", ascii_cli((2, SQUARE[:3])))
+        result = self.run_program("verify", "a.cli")
+        self.assertEqual(result.code, 4)
+        self.assertRegex(result.text, r"^a\.cli: NOT ok\n")
+        self.assertRegex(result.err, r"^lamella: error: a\.cli: ")
+
+    def test_where_a_mesh_stands_needs_a_mesh(self):
+        self.write("a.cli", ascii_cli((1, SQUARE)))
+        self.fail_with(2, "--mesh", "verify", "a.cli", "--rotate-x", "90")
+        self.fail_with(3, "nowhere", "verify", "nowhere.cli")
+        self.fail_with(3, "nowhere", "verify", "a.cli", "--mesh", "nowhere.stl")
+        self.fail_with(2, "standard input", "verify", "-", "--mesh", "-")
+
+    def test_a_mesh_is_no_slice_file(self):
+        self.fail_with(3, r"box\.stl", "verify", self.box())
+
+
+if __name__ == "__main__":
+    main()
