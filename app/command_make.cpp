@@ -4,6 +4,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
@@ -122,13 +123,6 @@ constexpr std::array<Body, 7> bodies{{{"sheet", "holes segments size thickness o
                                       {"torus", "size thickness segments", torus},
                                       {"cylinder", "size thickness segments", cylinder}}};
 
-std::vector<std::string> body_names() {
-    std::vector<std::string> names;
-    for (const Body& body : bodies)
-        names.emplace_back(body.name);
-    return names;
-}
-
 constexpr std::string_view shape_title = "What it is like";
 
 /// Refuses an option that this body would ignore.
@@ -207,7 +201,7 @@ Command make_command() {
             "machine.",
         .operands = {{.placeholder = "BODY",
                       .help = "which body",
-                      .choices = body_names(),
+                      .choices = names_of(bodies),
                       .set =
                           [arguments](const std::string& text) {
                               arguments->body = text;

@@ -5,6 +5,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "stats_json.hpp"
@@ -78,11 +79,8 @@ OptionGroup plan_options(SliceArguments& target) {
 }
 
 OptionGroup checking_options(SliceArguments& target) {
-    std::vector<std::string> names;
-    for (const Engine& engine : engines())
-        names.emplace_back(engine.name);
-    Option engine = choice("engine", "NAME", "the algorithm", names, target.engine);
-    engine.preset = names.front();
+    Option engine = choice("engine", "NAME", "the algorithm", names_of(engines()), target.engine);
+    engine.preset = engines().front().name;
     return {
         "How it is sliced",
         {std::move(engine),

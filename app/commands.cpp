@@ -1,17 +1,15 @@
 #include "commands.hpp"
 
+#include "names.hpp"
+
 #include <array>
-#include <utility>
 
 namespace lamella::app {
 
 std::vector<Command> all_commands() {
     std::vector<Command> commands{slice_command(), info_command(),       verify_command(), convert_command(),
                                   make_command(),  completion_command(), help_command()};
-    std::vector<std::string> names;
-    for (const Command& command : commands)
-        names.push_back(command.name);
-    commands.back().operands.front().choices = std::move(names);
+    commands.back().operands.front().choices = names_of(commands);
     return commands;
 }
 

@@ -1,5 +1,7 @@
 #include "completion.hpp"
 
+#include "names.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -26,13 +28,6 @@ std::string shell_quoted(std::string_view text) {
     for (const char c : text)
         out += c == '\'' ? "'\\''" : std::string(1, c);
     return out;
-}
-
-std::vector<std::string> command_names(std::span<const Command> commands) {
-    std::vector<std::string> names;
-    for (const Command& command : commands)
-        names.push_back(command.name);
-    return names;
 }
 
 /// All options of a command in one list.
@@ -138,7 +133,7 @@ std::string bash_completion(std::span<const Command> commands) {
         "        return\n"
         "    fi\n"
         "    case \"${{COMP_WORDS[1]}}\" in\n",
-        fmt::join(command_names(commands), " "));
+        fmt::join(names_of(commands), " "));
     for (const Command& command : commands)
         text += bash_case(command);
     return text + "    esac\n"

@@ -6,6 +6,7 @@
 #include "help_text.hpp"
 #include "interrupt.hpp"
 #include "messages.hpp"
+#include "names.hpp"
 #include "suggest.hpp"
 #include "text_file.hpp"
 
@@ -45,10 +46,7 @@ int exit_code(ErrorKind kind) {
 }
 
 [[noreturn]] void refuse_command(const std::string& word, const std::vector<Command>& commands) {
-    std::vector<std::string> names;
-    for (const Command& command : commands)
-        names.push_back(command.name);
-    const std::string meant = nearest(word, names);
+    const std::string meant = nearest(word, names_of(commands));
     std::error_code ignored;
     if (!meant.empty())
         throw Error(ErrorKind::usage,

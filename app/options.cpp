@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "names.hpp"
 #include "numbers.hpp"
 
 #include <fmt/format.h>
@@ -106,10 +107,7 @@ Option file(std::string name, std::string help, std::string& target) {
 }
 
 Option unit_option(std::string& target) {
-    std::vector<std::string> names;
-    for (const Unit& unit : units)
-        names.emplace_back(unit.name);
-    return choice("unit", "UNIT", "what a unit of the file is, for STL files do not say", std::move(names),
+    return choice("unit", "UNIT", "what a unit of the file is, for STL files do not say", names_of(units),
                   target);
 }
 
@@ -193,12 +191,9 @@ Execution RunOptions::execution(const Context& context) const {
 }
 
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
-    std::vector<std::string> formats;
-    for (const LayerFormat& format : layer_formats())
-        formats.emplace_back(format.name);
     std::vector<Option> options{
         choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
-               std::move(formats), target.format),
+               names_of(layer_formats()), target.format),
         text("label", "TEXT", "name of the part inside the slice file", target.label),
         length("units-mm",
                "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded",
