@@ -24,7 +24,8 @@ Command completion_command() {
                               }}},
             .groups = {common_options(false)},
             .examples = {{"source <(lamella completion bash)", "for this shell only"},
-                         {"lamella completion fish > ~/.config/fish/completions/lamella.fish", "for good"}},
+                         {"lamella completion bash > ~/.local/share/bash-completion/completions/lamella",
+                          "for good"}},
             .run = [shell](const Context& /*context*/) {
                 const std::vector<Command> commands = all_commands();
                 print(*shell == "bash"  ? bash_completion(commands)

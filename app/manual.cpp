@@ -61,7 +61,8 @@ std::string manual_page(std::span<const Command> commands) {
                                    ".SH SYNOPSIS\n",
                                    LAMELLA_VERSION);
     for (const Command& command : commands)
-        text += fmt::format(".B lamella {}\n{}\n.br\n", command.name, plain(synopsis(command)));
+        text += fmt::format("{}.B lamella {}\n{}\n", &command == commands.data() ? "" : ".br\n", command.name,
+                            plain(synopsis(command)));
     text += ".SH DESCRIPTION\n"
             "Lamella cuts a triangle mesh into layers and writes their contours in formats that "
             "additive\\-manufacturing machines and tools read.\n"

@@ -14,6 +14,14 @@
 namespace lamella::app {
 namespace {
 
+void append(std::vector<double>& z, double value, const std::string& place) {
+    if (!z.empty() && !(value > z.back()))
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: {} is not above the height before it, {}; heights must ascend", place,
+                                value, z.back()));
+    z.push_back(value);
+}
+
 std::vector<double> from_json(const std::string& path, std::string_view content) {
     std::vector<double> z;
     const nlohmann::json list = nlohmann::json::parse(content, nullptr, false);
@@ -22,8 +30,8 @@ std::vector<double> from_json(const std::string& path, std::string_view content)
     for (const nlohmann::json& item : list) {
         if (!item.is_number())
             throw Error(ErrorKind::usage,
-                        fmt::format("{}: item {} of the list is not a number", path, z.size()));
-        z.push_back(item.get<double>());
+                        fmt::format("{}: item {} of the list is not a number", path, z.size() + 1));
+        append(z, item.get<double>(), fmt::format("{}: item {}", path, z.size() + 1));
     }
     return z;
 }
@@ -41,11 +49,14 @@ std::vector<double> from_lines(const std::string& path, std::string_view content
             text.remove_suffix(1);
         if (text.empty())
             continue;
+        const std::string place = fmt::format("{}:{}", path, line);
+        double value = 0;
         try {
-            z.push_back(parse_number(text));
+            value = parse_number(text);
         } catch (const Error& error) {
-            throw Error(error.kind(), fmt::format("{}:{}: {}", path, line, error.what()));
+            throw Error(error.kind(), fmt::format("{}: {}", place, error.what()));
         }
+        append(z, value, place);
     }
     return z;
 }
