@@ -12,7 +12,7 @@ namespace lamella::app {
 Command completion_command() {
     const auto shell = std::make_shared<std::string>();
     return {.name = "completion",
-            .summary = "print a script that completes commands and options in a shell",
+            .summary = "print a script that completes commands in a shell",
             .description =
                 "Prints a script for bash, zsh or fish. An installed Lamella has put it in place already.",
             .operands = {{.placeholder = "SHELL",
