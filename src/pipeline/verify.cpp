@@ -36,7 +36,16 @@ struct LayerCheck {
     Occurrences overlapping;
 };
 
-LayerCheck check(const Layer& layer) {
+/// Whether a ring is so thin that rounding its points may have turned it over.
+bool orientation_is_lost(std::span<const Point2> ring, double quantum) {
+    double largest = 0;
+    for (const Point2& p : ring)
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    const double moved = std::sqrt(2.0) * quantum + 4 * std::numeric_limits<double>::epsilon() * largest;
+    return std::abs(ring_area(ring)) <= contour_length(ring, true) * moved;
+}
+
+LayerCheck check(const Layer& layer, double quantum) {
     LayerCheck result;
     result.measure = measure(layer);
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
@@ -47,10 +56,10 @@ LayerCheck check(const Layer& layer) {
         result.crossings.add(crossings.count, crossings.first.front().at);
     const std::vector<RingPlace> places = ring_places(layer);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        if (places[i] == RingPlace::misoriented)
-            result.misoriented.add(1, layer.contour(i).front());
-        else if (places[i] == RingPlace::overlapping)
-            result.overlapping.add(1, layer.contour(i).front());
+        if (places[i] == RingPlace::sound || orientation_is_lost(layer.contour(i), quantum))
+            continue;
+        Occurrences& found = places[i] == RingPlace::misoriented ? result.misoriented : result.overlapping;
+        found.add(1, layer.contour(i).front());
     }
     return result;
 }
@@ -131,23 +140,29 @@ std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const 
     return result;
 }
 
-/// How far the area of a layer may be off when each of its points is off by up to `quantum` in x and y.
-double area_tolerance(const Layer& layer, const LayerMeasure& measure, double quantum) {
+/// How far the area of a layer may be off from that of the mesh's section, when each of its points is off by
+/// up to `quantum` in x and y. `extent` is the mesh's.
+double area_tolerance(const Layer& layer, const LayerMeasure& measure, double quantum, double extent) {
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
     double largest = 0;
     for (const Point2& p : layer.points)
         largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    // Two sums of as many products as there are points, of coordinates that are themselves rounded; errors of
-    // sums grow with the root of the number of terms.
     const auto points = static_cast<double>(measure.points);
-    const double rounding = std::numeric_limits<double>::epsilon() * largest * (16 + 4 * std::sqrt(points));
     // Rings smaller than a unit may have vanished: hence the perimeter of a few units more.
-    return (measure.perimeter_mm + 8 * quantum) * (std::sqrt(2.0) * quantum + rounding) +
-           2 * points * quantum * quantum;
+    const double moved_points =
+        (measure.perimeter_mm + 8 * quantum) * (std::sqrt(2.0) * quantum + 16 * epsilon * largest) +
+        2 * points * quantum * quantum;
+    // Both areas are sums of products of coordinates, as many as there are points, which cancel all but the
+    // area. Errors of sums grow with the root of the number of terms.
+    return moved_points + epsilon * extent * extent * (16 + 4 * std::sqrt(points));
 }
 
 void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> checks,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
     const std::vector<SectionArea> sections = areas_of_sections(layers, options, execution);
+    const Box3 box = options.mesh->soup() != nullptr ? bounding_box(*options.mesh->soup(), execution)
+                                                     : bounding_box(*options.mesh->mesh(), execution);
+    const double extent = box.empty() ? 0 : std::max(box.max.x - box.min.x, box.max.y - box.min.y);
     double largest_error = 0;
     std::uint64_t differing = 0;
     std::size_t first = 0;
@@ -158,7 +173,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         const SectionArea& section = sections[i];
         largest_error = std::max(largest_error, std::abs(area - section.nominal));
         const double beyond = std::max(section.least - area, area - section.greatest);
-        if (beyond > area_tolerance(layers[i], checks[i].measure, options.quantum_mm)) {
+        if (beyond > area_tolerance(layers[i], checks[i].measure, options.quantum_mm, extent)) {
             if (differing == 0)
                 first = i;
             ++differing;
@@ -183,7 +198,7 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     ProgressMeter progress(execution, Stage::polygon, layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            checks[i] = check(layers[i]);
+            checks[i] = check(layers[i], options.quantum_mm);
             progress.add(1);
         }
     });

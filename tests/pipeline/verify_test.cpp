@@ -131,6 +131,17 @@ TEST(Verify, GrantsTheQuantumOfAFormat) {
     EXPECT_TRUE(verify(high, {.mesh = mesh, .rule = PlaneRule::section_below}).ok());
 }
 
+TEST(Verify, HoldsNoRingToAnOrientationThatRoundingMayHaveTurned) {
+    const Layer thin = at(0, layer_of({reversed(rectangle(0, 0, 5, 0.001))}));
+    EXPECT_EQ(verify(LayerStack{thin}).misoriented, 1U);
+    EXPECT_EQ(verify(LayerStack{thin}, {.quantum_mm = 0.0005}).misoriented, 0U);
+    EXPECT_EQ(verify(LayerStack{thin}, {.quantum_mm = 0.00005}).misoriented, 1U);
+    // A ring of a few units in the last place, such as a plane makes just below the tip of a part.
+    const double x = 43.1;
+    const double next = std::nextafter(x, 50.0);
+    EXPECT_EQ(verify(LayerStack{at(0, layer_of({reversed(rectangle(x, x, next, next))}))}).misoriented, 0U);
+}
+
 TEST(Verify, TakesLayersAtTheSameHeightOrNextToIt) {
     const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
     LayerStack layers{at(0, layer_of({rectangle(0, 0, 4, 4)})), at(0, layer_of({rectangle(0, 0, 4, 4)})),

@@ -19,8 +19,9 @@ struct VerifyOptions {
     std::optional<MeshRef> mesh = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
-    /// How far the format may have moved a coordinate of a point or of the cut (half a unit); it scales the
-    /// area tolerance with the layer's perimeter.
+    /// How far the format may have moved a coordinate of a point or of the cut (half a unit). It scales the
+    /// area tolerance with the layer's perimeter; and rings so thin that it can turn them over are not held
+    /// to an orientation.
     double quantum_mm = 0;
 };
 

@@ -1,0 +1,146 @@
+// What holds for the layers of every closed, oriented solid, wherever the planes go through.
+
+#include "fixtures/layer_checks.hpp"
+#include "fixtures/named_solids.hpp"
+
+#include <gtest/gtest.h>
+#include <lamella/lamella.hpp>
+
+#include <cmath>
+
+namespace lamella {
+namespace {
+
+using test::expect_well_formed;
+using test::NamedPlan;
+using test::Placement;
+using test::Solid;
+
+class EverySolid : public testing::TestWithParam<Solid> {};
+
+INSTANTIATE_TEST_SUITE_P(Small, EverySolid, testing::ValuesIn(test::small_solids()), test::solid_name);
+
+TEST_P(EverySolid, ClosesInEveryPlacementOnEveryPlane) {
+    const TriangleSoup made = GetParam().make();
+    for (const Placement& placement : test::placements()) {
+        const TriangleSoup mesh = made.transformed(placement.map);
+        for (const NamedPlan& plan : test::plans_for(mesh, 40)) {
+            SCOPED_TRACE(placement.name + ", planes " + plan.name);
+            SliceReport report;
+            const LayerStack layers = slice(mesh, plan.plan, {}, &report);
+            ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
+            EXPECT_EQ(report.open_chains, 0U);
+
+            // Closed, oriented, and of the area that the triangles alone tell.
+            const Verification found = verify(layers, {.mesh = mesh, .rule = plan.plan.rule});
+            EXPECT_EQ(found.open_chains, 0U);
+            EXPECT_EQ(found.misoriented, 0U);
+            EXPECT_EQ(found.overlapping, 0U);
+            EXPECT_EQ(found.crossings, 0U);
+            EXPECT_TRUE(found.areas_agree);
+            for (const std::string& line : found.findings)
+                ADD_FAILURE() << line;
+        }
+    }
+}
+
+TEST_P(EverySolid, HasTheVolumeOfItsMeshInManyLayers) {
+    const TriangleSoup made = GetParam().make();
+    for (const Placement& placement : test::placements()) {
+        SCOPED_TRACE(placement.name);
+        const TriangleSoup mesh = made.transformed(placement.map);
+        const Box3 box = bounding_box(mesh);
+        for (const SliceAt at : {SliceAt::bottom, SliceAt::middle, SliceAt::top}) {
+            const double height = (box.max.z - box.min.z) / 256;
+            const LayerStack layers =
+                slice(mesh, plan_uniform(box.min.z, box.max.z, {.layer_height = height, .slice_at = at}));
+            ASSERT_EQ(layers.size(), 256U);
+            // A layer is off by at most its height times how much the area changes within it; twice what it
+            // changes from cut to cut is granted for what it does in between.
+            double volume_of_layers = 0;
+            double before = 0;
+            double change = 0;
+            for (const Layer& layer : layers) {
+                const double area = measure(layer).area_mm2;
+                volume_of_layers += area * layer.thickness();
+                change += std::abs(area - before);
+                before = area;
+            }
+            change += before;
+            const double exact = volume(mesh);
+            EXPECT_GT(exact, 0);
+            EXPECT_NEAR(volume_of_layers, exact, 2 * height * change + 1e-6 * exact);
+        }
+    }
+}
+
+TEST_P(EverySolid, IsMissedAboveItsTopAndBelowItsBottom) {
+    const TriangleSoup mesh = GetParam().make();
+    const Box3 box = bounding_box(mesh);
+    const std::vector<double> z{std::nextafter(box.min.z, -1e9), box.min.z, box.max.z,
+                                std::nextafter(box.max.z, 1e9)};
+    const LayerStack above = slice(mesh, plan_listed(z, SliceAt::bottom));
+    EXPECT_TRUE(above[0].points.empty());
+    EXPECT_TRUE(above[2].points.empty()); // the section of what is just above the top: nothing
+    EXPECT_TRUE(above[3].points.empty());
+    const LayerStack below = slice(mesh, plan_listed(z, SliceAt::top));
+    EXPECT_TRUE(below[0].points.empty());
+    EXPECT_TRUE(below[1].points.empty());
+    EXPECT_TRUE(below[3].points.empty());
+}
+
+TEST_P(EverySolid, TurnedUpsideDownHasItsLayersMirrored) {
+    // What is just above a plane is just below it in the mirror, so the two rules mirror one another.
+    const TriangleSoup mesh = GetParam().make();
+    const TriangleSoup mirrored = mesh.transformed(scaling(1, 1, -1));
+    const std::vector<double> z = test::thinned(test::corner_heights(mesh), 30);
+    std::vector<double> mirrored_z;
+    for (auto it = z.rbegin(); it != z.rend(); ++it)
+        mirrored_z.push_back(-*it + 0.0);
+    const std::vector<std::uint64_t> hashes = test::hashes(slice(mesh, plan_listed(z, SliceAt::bottom)));
+    std::vector<std::uint64_t> mirrored_hashes =
+        test::hashes(slice(mirrored, plan_listed(mirrored_z, SliceAt::top)));
+    std::reverse(mirrored_hashes.begin(), mirrored_hashes.end());
+    EXPECT_EQ(hashes, mirrored_hashes);
+}
+
+TEST(Rook, ClosesOnEveryPlane) {
+    const TriangleSoup mesh = make_rook();
+    for (const NamedPlan& plan : test::plans_for(mesh, 25)) {
+        SCOPED_TRACE(plan.name);
+        const LayerStack layers = slice(mesh, plan.plan);
+        ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
+        const Verification found = verify(layers, {.mesh = mesh, .rule = plan.plan.rule});
+        EXPECT_EQ(found.findings, std::vector<std::string>{});
+        EXPECT_TRUE(found.ok());
+    }
+}
+
+TEST(Box, HasItsBottomFaceAtItsBottomAndItsTopFaceAtItsTop) {
+    const TriangleSoup mesh = make_box(4, 3, 2);
+    const std::vector<double> z{0, 1, 2};
+    const LayerStack above = slice(mesh, plan_listed(z, SliceAt::bottom));
+    EXPECT_EQ(measure(above[0]).area_mm2, 12);
+    EXPECT_EQ(measure(above[1]).area_mm2, 12);
+    EXPECT_EQ(measure(above[2]).area_mm2, 0);
+    const LayerStack below = slice(mesh, plan_listed(z, SliceAt::top));
+    EXPECT_EQ(measure(below[0]).area_mm2, 0);
+    EXPECT_EQ(measure(below[1]).area_mm2, 12);
+    EXPECT_EQ(measure(below[2]).area_mm2, 12);
+}
+
+TEST(Sheet, OfThreeMillimetresAtATenthHasThirtyLayersOfOneArea) {
+    const TriangleSoup mesh = make_sheet({.holes = 9, .segments = 24, .size_mm = 20});
+    for (const SliceAt at : {SliceAt::bottom, SliceAt::middle, SliceAt::top}) {
+        const LayerStack layers = slice(mesh, plan_uniform(0, 3, {.layer_height = 0.1, .slice_at = at}));
+        ASSERT_EQ(layers.size(), 30U);
+        for (const Layer& layer : layers) {
+            EXPECT_EQ(layer.rings, 10U);
+            EXPECT_EQ(measure(layer).holes, 9U);
+            EXPECT_NEAR(measure(layer).area_mm2, volume(mesh) / 3, 1e-9);
+        }
+    }
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,163 @@
+// The same solid gives the same bytes: for any number of threads, any order of the triangles, streamed or
+// not, from a soup or an indexed mesh.
+
+#include "fixtures/layer_checks.hpp"
+#include "fixtures/named_solids.hpp"
+
+#include <gtest/gtest.h>
+#include <lamella/lamella.hpp>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+namespace lamella {
+namespace {
+
+using test::hashes;
+using test::NamedPlan;
+using test::Placement;
+using test::Solid;
+
+class SameBytes : public testing::TestWithParam<Solid> {};
+
+const std::vector<Solid> large_solids{{"rook", [] {
+                                           return make_rook();
+                                       }}};
+
+const std::vector<Solid> defective_solids{
+    {"boxes_sharing_an_upright_edge",
+     [] {
+         return TriangleSoup(test::boxes_sharing_an_upright_edge());
+     }},
+    {"boxes_back_to_back",
+     [] {
+         return TriangleSoup(test::boxes_back_to_back());
+     }},
+    {"box_twice",
+     [] {
+         return TriangleSoup(test::box_twice());
+     }},
+    {"box_without_a_side",
+     [] {
+         return TriangleSoup(test::box_without_a_side());
+     }},
+    {"box_with_a_flipped_triangle",
+     [] {
+         return TriangleSoup(test::box_with_a_flipped_triangle());
+     }},
+    {"three_sheets_on_an_edge",
+     [] {
+         return TriangleSoup(test::three_sheets_on_an_edge());
+     }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Small, SameBytes, testing::ValuesIn(test::small_solids()), test::solid_name);
+INSTANTIATE_TEST_SUITE_P(Large, SameBytes, testing::ValuesIn(large_solids), test::solid_name);
+INSTANTIATE_TEST_SUITE_P(Defective, SameBytes, testing::ValuesIn(defective_solids), test::solid_name);
+
+/// Three placements are enough here: axes, no axes, and far from the origin.
+std::vector<Placement> few_placements() {
+    std::vector<Placement> result;
+    for (const Placement& placement : test::placements())
+        if (placement.name == "as_made" || placement.name == "tilted" || placement.name == "far_away")
+            result.push_back(placement);
+    return result;
+}
+
+/// Calls check(mesh, plan) for all placements and plans of the solid.
+template <class Check>
+void for_all(const Solid& solid, const Check& check) {
+    const TriangleSoup made = solid.make();
+    for (const Placement& placement : few_placements()) {
+        const TriangleSoup mesh = made.transformed(placement.map);
+        for (const NamedPlan& plan : test::plans_for(mesh, 60)) {
+            SCOPED_TRACE(placement.name + ", planes " + plan.name);
+            check(mesh, plan.plan);
+        }
+    }
+}
+
+TEST_P(SameBytes, ForAnyNumberOfThreads) {
+    for_all(GetParam(), [](const TriangleSoup& mesh, const Plan& plan) {
+        const std::vector<std::uint64_t> one = hashes(slice(mesh, plan, {.threads = 1}));
+        EXPECT_EQ(hashes(slice(mesh, plan, {.threads = 2})), one);
+        EXPECT_EQ(hashes(slice(mesh, plan, {.threads = 7})), one);
+    });
+}
+
+TEST_P(SameBytes, ForAnyOrderOfTheTriangles) {
+    for_all(GetParam(), [](const TriangleSoup& mesh, const Plan& plan) {
+        const std::vector<std::uint64_t> in_order = hashes(slice(mesh, plan));
+        for (const std::uint64_t seed : {1U, 2U, 3U})
+            EXPECT_EQ(hashes(slice(shuffled(mesh, seed), plan)), in_order);
+    });
+}
+
+TEST_P(SameBytes, ForAnyFirstCornerOfTheTriangles) {
+    const TriangleSoup mesh = GetParam().make();
+    test::Triangles turned;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        const Triangle3f t = mesh.stored(i);
+        turned.push_back(i % 3 == 0   ? t
+                         : i % 3 == 1 ? Triangle3f{t[1], t[2], t[0]}
+                                      : Triangle3f{t[2], t[0], t[1]});
+    }
+    for (const NamedPlan& plan : test::plans_for(mesh, 60))
+        EXPECT_EQ(hashes(slice(TriangleSoup(turned), plan.plan)), hashes(slice(mesh, plan.plan)))
+            << plan.name;
+}
+
+TEST_P(SameBytes, WhetherStreamedOrNot) {
+    for_all(GetParam(), [](const TriangleSoup& mesh, const Plan& plan) {
+        SliceReport report;
+        const LayerStack at_once = slice(mesh, plan, {}, &report);
+        for (const unsigned threads : {1U, 2U, 7U}) {
+            LayerStack streamed;
+            std::atomic<int> writing{0};
+            const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+                auto kept = std::make_shared<Layer>(std::move(layer));
+                return [&, kept] {
+                    EXPECT_EQ(writing.fetch_add(1), 0); // one at a time
+                    streamed.push_back(std::move(*kept));
+                    writing.fetch_sub(1);
+                };
+            };
+            SliceReport streamed_report;
+            slice_to(sink, mesh, plan, {.threads = threads}, &streamed_report);
+            ASSERT_NO_FATAL_FAILURE(test::expect_well_formed(streamed, plan)); // also: in ascending z
+            EXPECT_EQ(hashes(streamed), hashes(at_once));
+            EXPECT_EQ(streamed_report.contours, report.contours);
+            EXPECT_EQ(streamed_report.points, report.points);
+            EXPECT_EQ(streamed_report.open_chains, report.open_chains);
+        }
+    });
+}
+
+TEST_P(SameBytes, FromASoupAndAnIndexedMesh) {
+    for_all(GetParam(), [](const TriangleSoup& mesh, const Plan& plan) {
+        EXPECT_EQ(hashes(slice(weld(mesh), plan)), hashes(slice(mesh, plan)));
+        EXPECT_EQ(section_areas(weld(mesh), plan), section_areas(mesh, plan));
+    });
+}
+
+TEST_P(SameBytes, ForEachPlaneAloneAndInAPlan) {
+    const TriangleSoup mesh = GetParam().make();
+    for (const NamedPlan& plan : test::plans_for(mesh, 20)) {
+        const LayerStack together = slice(mesh, plan.plan);
+        for (std::size_t i = 0; i < plan.plan.layers.size(); ++i) {
+            const LayerStack alone = slice(mesh, {{plan.plan.layers[i]}, plan.plan.rule});
+            EXPECT_TRUE(same_contours(alone.front(), together[i])) << plan.name << ' ' << i;
+        }
+    }
+}
+
+TEST_P(SameBytes, ForSectionAreasOnAnyNumberOfThreads) {
+    for_all(GetParam(), [](const TriangleSoup& mesh, const Plan& plan) {
+        const std::vector<double> one = section_areas(mesh, plan, {.threads = 1});
+        EXPECT_EQ(section_areas(mesh, plan, {.threads = 7}), one);
+    });
+}
+
+} // namespace
+} // namespace lamella
