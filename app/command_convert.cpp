@@ -7,7 +7,6 @@
 #include "commands.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
-#include "text_file.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +59,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     if (arguments.output == "-")
         context.messages.note(text);
     else
-        print(text);
+        context.messages.result(text);
     return 0;
 }
 

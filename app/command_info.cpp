@@ -9,7 +9,6 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "stats_json.hpp"
-#include "text_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -37,20 +36,24 @@ struct InfoArguments {
 
 struct Defect {
     std::uint64_t count;
-    std::string_view name;
+    std::string_view one;
+    std::string_view many;
     std::string_view meaning;
 };
 
 std::array<Defect, 6> defects_of(const Inspection& found) {
-    return {
-        {{found.boundary_edges, "boundary edges", "the surface has holes; contours stay open there"},
-         {found.orientation_conflicts, "orientation conflicts",
-          "neighbouring triangles face opposite ways; contours stay open there"},
-         {found.nonmanifold_edges, "crowded edges",
-          "more than two triangles share an edge; sliced as they stand"},
-         {found.duplicate_triangles, "duplicate triangles", "the same triangle more than once"},
-         {found.degenerate_triangles, "degenerate triangles", "two equal corners; left out of everything"},
-         {found.inverted_shells, "inverted shells", "inside out: their contours run the wrong way round"}}};
+    return {{{found.boundary_edges, "boundary edge", "boundary edges",
+              "the surface has holes; contours stay open there"},
+             {found.orientation_conflicts, "orientation conflict", "orientation conflicts",
+              "neighbouring triangles face opposite ways; contours stay open there"},
+             {found.nonmanifold_edges, "crowded edge", "crowded edges",
+              "more than two triangles share an edge; contours part or touch there"},
+             {found.duplicate_triangles, "duplicate triangle", "duplicate triangles",
+              "the same triangle more than once"},
+             {found.degenerate_triangles, "degenerate triangle", "degenerate triangles",
+              "two equal corners; left out of everything"},
+             {found.inverted_shells, "inverted shell", "inverted shells",
+              "inside out; contours run the wrong way round there"}}};
 }
 
 std::string line(std::string_view name, std::string_view value) {
@@ -74,10 +77,16 @@ std::string mesh_text(const MeshFile& file, const Inspection& found) {
     text += line("area", fmt::format("{} mm2", brief(found.area_mm2)));
     text += line("shells", grouped(found.shells));
     text += line("closed", found.closed() ? "yes" : "no");
-    text += line("defects", found.sound() ? "none" : "");
-    for (const Defect& defect : defects_of(found))
-        if (defect.count > 0)
-            text += fmt::format("    {:>9} {:<22} {}\n", grouped(defect.count), defect.name, defect.meaning);
+    if (found.sound())
+        return text + line("defects", "none");
+    std::string_view name = "defects";
+    for (const Defect& defect : defects_of(found)) {
+        if (defect.count == 0)
+            continue;
+        text += line(name, fmt::format("{} {}: {}", grouped(defect.count),
+                                       defect.count == 1 ? defect.one : defect.many, defect.meaning));
+        name = "";
+    }
     return text;
 }
 
@@ -101,8 +110,8 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
         context.messages.warn(warning);
     const TriangleSoup placed = file.mesh.transformed(arguments.placement.transform());
     const Inspection found = inspect(weld(placed, execution), execution);
-    print(arguments.json ? json_text(mesh_json(file, found, arguments.placement.unit))
-                         : mesh_text(file, found));
+    context.messages.result(arguments.json ? json_text(mesh_json(file, found, arguments.placement.unit))
+                                           : mesh_text(file, found));
     if (arguments.strict && !found.sound())
         throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects", file.path));
     return 0;
@@ -163,7 +172,8 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
         throw Error(ErrorKind::usage,
                     fmt::format("{}: --unit is for meshes; a slice file knows its unit", file.path));
     const LayerTotals totals = totals_of(file.layers);
-    print(arguments.json ? json_text(layers_json(file, totals)) : layers_text(file, totals));
+    context.messages.result(arguments.json ? json_text(layers_json(file, totals))
+                                           : layers_text(file, totals));
     if (arguments.strict && totals.open_chains > 0)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: has {}", file.path, counted(totals.open_chains, "open chain")));

@@ -7,7 +7,6 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
-#include "text_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -182,7 +181,7 @@ int run_make(const MakeArguments& arguments, const Context& context) {
     if (output == "-")
         context.messages.note(text);
     else
-        print(text);
+        context.messages.result(text);
     return 0;
 }
 

@@ -21,6 +21,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -147,11 +148,11 @@ std::string summary(const FileJob& job, const FileResult& result) {
                                                  : fmt::format("has defects; lamella info {} lists them",
                                                                one_line(job.input)));
     const FileResult::Seconds& s = result.seconds;
-    text += fmt::format("took     {:.2f} s on {} (read {:.2f}, ", s.total, counted(result.threads, "thread"),
+    text += fmt::format("took     {:.3f} s on {} (read {:.3f}, ", s.total, counted(result.threads, "thread"),
                         s.read);
     if (s.weld > 0)
-        text += fmt::format("weld {:.2f}, ", s.weld);
-    text += fmt::format("link {:.2f}, slice {:.2f}, write {:.2f})\n", s.link, s.slice, s.write);
+        text += fmt::format("weld {:.3f}, ", s.weld);
+    text += fmt::format("link {:.3f}, slice {:.3f}, write {:.3f})\n", s.link, s.slice, s.write);
     if (!result.format.empty())
         text +=
             fmt::format("written  {}: {}, {}\n", job.output == "-" ? "standard output" : one_line(job.output),
@@ -159,24 +160,45 @@ std::string summary(const FileJob& job, const FileResult& result) {
     return text;
 }
 
+/// What the layers say about the mesh.
+std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& result) {
+    const auto where = [&](const FileResult::Affected& affected) {
+        return fmt::format("in {} of {}, first at z = {} mm", grouped(affected.layers),
+                           counted(result.report.layers, "layer"), brief(affected.first_z));
+    };
+    std::vector<std::string> warnings;
+    if (result.report.open_chains > 0)
+        warnings.push_back(fmt::format("{}: {} {}: contours do not close where the mesh has holes or flipped "
+                                       "triangles; see lamella info {}",
+                                       job.input, counted(result.report.open_chains, "open chain"),
+                                       where(result.open), job.input));
+    if (result.inside_out.layers > 0)
+        warnings.push_back(
+            fmt::format("{}: inside out {}: outer contours run clockwise, as around holes, because "
+                        "triangles face inwards; see lamella info {}",
+                        job.input, where(result.inside_out), job.input));
+    return warnings;
+}
+
 int run_slice(const SliceArguments& arguments, const Context& context) {
     const FileJob job = make_job(arguments);
     const FileResult result = slice_file(job, arguments.run.execution(context));
     for (const std::string& warning : result.warnings)
         context.messages.warn(warning);
-    if (result.report.open_chains > 0)
-        context.messages.warn(fmt::format(
-            "{}: {} in {} of {}, first at z = {} mm: contours do not close where the mesh has holes or "
-            "flipped triangles; see lamella info {}",
-            job.input, counted(result.report.open_chains, "open chain"), grouped(result.open_layers),
-            counted(result.report.layers, "layer"), brief(result.first_open_z), job.input));
-    if (!arguments.stats.empty())
-        write_text_file(arguments.stats,
-                        json_text(stats_json(context.command, job, result, arguments.placement.unit)));
+    for (const std::string& warning : layer_warnings(job, result))
+        context.messages.warn(warning);
+    if (!arguments.stats.empty()) {
+        const std::string text =
+            json_text(stats_json(context.command, job, result, arguments.placement.unit));
+        if (arguments.stats == "-")
+            context.messages.result(text);
+        else
+            write_text_file(arguments.stats, text);
+    }
     if (arguments.output == "-" || arguments.stats == "-")
         context.messages.note(summary(job, result));
     else
-        print(summary(job, result));
+        context.messages.result(summary(job, result));
     return 0;
 }
 

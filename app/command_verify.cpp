@@ -8,7 +8,6 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "stats_json.hpp"
-#include "text_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -99,8 +98,8 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         options.mesh = mesh;
     }
     const Verification found = verify(file.layers, options, execution);
-    print(arguments.json ? json_text(verification_json(file.path, found))
-                         : verification_text(file.path, arguments.mesh, found));
+    context.messages.result(arguments.json ? json_text(verification_json(file.path, found))
+                                           : verification_text(file.path, arguments.mesh, found));
     if (!found.ok())
         throw Error(ErrorKind::defect, fmt::format("{}: the check failed", file.path));
     return 0;

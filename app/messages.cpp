@@ -1,5 +1,7 @@
 #include "messages.hpp"
 
+#include "text_file.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -8,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
-#include <string_view>
 
 namespace lamella::app {
 namespace {
@@ -57,6 +58,11 @@ void Messages::progress(const Progress& progress) {
     } else if (isatty(STDERR_FILENO) != 0) {
         draw_bar(progress, seconds.count());
     }
+}
+
+void Messages::result(std::string_view text) {
+    clear_bar();
+    print(text);
 }
 
 void Messages::warn(const std::string& text) {

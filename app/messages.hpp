@@ -1,11 +1,13 @@
 #pragma once
 
-// Standard error: errors, warnings, notes and progress, for people or (JSON lines) for programs.
+// What a running command says: results on standard output; errors, warnings, notes and progress on standard
+// error, for people or (JSON lines) for programs.
 
 #include "lamella/core/execution.hpp"
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 namespace lamella::app {
 
@@ -27,6 +29,8 @@ class Messages {
     /// To be called from one thread at a time, as Execution::progress is.
     void progress(const Progress& progress);
 
+    /// Prints a result on standard output. Throws Error{output}.
+    void result(std::string_view text);
     /// "lamella: warning: ...", on one line.
     void warn(const std::string& text);
     /// "lamella: error: ...", on one line.

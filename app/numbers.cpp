@@ -116,6 +116,12 @@ std::string exact(double value) {
 }
 
 std::string brief(double value) {
+    // Six digits, and all of those before the point.
+    constexpr double long_number = 1e5;
+    constexpr double longest_number = 1e15;
+    if (std::abs(value) >= long_number && std::abs(value) < longest_number)
+        return fmt::format("{}{}", value < 0 ? "-" : "",
+                           grouped(static_cast<std::uint64_t>(std::llround(std::abs(value)))));
     return fmt::format("{:.6g}", value + 0.0);
 }
 

@@ -25,7 +25,7 @@ namespace lamella::app {
 
 /// The shortest text that reads back to the same number.
 [[nodiscard]] std::string exact(double value);
-/// At most six digits: "31.75", "1.2e-07".
+/// For people: "31.75", "115,343", "1.2e-07".
 [[nodiscard]] std::string brief(double value);
 /// "102,812".
 [[nodiscard]] std::string grouped(std::uint64_t value);

@@ -10,8 +10,8 @@ namespace lamella::app {
 /// The whole file. Throws Error{input}.
 [[nodiscard]] std::string read_text_file(const std::string& path);
 
-/// Writes to a temporary name and renames, so that nobody sees half a file; "-" is standard output and
-/// special files are written in place. Throws Error{output}.
+/// Writes to a temporary name and renames, so that nobody sees half a file; special files are written in
+/// place. Throws Error{output}.
 void write_text_file(const std::string& path, std::string_view text);
 
 /// Prints a result on standard output. Throws Error{output}.

@@ -106,24 +106,26 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
 class Gatherer {
   public:
     Gatherer(const Plan& plan, bool statistics)
-        : first_(plan.layers.front().index), open_(plan.layers.size()) {
-        if (statistics)
-            layers_.resize(plan.layers.size());
-    }
+        : first_(plan.layers.front().index), signs_(plan.layers.size()),
+          layers_(statistics ? plan.layers.size() : 0) {}
 
     void add(const Layer& layer) {
         const auto place = static_cast<std::size_t>(layer.index - first_);
-        open_[place] = layer.open_chains() > 0;
+        // In normal form the first ring has the smallest point of all, so nothing lies around it.
+        signs_[place] = {.open = layer.open_chains() > 0,
+                         .inside_out = layer.rings > 0 && ring_area(layer.contour(0)) < 0};
         if (!layers_.empty())
             layers_[place] = {layer.index, layer.z, layer.thickness(), measure(layer), content_hash(layer)};
     }
 
     void finish(const Plan& plan, FileResult& result) {
-        for (std::size_t i = open_.size(); i-- > 0;) {
-            if (open_[i] != 0) {
-                ++result.open_layers;
-                result.first_open_z = plan.layers[i].z;
-            }
+        const auto count = [](bool affected, double z, FileResult::Affected& into) {
+            if (affected && into.layers++ == 0)
+                into.first_z = z;
+        };
+        for (std::size_t i = 0; i < signs_.size(); ++i) {
+            count(signs_[i].open, plan.layers[i].z, result.open);
+            count(signs_[i].inside_out, plan.layers[i].z, result.inside_out);
         }
         for (const LayerStatistics& layer : layers_)
             result.volume_mm3 += layer.measure.area_mm2 * layer.thickness;
@@ -131,9 +133,13 @@ class Gatherer {
     }
 
   private:
+    struct Signs {
+        bool open = false;
+        bool inside_out = false;
+    };
     std::uint64_t first_;
+    std::vector<Signs> signs_;
     std::vector<LayerStatistics> layers_;
-    std::vector<unsigned char> open_; ///< not bits: neighbours are set by different threads
 };
 
 } // namespace
@@ -199,7 +205,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     if (job.strict && result.report.open_chains > 0)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm", job.input,
-                                result.report.open_chains, result.first_open_z));
+                                result.report.open_chains, result.open.first_z));
     if (writer != nullptr) {
         const Stopwatch writing;
         writer->finish();

@@ -32,7 +32,7 @@ class Info(ProgramTest):
         self.assertFalse(found["closed"])
         self.assertEqual(found["defects"]["boundary_edges"], 4)
         text = self.succeed("info", "open.stl").text
-        self.assertRegex(text, "4 boundary edges .*hole")
+        self.assertRegex(text, "4 boundary edges: .*hole")
         self.assertIn("not closed", text)
 
     def test_strict_turns_a_defect_into_an_exit_code(self):

@@ -8,8 +8,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM = os.environ.get("LAMELLA_PROGRAM", "build/lamella")
-SOURCE = Path(os.environ.get("LAMELLA_SOURCE", Path(__file__).resolve().parent.parent.parent))
+SOURCE = Path(__file__).resolve().parent.parent.parent
+PROGRAM = os.environ.get("LAMELLA_PROGRAM", str(SOURCE / "build" / "lamella"))
 
 
 class Result:

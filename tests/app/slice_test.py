@@ -172,6 +172,14 @@ class Slice(ProgramTest):
         self.assertRegex(result.err, r"^lamella: warning: open\.stl: 10 open chains in 10 of 10 layers")
         self.assertIn("lamella info open.stl", result.err)
 
+    def test_a_part_that_is_inside_out_is_warned_about(self):
+        self.write("inverted.stl", binary_stl([(a, c, b) for a, b, c in box_triangles(20, 30, 10)]))
+        result = self.succeed("slice", "inverted.stl", "-o", "inverted.cli", "--layer-height", "1")
+        self.assertRegex(result.err, r"^lamella: warning: inverted\.stl: inside out in 10 of 10 layers")
+        # A hole is no reason to worry, nor is a part that was mirrored.
+        self.succeed("make", "torus")
+        self.assertEqual(self.succeed("slice", "torus.stl", "-o", "torus.cli", "--scale", "-1,1,1").err, "")
+
     def test_strict_refuses_a_defect_before_writing(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))
         self.fail_with(4, "boundary edges", "slice", "open.stl", "-o", "open.cli", "--strict")

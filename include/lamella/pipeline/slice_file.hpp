@@ -65,12 +65,17 @@ struct FileResult {
     std::string engine;
     unsigned threads = 0;
     SliceReport report;
-    std::uint64_t open_layers = 0; ///< layers with open chains
-    double first_open_z = 0;       ///< where the lowest of them was cut
-    double bottom = 0;             ///< of the first layer
-    double top = 0;                ///< of the last layer
-    std::string format;            ///< of the slice file, "" when none was written
-    std::uint64_t bytes = 0;       ///< written
+    /// Layers of one kind, and where the lowest of them was cut.
+    struct Affected {
+        std::uint64_t layers = 0;
+        double first_z = 0;
+    };
+    Affected open;           ///< with open chains
+    Affected inside_out;     ///< whose first ring, always an outer one, runs clockwise
+    double bottom = 0;       ///< of the first layer
+    double top = 0;          ///< of the last layer
+    std::string format;      ///< of the slice file, "" when none was written
+    std::uint64_t bytes = 0; ///< written
 
     /// With FileJob::layer_statistics: in ascending z, and the sum of area times thickness.
     std::vector<LayerStatistics> layers;
