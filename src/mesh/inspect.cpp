@@ -160,6 +160,7 @@ void judge_inward_shells(Executor& executor, const IndexedMesh& mesh, const Shel
         }
     }
     std::vector<Point3> points;
+    points.reserve(inward.size());
     for (const Inward& shell : inward)
         points.push_back(shell.middle);
     const std::vector<int> windings =

@@ -24,7 +24,8 @@ struct IndexedMesh {
 /// Joins equal corners of a soup: exactly, without a tolerance, with -0 equal to +0, after the placement.
 /// Vertices are numbered in the order of their first occurrence, so the locality of the file is kept, and
 /// triangle i of the soup is triangle i of the mesh. The result is the same for any number of threads.
-/// Expected O(n); hostile input costs O(n log n). Throws Error{limit} beyond 2^32 - 1 vertices or triangles.
+/// Expected O(n); hostile input costs O(n log n). Throws Error{limit} beyond 2^32 - 1 triangles, and where
+/// more than 2^32 - 1 corners differ from those shortly before them in the file.
 [[nodiscard]] IndexedMesh weld(const TriangleSoup& soup, const Execution& execution = {});
 
 /// Throws Error{input} naming the first triangle whose index is out of range or the first vertex that is not

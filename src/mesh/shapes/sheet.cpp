@@ -92,8 +92,18 @@ class SheetMaker {
         const std::int64_t pitch = edge_ / side; // whole, so that all cells are exact copies
         const std::int64_t margin = (edge_ - pitch * (side - 1)) / 2;
         hole_ = make_hole(static_cast<double>(pitch) * (hole_width / 2), segments);
-        for (unsigned i = 0; i < side; ++i)
-            centres_.push_back(margin + pitch * i);
+        corners_.reserve(holes() * segments + 4);
+        const auto add = [&](std::int64_t x, std::int64_t y) {
+            corners_.push_back({x, y, static_cast<std::uint32_t>(corners_.size())});
+        };
+        for (unsigned row = 0; row < side; ++row)
+            for (unsigned column = 0; column < side; ++column)
+                for (const GridPoint& p : hole_.corners)
+                    add(margin + pitch * column + p.x, margin + pitch * row + p.y);
+        add(0, 0);
+        add(edge_, 0);
+        add(edge_, edge_);
+        add(0, edge_);
     }
 
     /// The lower (or upper) triangle of each wall quad, hole by hole; the outer walls last.
@@ -123,7 +133,6 @@ class SheetMaker {
     }
 
   private:
-    // Corner ids: those of hole 0, of hole 1, ..., then the four of the sheet, counter-clockwise.
     [[nodiscard]] std::size_t holes() const { return std::size_t{side_} * side_; }
     [[nodiscard]] std::uint32_t corner(std::size_t hole, unsigned s) const {
         return static_cast<std::uint32_t>(hole * segments_ + s);
@@ -132,17 +141,9 @@ class SheetMaker {
         return static_cast<std::uint32_t>(holes() * segments_ + i);
     }
 
-    [[nodiscard]] GridPoint at(std::uint32_t id) const {
-        const std::uint32_t hole = id / segments_; // NOLINT(clang-analyzer-core.DivideZero): 3 or more
-        if (hole < holes()) {
-            const GridPoint& p = hole_.corners[id % segments_];
-            return {centres_[hole % side_] + p.x, centres_[hole / side_] + p.y, id};
-        }
-        const unsigned i = id - outer(0);
-        return {i == 1 || i == 2 ? edge_ : 0, i >= 2 ? edge_ : 0, id};
-    }
+    [[nodiscard]] const GridPoint& at(std::uint32_t id) const { return corners_[id]; }
     [[nodiscard]] Point3f point(std::uint32_t id, float z) const {
-        const GridPoint p = at(id);
+        const GridPoint& p = at(id);
         return {std::ldexp(static_cast<float>(p.x), unit_exponent_),
                 std::ldexp(static_cast<float>(p.y), unit_exponent_), z};
     }
@@ -170,8 +171,9 @@ class SheetMaker {
     float thickness_;
     int unit_exponent_ = 0;
     std::int64_t edge_ = 0;
-    std::vector<std::int64_t> centres_;
     Hole hole_;
+    std::vector<GridPoint>
+        corners_; ///< of hole 0, of hole 1, ..., then the four of the sheet, counter-clockwise
 };
 
 using Ids = std::vector<std::array<std::uint32_t, 3>>;
