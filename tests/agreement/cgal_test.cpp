@@ -1,8 +1,8 @@
 // Agreement with an independent slicer: Polygon_mesh_slicer of CGAL, which knows nothing of ranks and cut
 // graphs. On planes in general position both must find the same rings.
 
-#include "fixtures/shared_meshes.hpp"
 #include "fixtures/named_solids.hpp"
+#include "fixtures/shared_meshes.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_slicer.h>

@@ -2,8 +2,8 @@
 
 #include "fixtures/layer_checks.hpp"
 #include "fixtures/meshes.hpp"
-#include "fixtures/random.hpp"
 #include "fixtures/named_solids.hpp"
+#include "fixtures/random.hpp"
 
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>

@@ -1,8 +1,8 @@
 // Meshes from the wild: they slice without a crash, closed where they are closed, with their volume.
 
 #include "fixtures/layer_checks.hpp"
-#include "fixtures/shared_meshes.hpp"
 #include "fixtures/named_solids.hpp"
+#include "fixtures/shared_meshes.hpp"
 
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>
