@@ -1,0 +1,19 @@
+#include <lamella/lamella.hpp>
+
+#include <iostream>
+
+// Slices a box, writes it, reads it back: the whole way through the installed library.
+int main() {
+    const lamella::TriangleSoup box = lamella::make_box(20, 10, 3);
+    const lamella::LayerStack layers =
+        lamella::slice(box, lamella::plan_uniform(0, 3, {.layer_height = 0.1}));
+    for (const char* path : {"consumer.cli", "consumer.svg"}) {
+        lamella::write_layers(path, lamella::layer_format("", path), layers,
+                              {.box = lamella::bounding_box(box), .layers = layers.size()});
+        const lamella::LayerFile file = lamella::read_layers(path);
+        const lamella::Verification check = lamella::verify(file.layers, {.mesh = box, .quantum_mm = 0.001});
+        std::cout << path << ": " << check.layers << " layers, " << check.volume_mm3 << " mm3\n";
+        if (!check.ok() || check.layers != 30 || check.volume_mm3 < 599.9 || check.volume_mm3 > 600.1)
+            return 1;
+    }
+}

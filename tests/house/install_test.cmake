@@ -1,0 +1,38 @@
+# Installs the build tree, moves the installation somewhere else, and there builds and runs a consumer project
+# through find_package and through pkg-config.
+#
+# cmake -D BUILD_DIR=... -D CONSUMER_DIR=... -D WORK_DIR=... -D COMPILER=... -P install_test.cmake
+
+function(run)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE status COMMAND_ECHO STDOUT)
+    if(NOT status EQUAL 0)
+        message(FATAL_ERROR "exit status ${status}")
+    endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+file(MAKE_DIRECTORY ${WORK_DIR})
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/installed)
+set(prefix "${WORK_DIR}/moved prefix")
+file(RENAME ${WORK_DIR}/installed ${prefix})
+
+run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/find_package -G Ninja -D CMAKE_CXX_COMPILER=${COMPILER}
+    -D CMAKE_PREFIX_PATH=${prefix})
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/find_package)
+run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${WORK_DIR}/find_package/consumer)
+
+file(GLOB_RECURSE pc_file ${prefix}/lamella.pc)
+cmake_path(GET pc_file PARENT_PATH pc_dir)
+set(ENV{PKG_CONFIG_PATH} ${pc_dir})
+execute_process(COMMAND pkg-config --cflags --libs lamella OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND ${flags})
+run(${COMPILER} -std=c++20 ${CONSUMER_DIR}/main.cpp -o ${WORK_DIR}/pkg_config_consumer ${flags})
+file(GLOB shared_library ${prefix}/lib*/liblamella.so ${prefix}/lib*/*/liblamella.so)
+if(shared_library)
+    cmake_path(GET shared_library PARENT_PATH lib_dir)
+    set(ENV{LD_LIBRARY_PATH} ${lib_dir})
+endif()
+run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${WORK_DIR}/pkg_config_consumer)
+unset(ENV{LD_LIBRARY_PATH})
+
+run(${prefix}/bin/lamella --version)
