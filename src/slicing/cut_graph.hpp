@@ -74,7 +74,7 @@ struct CutGraph {
     std::uint32_t count = 0;
     /// Of an indexed mesh; must outlive the graph.
     const Point3* vertices = nullptr;
-    /// Edges with several triangles on one side, whose triangles were paired by geometry.
+    /// Edges with more than two triangles, which were paired by geometry.
     std::uint64_t nonmanifold_edges = 0;
 
     [[nodiscard]] Point3 low(const Ends& ends) const noexcept { return point(ends.low); }

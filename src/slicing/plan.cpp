@@ -103,7 +103,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
 
     Plan plan;
     plan.rule = rule_for(layers.slice_at);
-    plan.layers.reserve(end - begin);
+    plan.layers.reserve(std::min<std::uint64_t>(end - begin, 1U << 20)); // a z range may leave few of many
     for (std::uint64_t i = begin; i < end; ++i) {
         PlannedLayer layer = stacked_layer(i, z_min, first_height, height, f);
         if (at_top)

@@ -6,199 +6,38 @@
 #include "core/pages.hpp"
 #include "slicing/cut_graph.hpp"
 #include "slicing/ordered_delivery.hpp"
+#include "slicing/point_arena.hpp"
 #include "slicing/point_kernels.hpp"
+#include "slicing/slabs.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <vector>
 
 // The sweep engine
 //
 // Ranks turn heights into integers, the cut graph links every cut edge to its successors (cut_graph.hpp).
-// What is left is to read contours off the graph, slab by slab, each slab by one worker:
+// What is left is to read contours off the graph, slab by slab (slabs.hpp), each slab by one worker:
 //
-//   Walk.   On plane i start from every node that begins there, and follow `next` until the start is reached.
-//   A
-//           contour without a new node is the continuation of one on the plane before; it is not searched
-//           for.
-//   Run.    The sequence of nodes stays valid up to the first event in it: a node that ends or turns to its
-//   other
-//           successor. All planes up to there are a *run*, served by this one walk.
-//   Measure. For each plane of the run the points are computed, in the cache, only to learn where the ring
-//   starts
-//           in normal form and how many points it keeps.
-//   Write.  When a stretch of planes is complete, the rings of each layer are put in order, their places in
-//   the
-//           layer's array are known, and the points are computed again, straight into their places. To
-//           compute twice is cheaper than to move once: arithmetic on columns in the cache costs a fraction
-//           of a trip to memory.
+// Walk. On plane i start from every node that begins there, and follow `next` until the start is reached. A
+// contour without a new node is the continuation of one on the plane before; it is not searched for.
+//
+// Run. The sequence of nodes stays valid up to the first event in it: a node that ends or turns to its other
+// successor. All planes up to there are a *run*, served by this one walk.
+//
+// Measure. For each plane of the run the points are computed, in the cache, only to learn where the ring
+// starts in normal form and how many points it keeps.
+//
+// Write. When a stretch of planes is complete, the rings of each layer are put in order, their places in the
+// layer's array are known, and the points are computed again, straight into their places. To compute twice is
+// cheaper than to move once: arithmetic in the cache costs a fraction of a trip to memory.
 //
 // The result is in normal form, so nothing of this order of work can be seen in it.
 
 namespace lamella {
 
 namespace {
-
-/// What the planner knows about a plane: how many nodes are alive on it, and which begin there.
-struct PlaneIndex {
-    std::vector<std::uint64_t> points;  ///< per plane: the nodes alive on it
-    std::uint64_t most_points = 0;      ///< on one plane
-    std::uint64_t all_points = 0;       ///< on all planes
-    PageArray<std::uint32_t> starts;    ///< nodes ordered by the plane they begin on
-    std::vector<std::uint64_t> offsets; ///< starts of plane p are [offsets[p], offsets[p + 1])
-};
-
-/// A stretch of planes that one worker walks through.
-///
-/// Normally it writes all of them. Where single layers are so large that only few may be in flight, several
-/// workers walk through the same planes and write groups of them in turn: worker `turn` of `turns` writes
-/// every group whose number is `turn` modulo `turns`.
-struct Slab {
-    std::uint32_t begin;
-    std::uint32_t end;
-    std::vector<std::uint32_t> carried; ///< the nodes alive on `begin` that began before
-    std::uint32_t group;                ///< planes in a group
-    std::uint32_t turn = 0;
-    std::uint32_t turns = 1;
-    bool bounded = false; ///< wait before writing until the group `turns` before it is delivered
-
-    [[nodiscard]] std::uint32_t group_of(std::uint32_t plane) const noexcept {
-        return (plane - begin) / group;
-    }
-    [[nodiscard]] bool writes(std::uint32_t plane) const noexcept { return group_of(plane) % turns == turn; }
-};
-
-/// A worker's fixed share of the nodes, and how many of them begin and end on each plane.
-struct NodeShare {
-    std::uint32_t begin;
-    std::uint32_t end;
-    std::vector<std::uint32_t> begins;
-    std::vector<std::uint32_t> ends;
-};
-
-template <class Ends>
-std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor) {
-    constexpr std::uint64_t worth_a_thread = 1U << 15; // nodes
-    const std::uint64_t shares =
-        std::clamp<std::uint64_t>(graph.count / worth_a_thread, 1, executor.workers());
-    std::vector<NodeShare> result(shares);
-    executor.for_chunks(shares, 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
-        NodeShare& share = result[s];
-        share.begin = static_cast<std::uint32_t>(graph.count * s / shares);
-        share.end = static_cast<std::uint32_t>(graph.count * (s + 1) / shares);
-        share.begins.assign(planes + std::size_t{1}, 0);
-        share.ends.assign(planes + std::size_t{1}, 0);
-        for (std::uint32_t id = share.begin; id < share.end; ++id) {
-            const CutNode<Ends>& node = graph.nodes[id];
-            const bool used = node.first < node.last;
-            share.begins[node.first] += used;
-            share.ends[node.last] += used;
-        }
-    });
-    return result;
-}
-
-/// How the planes are dealt out to the workers.
-///
-/// Into slabs of about equal work, as a rule. A slab pays for walking once over all that is alive on its
-/// first plane, so there are few of them where planes are few and large, and more where that cost is lost
-/// among the planes, to level out what the estimate of the work misses. Where the bound on points in flight
-/// would make slabs of a few planes only, every worker walks through all planes and they write in turn.
-std::vector<Slab> deal_out(const std::vector<std::uint64_t>& points, std::uint64_t most_points,
-                           unsigned workers, std::uint64_t points_in_flight) {
-    constexpr std::uint64_t plane_cost = 64; // in points
-    constexpr std::uint64_t worth_a_thread = 1U << 15;
-    constexpr std::uint64_t worth_a_slab = 32; // planes
-    const auto planes = static_cast<std::uint32_t>(points.size());
-    std::uint64_t work = 0;
-    for (const std::uint64_t p : points)
-        work += p + plane_cost;
-    if (work < workers * worth_a_thread)
-        workers = 1;
-
-    std::vector<Slab> slabs;
-    const std::uint64_t per_worker =
-        points_in_flight / (workers + 1ULL); // one group or slab may wait for its turn
-    const std::uint64_t planes_in_flight =
-        std::max<std::uint64_t>(1, per_worker / std::max<std::uint64_t>(1, most_points));
-    if (points_in_flight != 0 && planes_in_flight < planes &&
-        (workers == 1 || planes_in_flight < worth_a_slab)) {
-        for (std::uint32_t turn = 0; turn < workers; ++turn)
-            slabs.push_back(
-                {0, planes, {}, static_cast<std::uint32_t>(planes_in_flight), turn, workers, true});
-        return slabs;
-    }
-
-    const std::uint64_t wanted =
-        workers == 1 ? 1 : workers * std::clamp<std::uint64_t>(planes / (workers * 32ULL), 1, 4);
-    std::uint64_t target = work / wanted + 1;
-    if (points_in_flight != 0)
-        target = std::min(target, per_worker);
-    std::uint64_t filled = 0;
-    for (std::uint32_t p = 0; p < planes; ++p) {
-        const std::uint64_t cost = points[p] + plane_cost;
-        if (slabs.empty() || filled + cost / 2 > target) {
-            slabs.push_back({p, p, {}, planes});
-            filled = 0;
-        }
-        filled += cost;
-        slabs.back().end = p + 1;
-    }
-    return slabs;
-}
-
-/// Sorts the nodes by the plane they begin on, and tells each slab which nodes reach into it from below.
-template <class Ends>
-PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::uint64_t points_in_flight,
-                        Executor& executor, std::vector<Slab>& slabs) {
-    std::vector<NodeShare> shares = count_nodes(graph, planes, executor);
-    PlaneIndex index;
-    index.points.assign(planes, 0);
-    index.offsets.assign(planes + std::size_t{1}, 0);
-    std::vector<std::vector<std::uint64_t>> fill(shares.size(), std::vector<std::uint64_t>(planes));
-    std::uint64_t alive = 0;
-    std::uint64_t begun = 0;
-    for (std::uint32_t p = 0; p < planes; ++p) {
-        for (std::size_t s = 0; s < shares.size(); ++s) {
-            fill[s][p] = begun;
-            begun += shares[s].begins[p];
-            alive += shares[s].begins[p];
-            alive -= shares[s].ends[p];
-        }
-        index.points[p] = alive;
-        index.most_points = std::max(index.most_points, alive);
-        index.all_points += alive;
-        index.offsets[p + 1] = begun;
-    }
-
-    slabs = deal_out(index.points, index.most_points, executor.workers(), points_in_flight);
-    // The slab that a plane lies in; the last one where all slabs hold all planes.
-    std::vector<std::uint32_t> slab_of(planes);
-    for (std::uint32_t s = 0; s < slabs.size(); ++s)
-        std::fill(slab_of.begin() + slabs[s].begin, slab_of.begin() + slabs[s].end, s);
-
-    index.starts = PageArray<std::uint32_t>(begun);
-    std::vector<std::vector<std::vector<std::uint32_t>>> carried(
-        shares.size(), std::vector<std::vector<std::uint32_t>>(slabs.size()));
-    executor.for_chunks(shares.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
-        for (std::uint32_t id = shares[s].begin; id < shares[s].end; ++id) {
-            const CutNode<Ends>& node = graph.nodes[id];
-            if (node.first >= node.last)
-                continue;
-            index.starts[fill[s][node.first]++] = id;
-            for (std::uint32_t b = slab_of[node.first] + 1; b < slabs.size() && slabs[b].begin < node.last;
-                 ++b)
-                carried[s][b].push_back(id);
-        }
-    });
-    for (const auto& share : carried)
-        for (std::size_t b = 0; b < slabs.size(); ++b)
-            slabs[b].carried.insert(slabs[b].carried.end(), share[b].begin(), share[b].end());
-    return index;
-}
 
 /// One contour over the planes that its sequence of nodes serves.
 struct Run {
@@ -250,77 +89,6 @@ class Scratch {
   private:
     PageArray<double> x_;
     PageArray<double> y_;
-};
-
-/// Memory for the points of layers, in blocks that live as long as a layer uses them. Blocks are large, so
-/// that they lie in large pages; only what is touched of them takes memory. A block that its layers let go of
-/// while slicing goes on is used again: memory that was written before costs a fraction of fresh memory.
-class PointArena {
-  public:
-    /// `expected`: the points of the whole result; small results take small blocks.
-    explicit PointArena(std::uint64_t expected)
-        : usual_(std::min(expected, largest_usual)), returned_(std::make_shared<Returned>()) {}
-
-    struct Piece {
-        std::shared_ptr<const void> owner;
-        Point2* points;
-    };
-
-    [[nodiscard]] Piece take(std::uint64_t size) {
-        if (!block_ || block_->memory.size() - used_ < size) {
-            block_.reset();
-            block_ = std::make_shared<Block>(find_memory(size), returned_);
-            used_ = 0;
-        }
-        Point2* points = block_->memory.data() + used_;
-        used_ += size;
-        return {block_, points};
-    }
-
-  private:
-    static constexpr std::uint64_t largest_usual = (std::uint64_t{8} << 20) / sizeof(Point2);
-
-    struct Returned {
-        std::mutex mutex;
-        std::vector<PageArray<Point2>> memory;
-    };
-
-    struct Block {
-        Block(PageArray<Point2> points, const std::shared_ptr<Returned>& to)
-            : memory(std::move(points)), returned(to) {}
-        ~Block() {
-            if (const std::shared_ptr<Returned> to = returned.lock()) {
-                const std::lock_guard lock(to->mutex);
-                to->memory.push_back(std::move(memory));
-            }
-        }
-        Block(const Block&) = delete;
-        Block& operator=(const Block&) = delete;
-
-        PageArray<Point2> memory;
-        std::weak_ptr<Returned> returned; ///< gone when slicing is over: then the memory goes too
-    };
-
-    PageArray<Point2> find_memory(std::uint64_t size) {
-        {
-            const std::lock_guard lock(returned_->mutex);
-            for (PageArray<Point2>& memory : returned_->memory) {
-                if (memory.size() < size)
-                    continue;
-                PageArray<Point2> found = std::move(memory);
-                memory = std::move(returned_->memory.back());
-                returned_->memory.pop_back();
-                return found;
-            }
-            returned_->memory.clear(); // all too small by now
-        }
-        return PageArray<Point2>(std::max(size + size / 8, usual_));
-    }
-
-    std::uint64_t usual_;
-    std::shared_ptr<Returned> returned_;
-    std::shared_ptr<Block> block_;
-    std::uint64_t used_ = 0;
 };
 
 /// Whether a ring without repeated points runs to and fro on a line, so that it bounds nothing.
@@ -845,8 +613,8 @@ class SlabSweep {
     std::vector<Segment> segments_;
     std::vector<std::uint32_t> pending_;
     std::vector<std::uint32_t> joined_;
-    std::vector<std::vector<std::uint32_t>>
-        restarts_; // per plane of the slab: nodes of chains that end before it
+    /// Per plane of the slab: the nodes of chains whose run ends before it.
+    std::vector<std::vector<std::uint32_t>> restarts_;
 
     std::vector<std::uint32_t> sequences_; // the nodes of the runs
     PageArray<double> columns_;            // the prepared edges of the first runs, as many as have room

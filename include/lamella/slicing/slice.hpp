@@ -78,8 +78,8 @@ struct Engine {
 /// coordinates. Elsewhere what cannot be closed is kept as open chains.
 ///
 /// Default engine: O(triangles + points + c log c) for c contours in a layer, on all threads; the same bytes
-/// for any number of threads and any order of the triangles. Throws Error{limit} beyond 2^32 / 3 triangles
-/// with a cut, Error{cancelled}, and what the progress function throws.
+/// for any number of threads and any order of the triangles. Throws Error{limit} beyond 2^32 / 3 triangles,
+/// Error{cancelled}, and what the progress function throws.
 [[nodiscard]] LayerStack slice(const MeshRef& mesh, const Plan& plan, const Execution& execution = {},
                                SliceReport* report = nullptr, const Engine& with = engines().front());
 
