@@ -153,7 +153,7 @@ TEST(StlBinary, RefusesAFileWithoutAFiniteTriangle) {
 TEST(StlBinary, TakesTheTextOfTheHeaderForTheName) {
     EXPECT_EQ(read(binary(many, 24, "Exported from Blender-2.91.0")).name, "Exported from Blender-2.91.0");
     EXPECT_EQ(read(binary(many, 24, "  solid part  " + std::string(66, ' '))).name, "solid part");
-    EXPECT_EQ(read(binary(many, 24, std::string("COLOR=\1\2\3\4,MATERIAL=", 21))).name, "COLOR=");
+    EXPECT_EQ(read(binary(many, 24, std::string("COLOR=\1\2\3\4,MATERIAL=", 20))).name, "COLOR=");
     EXPECT_EQ(read(binary(many, 24, "")).name, "");
     EXPECT_EQ(read(binary(many, 24, "St\xFC\x63k")).name, "St\\xfcck");
     EXPECT_EQ(read(binary(many, 24, std::string(80, 'x'))).name, std::string(80, 'x'));
