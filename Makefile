@@ -4,7 +4,8 @@
 PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
-THREADED := ^(core|mesh|contour|read|slicing|polygon|pipeline)$$
+THREADED := core mesh contour read slicing polygon pipeline
+blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include src tests -name '*.[ch]pp' 2>/dev/null)
 
 # A compiler cache is used where there is one.
@@ -48,8 +49,8 @@ test-asan: packages-all
 
 test-tsan: packages-all
 	cmake --preset tsan
-	cmake --build build-tsan
-	$(CTEST) --test-dir build-tsan --label-regex '$(THREADED)'
+	cmake --build build-tsan --target $(THREADED:%=lamella_%_test)
+	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$'
 
 test-fuzz: packages-all
 	cmake --preset fuzz
