@@ -188,6 +188,8 @@ void AtomicFile::open_temporary() {
 void AtomicFile::append(std::string_view bytes) {
     if (descriptor_ < 0)
         throw Error(ErrorKind::internal, fmt::format("'{}' was written to after its end", path_));
+    if (bytes.empty())
+        return; // nothing may have no address
     bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
     if (bytes.size() > buffer_size - buffered_) {
         flush();

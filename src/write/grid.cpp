@@ -47,7 +47,9 @@ std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool clos
     GridPoint* const points = scratch.data();
     std::size_t beyond = 0;
     const auto whole = [](double v) {
-        return std::bit_cast<std::int64_t>(v + round_to_whole) - std::bit_cast<std::int64_t>(round_to_whole);
+        // Unsigned, because values that are refused below may wrap around.
+        return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(v + round_to_whole) -
+                                         std::bit_cast<std::uint64_t>(round_to_whole));
     };
     for (std::size_t i = 0; i < contour.size(); ++i) {
         const double x = contour[i].x * per_step_;
