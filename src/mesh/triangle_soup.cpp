@@ -67,6 +67,8 @@ TriangleSoup TriangleSoup::transformed(const Transform& map) const {
 }
 
 Box3 bounding_box(const TriangleSoup& soup, const Execution& execution) {
+    if (soup.stored_box() && !soup.has_placement())
+        return *soup.stored_box();
     Executor executor(execution);
     const auto piece = [&](std::size_t begin, std::size_t end) {
         return soup.has_placement() ? placed_box(soup, begin, end) : stored_box(soup, begin, end);

@@ -34,21 +34,46 @@ constexpr std::uint64_t chunk_triangles = 20'000;
 constexpr std::uint32_t exponent_bits = 0x7F800000;
 
 using FourWords [[gnu::vector_size(16)]] = std::uint32_t;
+using FourFloats [[gnu::vector_size(16)]] = float;
 
-/// Whether all corners of n records are finite. Runs as fast as memory delivers: integer compares, no branch.
-/// `corners` is where the corners of the first record begin.
-bool all_finite(const std::byte* corners, std::uint64_t n) {
+/// What one pass over records tells.
+struct Survey {
+    bool finite; ///< all corners are
+    Box3 box;    ///< of the corners; meaningful when all are finite
+};
+
+/// Runs as fast as memory delivers: three loads a record, no branch. `corners` is where the corners of the
+/// first record begin.
+Survey survey(const std::byte* corners, std::uint64_t n) {
     constexpr FourWords mask = {exponent_bits, exponent_bits, exponent_bits, exponent_bits};
+    constexpr float infinity = std::numeric_limits<float>::infinity();
     FourWords bad = {};
+    // Of each corner, x y z and one more value in the last lane, which counts for nothing.
+    std::array<FourFloats, 3> low;
+    std::array<FourFloats, 3> high;
+    low.fill(FourFloats{infinity, infinity, infinity, infinity});
+    high.fill(-low[0]);
     for (std::uint64_t i = 0; i < n; ++i) {
-        // Nine words are three loads of four; the last begins where the ninth is its last.
-        for (const std::size_t at : {0, 16, 20}) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            // The third load begins one value early: beyond its corner the file may end.
+            FourFloats corner;
+            std::memcpy(&corner, corners + i * stl_record_bytes + (k == 2 ? 20 : 12 * k), sizeof corner);
+            if (k == 2)
+                corner = __builtin_shufflevector(corner, corner, 1, 2, 3, 0);
             FourWords words;
-            std::memcpy(&words, corners + i * stl_record_bytes + at, sizeof words);
+            std::memcpy(&words, &corner, sizeof words);
             bad |= FourWords((words & mask) == mask);
+            low[k] = corner < low[k] ? corner : low[k];
+            high[k] = corner > high[k] ? corner : high[k];
         }
     }
-    return (bad[0] | bad[1] | bad[2] | bad[3]) == 0;
+    Survey result{(bad[0] | bad[1] | bad[2] | bad[3]) == 0, {}};
+    for (std::size_t k = 0; k < 3 && n != 0; ++k) {
+        // Adding zero turns -0 into +0, as everywhere.
+        result.box.add(Point3{low[k][0] + 0.0, low[k][1] + 0.0, low[k][2] + 0.0});
+        result.box.add(Point3{high[k][0] + 0.0, high[k][1] + 0.0, high[k][2] + 0.0});
+    }
+    return result;
 }
 
 bool is_finite(const std::byte* corners) {
@@ -63,14 +88,18 @@ struct NonFinite {
     std::vector<std::uint32_t> per_chunk;
     std::uint64_t total = 0;
     std::uint64_t first = 0;
+    Box3 box; ///< of all corners; meaningful when all are finite
 };
 
 NonFinite find_nonfinite(const std::byte* corners, std::uint64_t n, Executor& executor,
                          ProgressMeter& progress) {
     NonFinite found;
     found.per_chunk.resize((n + chunk_triangles - 1) / chunk_triangles);
-    executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        if (!all_finite(corners + begin * stl_record_bytes, end - begin)) {
+    std::vector<Box3> boxes(executor.workers());
+    executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+        const Survey surveyed = survey(corners + begin * stl_record_bytes, end - begin);
+        boxes[worker].add(surveyed.box);
+        if (!surveyed.finite) {
             std::uint32_t count = 0;
             for (std::uint64_t i = begin; i < end; ++i)
                 count += is_finite(corners + i * stl_record_bytes) ? 0 : 1;
@@ -78,6 +107,8 @@ NonFinite find_nonfinite(const std::byte* corners, std::uint64_t n, Executor& ex
         }
         progress.add((end - begin) * stl_record_bytes);
     });
+    for (const Box3& box : boxes)
+        found.box.add(box);
     for (const std::uint32_t count : found.per_chunk)
         found.total += count;
     if (found.total != 0)
@@ -173,7 +204,7 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     file.stored_triangles = stored;
     file.nonfinite_triangles = nonfinite.total;
     if (nonfinite.total == 0) {
-        file.mesh = TriangleSoup(source.owner, corners, stl_record_bytes, stored);
+        file.mesh = TriangleSoup(source.owner, corners, stl_record_bytes, stored, nonfinite.box);
     } else {
         const std::string first = fmt::format("the first is triangle {} at byte {}", nonfinite.first + 1,
                                               stl_head_bytes + stl_record_bytes * nonfinite.first);

@@ -1,5 +1,6 @@
 #include "slicing/point_kernels.hpp"
 
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -15,6 +16,7 @@ template <int width>
 struct Vector {
     typedef double Doubles
         __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));
+    typedef double AlignedDoubles __attribute__((vector_size(width * sizeof(double)), may_alias));
 };
 
 template <int width>
@@ -99,33 +101,88 @@ template <int width>
     return result;
 }
 
+/// (x[0], y[0], x[1], y[1], ...) in two vectors.
 template <int width, std::size_t... k>
-[[gnu::always_inline]] inline void store_points(const typename Vector<width>::Doubles& x,
-                                                const typename Vector<width>::Doubles& y, double* to,
-                                                std::index_sequence<k...>) {
-    store<width>(__builtin_shufflevector(x, y, (k % 2 * width + k / 2)...), to);
-    store<width>(__builtin_shufflevector(x, y, (k % 2 * width + k / 2 + width / 2)...), to + width);
+[[gnu::always_inline]] inline void
+interleave(const typename Vector<width>::Doubles& x, const typename Vector<width>::Doubles& y,
+           typename Vector<width>::Doubles& first, typename Vector<width>::Doubles& second,
+           std::index_sequence<k...>) {
+    first = __builtin_shufflevector(x, y, (k % 2 * width + k / 2)...);
+    second = __builtin_shufflevector(x, y, (k % 2 * width + k / 2 + width / 2)...);
+}
+
+/// Stores past the cache. `to` is a multiple of the vector's size.
+template <int width>
+[[gnu::always_inline]] inline void stream(const typename Vector<width>::Doubles& v, double* to) {
+#if defined(__x86_64__)
+    auto& place = *reinterpret_cast<typename Vector<width>::AlignedDoubles*>(to);
+    // The compilers have no common builtin for this, and the intrinsics cannot be called from here.
+    if constexpr (width == 2)
+        asm("movntpd %1, %0" : "=m"(place) : "x"(v));
+    else
+        asm("vmovntpd %1, %0" : "=m"(place) : "v"(v));
+#else
+    store<width>(v, to);
+#endif
+}
+
+/// Makes what was streamed visible before whatever this thread stores next.
+[[gnu::always_inline]] inline void end_stream() {
+#if defined(__x86_64__)
+    asm volatile("sfence" : : : "memory");
+#endif
+}
+
+[[gnu::always_inline]] inline Point2 cut_one(const EdgeColumns& edges, std::size_t i, double z) {
+    const double* column = edges.data + i;
+    const std::size_t stride = edges.stride();
+    const double t = (z - column[0]) * column[stride];
+    const double s = t < 1.0 ? t : 1.0;
+    return {column[2 * stride] + s * column[3 * stride], column[4 * stride] + s * column[5 * stride]};
 }
 
 template <int width>
 [[gnu::always_inline]] inline void cut(const EdgeColumns& edges, std::size_t begin, std::size_t end, double z,
                                        Point2* to) {
     using V = typename Vector<width>::Doubles;
+    constexpr auto lanes = std::make_index_sequence<width>{};
     std::size_t i = begin;
     for (; i + width <= end; i += width, to += width) {
         V px;
         V py;
+        V first;
+        V second;
         cut_some<width>(edges, i, z, px, py);
-        store_points<width>(px, py, &to->x, std::make_index_sequence<width>{});
+        interleave<width>(px, py, first, second, lanes);
+        store<width>(first, &to->x);
+        store<width>(second, &to->x + width);
     }
-    const double* column = edges.data;
-    const std::size_t stride = edges.stride();
-    for (; i < end; ++i, ++to) {
-        const double t = (z - column[i]) * column[i + stride];
-        const double s = t < 1.0 ? t : 1.0;
-        *to = {column[i + 2 * stride] + s * column[i + 3 * stride],
-               column[i + 4 * stride] + s * column[i + 5 * stride]};
+    for (; i < end; ++i, ++to)
+        *to = cut_one(edges, i, z);
+}
+
+template <int width>
+[[gnu::always_inline]] inline void cut_past_cache(const EdgeColumns& edges, std::size_t begin,
+                                                  std::size_t end, double z, Point2* to) {
+    using V = typename Vector<width>::Doubles;
+    constexpr auto lanes = std::make_index_sequence<width>{};
+    constexpr std::uintptr_t line = 64; // only whole lines are worth it
+    std::size_t i = begin;
+    for (; i < end && reinterpret_cast<std::uintptr_t>(to) % line != 0; ++i, ++to)
+        *to = cut_one(edges, i, z);
+    for (; i + width <= end; i += width, to += width) {
+        V px;
+        V py;
+        V first;
+        V second;
+        cut_some<width>(edges, i, z, px, py);
+        interleave<width>(px, py, first, second, lanes);
+        stream<width>(first, &to->x);
+        stream<width>(second, &to->x + width);
     }
+    for (; i < end; ++i, ++to)
+        *to = cut_one(edges, i, z);
+    end_stream();
 }
 
 template <int width>
@@ -161,11 +218,15 @@ template <int width>
                                Point2* to) {                                                                 \
             lamella::cut<width>(edges, begin, end, z, to);                                                   \
         }                                                                                                    \
+        target static void cut_past_cache(EdgeColumns edges, std::size_t begin, std::size_t end, double z,   \
+                                          Point2* to) {                                                      \
+            lamella::cut_past_cache<width>(edges, begin, end, z, to);                                        \
+        }                                                                                                    \
         target static std::size_t find_not_above(const double* x, std::size_t from, std::size_t n,           \
                                                  double value) {                                             \
             return lamella::find_not_above<width>(x, from, n, value);                                        \
         }                                                                                                    \
-        static constexpr PointKernels kernels{survey, cut, find_not_above};                                  \
+        static constexpr PointKernels kernels{survey, cut, cut_past_cache, find_not_above};                  \
     }
 // NOLINTEND(bugprone-macro-parentheses)
 

@@ -39,6 +39,9 @@ struct PointKernels {
     Survey (*survey)(EdgeColumns edges, double z, double* x, double* y);
     /// to[i - begin] = the cut of edge i with the plane z, for begin <= i < end.
     void (*cut)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
+    /// The same for places that are not in the cache and are not read soon: where the processor can, it
+    /// writes whole lines to memory without fetching them first. On lines that are in the cache it is slower.
+    void (*cut_past_cache)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
     /// The first i in [from, n) with x[i] <= value, else n.
     std::size_t (*find_not_above)(const double* x, std::size_t from, std::size_t n, double value);
 };

@@ -19,7 +19,7 @@ Ranks::Ranks(const Plan& plan)
     first_ = z_.front();
     last_ = z_.back();
 
-    const std::size_t cells = count_ > 1 ? count_ : 1;
+    const std::size_t cells = count_ > 1 ? 2 * std::size_t{count_} : 1;
     const double height = last_ - first_;
     cells_per_mm_ = static_cast<double>(cells) / height;
     if (!std::isfinite(cells_per_mm_))
@@ -33,6 +33,7 @@ Ranks::Ranks(const Plan& plan)
         ++cells_[static_cast<std::size_t>((plane - first_) * cells_per_mm_) + 1];
     for (std::size_t c = 1; c < cells_.size(); ++c)
         cells_[c] += cells_[c - 1];
+    z_.push_back(last_); // to look at where a cell holds no plane
 }
 
 } // namespace lamella

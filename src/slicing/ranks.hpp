@@ -12,7 +12,7 @@ namespace lamella {
 /// Gives each height its rank, the number of planes below it. An edge is cut by exactly the planes
 /// [rank(lower end), rank(upper end)).
 ///
-/// The planes are looked up through a grid with about one cell per plane, so that a rank costs O(1) for
+/// The planes are looked up through a grid with two cells per plane, so that a rank costs O(1) for
 /// evenly spaced planes and O(log n) for the most uneven ones.
 class Ranks {
   public:
@@ -27,6 +27,10 @@ class Ranks {
         const auto cell = static_cast<std::size_t>((z - first_) * cells_per_mm_);
         std::uint32_t low = cells_[cell];
         std::uint32_t high = cells_[cell + 1];
+        // Nearly every cell of evenly spaced planes holds one plane or none, and which is random: no branch.
+        if (high - low <= 1)
+            return low + static_cast<std::uint32_t>(static_cast<int>(low < high) &
+                                                    static_cast<int>(is_below(z_[low], z)));
         while (low < high) {
             const std::uint32_t middle = (low + high) / 2;
             if (is_below(z_[middle], z))

@@ -154,6 +154,7 @@ class SlabSweep {
     static constexpr std::uint64_t stale_enough = 1U << 15; // edges of runs that ended
     static constexpr std::uint64_t most_room = 1U << 16;    // edges; 3 MB of columns stay in the cache
     static constexpr std::uint64_t not_kept = ~std::uint64_t{0};
+    static constexpr std::uint64_t large_layer = (std::uint64_t{2} << 20) / sizeof(Point2); // a large page
 
     // ------------------------------------------------------------------------------------------------- walk
 
@@ -461,6 +462,9 @@ class SlabSweep {
         }
 
         const PointArena::Piece piece = arena_.take(total);
+        // The rings of a run are written layer after layer. Where layers are large, each line of memory has
+        // left the cache since its page was cleared or used before, and is best not fetched again.
+        const bool past_cache = outgoing.size() > 1 && total / outgoing.size() >= large_layer;
         for (const Run& run : runs_) {
             EdgeColumns edges{};
             for (std::uint32_t p = std::max(run.begin, written_); p < std::min(run.end, end); ++p) {
@@ -469,7 +473,7 @@ class SlabSweep {
                     continue;
                 if (edges.data == nullptr)
                     edges = edges_of(run);
-                write_ring(edges, run.closed, p, ring, piece.points + ring.place);
+                write_ring(edges, run.closed, p, ring, piece.points + ring.place, past_cache);
             }
         }
 
@@ -528,7 +532,7 @@ class SlabSweep {
                                            [](std::uint64_t ring, const Run& r) { return ring < r.rings; }));
             const Ring& ring = rings_[it->ring];
             std::vector<Point2> points(ring.count);
-            write_ring(edges_of(*run), run->closed, plane, ring, points.data());
+            write_ring(edges_of(*run), run->closed, plane, ring, points.data(), false);
             contours.emplace_back(std::move(points), *it);
         }
         std::stable_sort(contours.begin(), contours.end(),
@@ -537,12 +541,13 @@ class SlabSweep {
             *begin = contours[i].second;
     }
 
-    void write_ring(const EdgeColumns& edges, bool closed, std::uint32_t plane, const Ring& ring,
-                    Point2* to) {
+    void write_ring(const EdgeColumns& edges, bool closed, std::uint32_t plane, const Ring& ring, Point2* to,
+                    bool past_cache) {
         const double z = ranks_.z(plane);
         if (ring.count == edges.size) {
-            kernels_.cut(edges, ring.start, edges.size, z, to);
-            kernels_.cut(edges, 0, ring.start, z, to + (edges.size - ring.start));
+            const auto cut = past_cache ? kernels_.cut_past_cache : kernels_.cut;
+            cut(edges, ring.start, edges.size, z, to);
+            cut(edges, 0, ring.start, z, to + (edges.size - ring.start));
             return;
         }
         scratch_.reserve(edges.stride());

@@ -159,5 +159,36 @@ TEST(StlBinary, TakesTheTextOfTheHeaderForTheName) {
     EXPECT_EQ(read(binary(many, 24, std::string(80, 'x'))).name, std::string(80, 'x'));
 }
 
+TEST(StlBinary, KnowsTheBoxWhereverItsBoundsStand) {
+    constexpr float huge = std::numeric_limits<float>::max();
+    for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{40'001}}) {
+        for (std::size_t corner = 0; corner < 9; ++corner) {
+            for (const float bound : {huge, -huge, -0.0F}) {
+                Triangles triangles(count, Triangle3f{Point3f{1, 2, 3}, Point3f{4, 5, 6}, Point3f{7, 8, 9}});
+                Point3f& p = triangles[count * 2 / 3][corner / 3];
+                (corner % 3 == 0 ? p.x : corner % 3 == 1 ? p.y : p.z) = bound;
+                const std::string bytes = binary(triangles);
+                const MeshFile file = read_mesh(std::as_bytes(std::span(bytes)), "box.stl");
+                ASSERT_TRUE(file.mesh.stored_box().has_value());
+                EXPECT_EQ(*file.mesh.stored_box(), bounding_box(TriangleSoup(triangles)))
+                    << count << ", " << corner;
+                EXPECT_FALSE(bound == 0 && std::signbit(file.mesh.stored_box()->min.z));
+            }
+        }
+    }
+}
+
+TEST(StlBinary, HasNoBoxOfCornersThatItDropped) {
+    Triangles triangles = many;
+    triangles[3][1].y = -infinity;
+    triangles[5][2].z = nan;
+    const std::string bytes = binary(triangles);
+    const MeshFile file = read_mesh(std::as_bytes(std::span(bytes)), "dropped.stl");
+    Triangles kept = many;
+    kept.erase(kept.begin() + 5);
+    kept.erase(kept.begin() + 3);
+    EXPECT_EQ(bounding_box(file.mesh), bounding_box(TriangleSoup(kept)));
+}
+
 } // namespace
 } // namespace lamella::stl_test

@@ -142,14 +142,16 @@ TEST_P(PointKernelsTest, CutGivesTheBitsOfTheFormulaFromAnyBeginToAnyEnd) {
             for (std::size_t end = begin; end <= n; end += step) {
                 // One point more on either side shows what is written beyond; the first one also takes the
                 // rest off any alignment.
-                std::vector<Point2> points(end - begin + 2, Point2{nan, nan});
-                kernels_.cut(edges.columns(), begin, end, z, points.data() + 1);
-                EXPECT_TRUE(points.front().x != points.front().x && points.front().y != points.front().y);
-                EXPECT_TRUE(points.back().x != points.back().x && points.back().y != points.back().y);
-                for (std::size_t i = begin; i < end; ++i) {
-                    const Point2 expected = edges.at(i, z);
-                    ASSERT_EQ(std::memcmp(&expected, &points[i - begin + 1], sizeof expected), 0)
-                        << i << " in " << begin << ", " << end << " of " << n;
+                for (const auto cut : {kernels_.cut, kernels_.cut_past_cache}) {
+                    std::vector<Point2> points(end - begin + 2, Point2{nan, nan});
+                    cut(edges.columns(), begin, end, z, points.data() + 1);
+                    EXPECT_TRUE(points.front().x != points.front().x && points.front().y != points.front().y);
+                    EXPECT_TRUE(points.back().x != points.back().x && points.back().y != points.back().y);
+                    for (std::size_t i = begin; i < end; ++i) {
+                        const Point2 expected = edges.at(i, z);
+                        ASSERT_EQ(std::memcmp(&expected, &points[i - begin + 1], sizeof expected), 0)
+                            << i << " in " << begin << ", " << end << " of " << n;
+                    }
                 }
             }
         }

@@ -528,5 +528,17 @@ TEST(Sweep, OfAFlatMeshIsNothing) {
             EXPECT_EQ(layer.contours(), 0U);
 }
 
+TEST(Sweep, WritesLargeLayersTogetherAsItWritesThemOneByOne) {
+    // Layers of several megabytes are written another way when they are written together.
+    const TriangleSoup sheet = make_sheet({.holes = 225});
+    const Plan plan = even_planes(0, 3, 4);
+    const LayerStack together = slice(sheet, plan, {.threads = 1});
+    ASSERT_GT(together.front().points.size() * sizeof(Point2), std::size_t{3} << 20);
+    for (std::size_t i = 0; i < together.size(); ++i) {
+        const Layer alone = cut(sheet, plan.layers[i].z);
+        EXPECT_EQ(content_hash(together[i]), content_hash(alone)) << i;
+    }
+}
+
 } // namespace
 } // namespace lamella

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -42,10 +43,11 @@ class TriangleSoup {
     explicit TriangleSoup(std::vector<Triangle3f> triangles);
 
     /// A view of `count` triangles of nine consecutive floats; the i-th starts at `first + i * stride` (no
-    /// alignment needed). `owner` keeps that memory alive as long as any copy of the soup.
+    /// alignment needed). `owner` keeps that memory alive as long as any copy of the soup. `box` is that of
+    /// all corners, where it is known already.
     TriangleSoup(std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
-                 std::size_t count)
-        : owner_(std::move(owner)), first_(first), stride_(stride), count_(count) {}
+                 std::size_t count, const std::optional<Box3>& box = std::nullopt)
+        : owner_(std::move(owner)), first_(first), stride_(stride), count_(count), stored_box_(box) {}
 
     [[nodiscard]] std::size_t size() const noexcept { return count_; }
     [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
@@ -84,17 +86,22 @@ class TriangleSoup {
     [[nodiscard]] const std::byte* data() const noexcept { return first_; }
     [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
 
+    /// The box of all corners as stored, where whoever made the soup knew it.
+    [[nodiscard]] const std::optional<Box3>& stored_box() const noexcept { return stored_box_; }
+
   private:
     std::shared_ptr<const void> owner_;
     const std::byte* first_ = nullptr;
     std::size_t stride_ = sizeof(Triangle3f);
     std::size_t count_ = 0;
+    std::optional<Box3> stored_box_;
     Transform placement_ = {};
     bool has_placement_ = false;
     bool mirrored_ = false;
 };
 
-/// The box of all corners, placement applied. Empty for an empty soup. O(n), parallel.
+/// The box of all corners, placement applied. Empty for an empty soup. O(n), parallel; O(1) for a binary STL
+/// file without a placement, whose box was found while it was read.
 [[nodiscard]] Box3 bounding_box(const TriangleSoup& soup, const Execution& execution = {});
 
 /// Signed volume in mm^3: positive when closed and counter-clockwise seen from outside (divergence theorem;
