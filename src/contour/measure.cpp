@@ -11,15 +11,21 @@ double ring_area(std::span<const Point2> ring) noexcept {
     // A fan of triangles about the first point. Four running sums, added in a fixed order at the end: one
     // would make each addition wait for the one before it.
     const Point2 origin = ring.front();
-    std::array<double, 4> twice{};
-    for (std::size_t i = 2; i < ring.size(); ++i) {
+    const auto twice_area = [&](std::size_t i) {
         const double ax = ring[i - 1].x - origin.x;
         const double ay = ring[i - 1].y - origin.y;
         const double bx = ring[i].x - origin.x;
         const double by = ring[i].y - origin.y;
-        twice[i % 4] += ax * by - ay * bx;
-    }
-    return 0.5 * ((twice[0] + twice[1]) + (twice[2] + twice[3]));
+        return ax * by - ay * bx;
+    };
+    std::array<double, 4> sums{};
+    std::size_t i = 2;
+    for (; i + 4 <= ring.size(); i += 4)
+        for (std::size_t k = 0; k < 4; ++k)
+            sums[k] += twice_area(i + k);
+    for (std::size_t k = 0; i + k < ring.size(); ++k)
+        sums[k] += twice_area(i + k);
+    return 0.5 * ((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
 double contour_length(std::span<const Point2> contour, bool closed) noexcept {

@@ -14,7 +14,6 @@
 
 #include "core/executor.hpp"
 #include "core/pages.hpp"
-#include "slicing/edge_cut.hpp"
 #include "slicing/ranks.hpp"
 
 #include <array>
@@ -79,12 +78,6 @@ struct CutGraph {
 
     [[nodiscard]] Point3 low(const Ends& ends) const noexcept { return point(ends.low); }
     [[nodiscard]] Point3 high(const Ends& ends) const noexcept { return point(ends.high); }
-
-    [[nodiscard]] EdgeCut cut(std::uint32_t node, PlaneRule rule) const noexcept {
-        const Ends& ends = nodes[node].ends;
-        return rule == PlaneRule::section_above ? EdgeCut(point(ends.low), point(ends.high))
-                                                : EdgeCut(point(ends.high), point(ends.low));
-    }
 
   private:
     [[nodiscard]] Point3 point(const Point3f& p) const noexcept { return {p.x, p.y, p.z}; }

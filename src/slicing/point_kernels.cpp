@@ -29,6 +29,38 @@ template <int width>
     *reinterpret_cast<typename Vector<width>::Doubles*>(to) = v;
 }
 
+/// EdgeCut::shortened.
+template <int width>
+[[gnu::always_inline]] inline void shorten(const typename Vector<width>::Doubles& from,
+                                           typename Vector<width>::Doubles& to) {
+    using V = typename Vector<width>::Doubles;
+    const V one = V{} + 1.0;
+    const V d = to - from;
+    const V reached = from + d;
+    const V excess = d >= V{} ? reached - to : to - reached;
+    to = d * (excess > V{} ? one - 0x1p-53 : one);
+}
+
+template <int width>
+[[gnu::always_inline]] inline void prepare(const EdgeColumns& edges) {
+    using V = typename Vector<width>::Doubles;
+    const std::size_t stride = edges.stride();
+    for (std::size_t i = 0; i < edges.size; i += width) { // the last lanes compute on padding
+        double* column = edges.data + i;
+        V v = load<width>(column + stride);
+        v = 1.0 / (v - load<width>(column));
+        store<width>(v, column + stride);
+        for (std::size_t base = 2; base < EdgeColumns::columns; base += 2) {
+            V from = load<width>(column + base * stride);
+            v = load<width>(column + (base + 1) * stride);
+            shorten<width>(from, v);
+            from = from + 0.0;
+            store<width>(from, column + base * stride);
+            store<width>(v, column + (base + 1) * stride);
+        }
+    }
+}
+
 /// The cuts of `width` edges, from edge i on.
 template <int width>
 [[gnu::always_inline]] inline void cut_some(const EdgeColumns& edges, std::size_t i, double z,
@@ -211,6 +243,7 @@ template <int width>
 // NOLINTBEGIN(bugprone-macro-parentheses): a name and an attribute cannot stand in parentheses.
 #define LAMELLA_POINT_KERNELS(name, target, width)                                                           \
     struct name {                                                                                            \
+        target static void prepare(EdgeColumns edges) { lamella::prepare<width>(edges); }                    \
         target static Survey survey(EdgeColumns edges, double z, double* x, double* y) {                     \
             return lamella::survey<width>(edges, z, x, y);                                                   \
         }                                                                                                    \
@@ -226,7 +259,7 @@ template <int width>
                                                  double value) {                                             \
             return lamella::find_not_above<width>(x, from, n, value);                                        \
         }                                                                                                    \
-        static constexpr PointKernels kernels{survey, cut, cut_past_cache, find_not_above};                  \
+        static constexpr PointKernels kernels{prepare, survey, cut, cut_past_cache, find_not_above};         \
     }
 // NOLINTEND(bugprone-macro-parentheses)
 

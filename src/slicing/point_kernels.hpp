@@ -11,7 +11,7 @@
 namespace lamella {
 
 /// n edges in walk order, as six columns of doubles (see EdgeCut): z0, inverse_dz, x0, dx, y0, dy. Columns
-/// start at multiples of 64 bytes and are padded to whole multiples; the padding may hold anything finite.
+/// start at multiples of 64 bytes and are padded to whole multiples; the padding may hold anything.
 struct EdgeColumns {
     double* data;
     std::size_t size;
@@ -34,6 +34,9 @@ struct Survey {
 };
 
 struct PointKernels {
+    /// Turns columns that hold the ends of edges (z, x and y of the base in the columns z0, x0 and y0, those
+    /// of the far end in the columns inverse_dz, dx and dy) into prepared edges, as EdgeCut's constructor.
+    void (*prepare)(EdgeColumns edges);
     /// x[i], y[i] = the cut of edge i with the plane z, for i < edges.size; up to padded(size) values are
     /// written. x and y start at multiples of 64 bytes. edges.size >= 1.
     Survey (*survey)(EdgeColumns edges, double z, double* x, double* y);

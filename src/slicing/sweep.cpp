@@ -349,25 +349,28 @@ class SlabSweep {
                 spare_columns_ = PageArray<double>(2 * EdgeColumns::columns * stride);
             z0 = spare_columns_.data();
         }
-        double* inverse_dz = z0 + stride;
-        double* x0 = inverse_dz + stride;
-        double* dx = x0 + stride;
-        double* y0 = dx + stride;
-        double* dy = y0 + stride;
-        const PlaneRule rule = ranks_.rule();
+        double* far_z = z0 + stride;
+        double* x0 = far_z + stride;
+        double* far_x = x0 + stride;
+        double* y0 = far_x + stride;
+        double* far_y = y0 + stride;
+        const bool low_is_base = ranks_.rule() == PlaneRule::section_above;
         const std::uint32_t* sequence = sequences_.data() + run.sequence;
         constexpr std::size_t ahead = 12;
         for (std::size_t i = 0; i < run.size; ++i) {
             if (i + ahead < run.size)
                 __builtin_prefetch(&graph_.nodes[sequence[i + ahead]]);
-            const EdgeCut cut = graph_.cut(sequence[i], rule);
-            z0[i] = cut.z0;
-            inverse_dz[i] = cut.inverse_dz;
-            x0[i] = cut.x0;
-            dx[i] = cut.dx;
-            y0[i] = cut.y0;
-            dy[i] = cut.dy;
+            const Ends& ends = graph_.nodes[sequence[i]].ends;
+            const Point3 base = low_is_base ? graph_.low(ends) : graph_.high(ends);
+            const Point3 far = low_is_base ? graph_.high(ends) : graph_.low(ends);
+            z0[i] = base.z;
+            far_z[i] = far.z;
+            x0[i] = base.x;
+            far_x[i] = far.x;
+            y0[i] = base.y;
+            far_y[i] = far.y;
         }
+        kernels_.prepare({z0, run.size});
         return {z0, run.size};
     }
 

@@ -1,5 +1,6 @@
 #include "write/common_layer.hpp"
 
+#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
 #include "write/decimal.hpp"
@@ -62,18 +63,32 @@ std::string header(std::string_view coding, const LayerFileInfo& info, double un
     return text;
 }
 
-// Calls write(contour, direction, area) for outer rings, then holes, then open chains.
+// Whether a ring turns left at its first point, which in normal form is its smallest: then a ring that does
+// not cross itself is an outer one.
+bool starts_convex(std::span<const Point2> ring) {
+    const Point2& p = ring.front();
+    const Point2& before = ring.back();
+    const Point2& after = ring[1];
+    return (p.x - before.x) * (after.y - p.y) >= (p.y - before.y) * (after.x - p.x);
+}
+
+// Calls write(contour, direction, area) for outer rings, then holes, then open chains. The order is found by
+// a glance at each ring, so that its points are fetched from memory once, for area and output together.
 template <class Write>
 void for_each_contour(const Layer& layer, const Write& write) {
-    const std::vector<MeasuredRing> rings = measured_rings(layer);
-    for (const MeasuredRing& ring : rings) {
-        if (ring.area >= 0)
-            write(layer.contour(ring.contour), counter_clockwise, ring.area);
+    const auto write_ring = [&](std::span<const Point2> ring) {
+        const double area = ring_area(ring);
+        write(ring, area >= 0 ? counter_clockwise : clockwise, area);
+    };
+    std::vector<std::size_t> holes;
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        if (starts_convex(layer.contour(i)))
+            write_ring(layer.contour(i));
+        else
+            holes.push_back(i);
     }
-    for (const MeasuredRing& ring : rings) {
-        if (ring.area < 0)
-            write(layer.contour(ring.contour), clockwise, ring.area);
-    }
+    for (const std::size_t i : holes)
+        write_ring(layer.contour(i));
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
         write(layer.contour(i), open_line, 0.0);
 }
@@ -200,12 +215,14 @@ class LongWriter final : public SequentialWriter {
         const bool closed = direction != open_line;
         char* const head = out.room(long_head + (contour.size() + 1) * sizeof(FloatPoint));
         char* const points = head + long_head;
-        convert(contour, points, layer);
+        const double largest_turn = convert(contour, points, layer);
         const std::size_t count = without_repeats(points, contour.size(), closed);
         if (count < (closed ? 3U : 2U))
             return;
         if (closed) {
-            if (area * float_area(points, count) < 0)
+            // Only of a thin ring can rounding turn the area over.
+            const double units_area = area * per_unit_ * per_unit_;
+            if (!(std::abs(units_area) > largest_turn) && units_area * float_area(points, count) < 0)
                 reverse(points, count);
             std::memcpy(points + count * sizeof(FloatPoint), points, sizeof(FloatPoint));
         }
@@ -214,23 +231,49 @@ class LongWriter final : public SequentialWriter {
         out.end_at(points + listed * sizeof(FloatPoint));
     }
 
+    // Writes the contour in units and single precision. Returns a bound on how much that changes the area of
+    // a ring, in square units.
+    //
     // The one loop that a large file spends its time in: kept plain, so that it becomes vector code.
-    void convert(std::span<const Point2> contour, char* out, std::uint64_t layer) const {
+    double convert(std::span<const Point2> contour, char* out, std::uint64_t layer) const {
+        // Of two points at a time: x, y, x, y.
+        constexpr std::size_t lanes = 4;
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        std::array<float, lanes> low;
+        std::array<float, lanes> high;
+        low.fill(infinity);
+        high.fill(-infinity);
         const double per_unit = per_unit_;
-        constexpr double largest = std::numeric_limits<float>::max();
-        std::size_t beyond = 0;
-        for (std::size_t i = 0; i < contour.size(); ++i) {
-            const double x = contour[i].x * per_unit;
-            const double y = contour[i].y * per_unit;
-            beyond += std::abs(x) <= largest && std::abs(y) <= largest ? 0 : 1;
-            // Adding zero turns a rounded -0 into +0.
-            const FloatPoint p{static_cast<float>(x) + 0.0F, static_cast<float>(y) + 0.0F};
-            std::memcpy(out + i * sizeof p, &p, sizeof p);
-        }
-        if (beyond != 0)
+        const double* from = &contour.front().x;
+        const auto convert_some = [&](std::size_t n) {
+            std::array<float, lanes> values{};
+            for (std::size_t k = 0; k < n; ++k) {
+                // Adding zero turns a rounded -0 into +0.
+                values[k] = static_cast<float>(from[k] * per_unit) + 0.0F;
+                low[k] = values[k] < low[k] ? values[k] : low[k];
+                high[k] = values[k] > high[k] ? values[k] : high[k];
+            }
+            std::memcpy(out, values.data(), n * sizeof(float));
+            from += n;
+            out += n * sizeof(float);
+        };
+        for (std::size_t pairs = contour.size() / 2; pairs > 0; --pairs)
+            convert_some(lanes);
+        if (contour.size() % 2 != 0)
+            convert_some(2);
+
+        const FloatPoint least{std::min(low[0], low[2]), std::min(low[1], low[3])};
+        const FloatPoint most{std::max(high[0], high[2]), std::max(high[1], high[3])};
+        if (!(least.x > -infinity && least.y > -infinity && most.x < infinity && most.y < infinity))
             throw Error(
                 ErrorKind::usage,
                 fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
+        // Each point moves by half a unit in the last place at most, and a term of the area with it by that
+        // times the lengths of its two edges. Twice is for the rounding of this and of the area itself.
+        const double extent = (double{most.x} - least.x) + (double{most.y} - least.y);
+        const double largest = std::max({-least.x, -least.y, most.x, most.y});
+        const double moved = largest * double{std::numeric_limits<float>::epsilon()};
+        return 2 * static_cast<double>(contour.size()) * moved * (extent + moved);
     }
 
     static FloatPoint load(const char* points, std::size_t i) {

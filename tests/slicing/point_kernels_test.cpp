@@ -132,6 +132,51 @@ TEST_P(PointKernelsTest, SurveyGivesTheBitsOfTheFormula) {
     }
 }
 
+TEST_P(PointKernelsTest, PrepareGivesTheBitsOfEdgeCut) {
+    test::Random random(24);
+    constexpr double huge = 1e308;
+    for (const std::size_t n : sizes()) {
+        std::vector<EdgeCut> expected;
+        const std::size_t stride = EdgeColumns::padded(n);
+        PageArray<double> memory(EdgeColumns::columns * stride);
+        std::fill(memory.span().begin(), memory.span().end(), nan);
+        for (std::size_t i = 0; i < n; ++i) {
+            Point3 base{random.real(-100, 100), random.real(-1e-3, 1e-3), random.real(-1, 1)};
+            Point3 far{random.real(-100, 100), random.real(-1e3, 1e3), random.real(9, 11)};
+            switch (random.integer(0, 5)) {
+            case 0:
+                far.x = base.x;
+                base.y = -0.0;
+                break;
+            case 1:
+                base.x = huge;
+                far.x = -huge;
+                break;
+            case 2:
+                base.z = 0;
+                far.z = 5e-324;
+                break;
+            default:
+                break;
+            }
+            if (random.integer(0, 1) == 1)
+                std::swap(base, far);
+            expected.emplace_back(base, far);
+            const double ends[]{base.z, far.z, base.x, far.x, base.y, far.y};
+            for (std::size_t c = 0; c < EdgeColumns::columns; ++c)
+                memory[c * stride + i] = ends[c];
+        }
+        kernels_.prepare({memory.data(), n});
+        for (std::size_t i = 0; i < n; ++i) {
+            const EdgeCut& cut = expected[i];
+            const double values[]{cut.z0, cut.inverse_dz, cut.x0, cut.dx, cut.y0, cut.dy};
+            for (std::size_t c = 0; c < EdgeColumns::columns; ++c)
+                ASSERT_EQ(std::memcmp(&values[c], &memory[c * stride + i], sizeof(double)), 0)
+                    << "column " << c << " of " << i << " of " << n;
+        }
+    }
+}
+
 TEST_P(PointKernelsTest, CutGivesTheBitsOfTheFormulaFromAnyBeginToAnyEnd) {
     test::Random random(21);
     for (const std::size_t n : sizes()) {
