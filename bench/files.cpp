@@ -114,6 +114,7 @@ int report(int argc, char** argv) {
             std::uint64_t peak = 0;
             for (int round = 0; round < rounds; ++round) {
                 memory.push_back(measure_in_child<double>([&] { return into_memory(part, threads); }).result);
+                std::filesystem::remove(path); // to free the last one's blocks is no part of writing the next
                 const auto run =
                     measure_in_child<double>([&] { return into_file(part, format, path, threads); });
                 file.push_back(run.result);

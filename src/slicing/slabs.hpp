@@ -21,24 +21,14 @@ struct PlaneIndex {
     std::vector<std::uint64_t> offsets; ///< starts of plane p are [offsets[p], offsets[p + 1])
 };
 
-/// A stretch of planes that one worker walks through.
-///
-/// Normally it writes all of them. Where single layers are so large that only few may be in flight, several
-/// workers walk through the same planes and write groups of them in turn: worker `turn` of `turns` writes
-/// every group whose number is `turn` modulo `turns`.
+/// A stretch of planes that one worker sweeps; or all of them together, where single layers are so large that
+/// only a few may be in flight.
 struct Slab {
     std::uint32_t begin;
     std::uint32_t end;
     std::vector<std::uint32_t> carried; ///< the nodes alive on `begin` that began before
-    std::uint32_t group;                ///< planes in a group
-    std::uint32_t turn = 0;
-    std::uint32_t turns = 1;
-    bool bounded = false; ///< wait before writing until the group `turns` before it is delivered
-
-    [[nodiscard]] std::uint32_t group_of(std::uint32_t plane) const noexcept {
-        return (plane - begin) / group;
-    }
-    [[nodiscard]] bool writes(std::uint32_t plane) const noexcept { return group_of(plane) % turns == turn; }
+    std::uint32_t group;                ///< planes that may be in flight together
+    bool shared = false;                ///< all workers share the work on each group
 };
 
 /// A worker's fixed share of the nodes, and how many of them begin and end on each plane.
@@ -76,7 +66,7 @@ std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
 /// Into slabs of about equal work, as a rule. A slab pays for walking once over all that is alive on its
 /// first plane, so there are few of them where planes are few and large, and more where that cost is lost
 /// among the planes, to level out what the estimate of the work misses. Where the bound on points in flight
-/// would make slabs of a few planes only, every worker walks through all planes and they write in turn.
+/// would make slabs of a few planes only, there is one slab, and all workers share the work on it.
 inline std::vector<Slab> deal_out(const std::vector<std::uint64_t>& points, std::uint64_t most_points,
                                   unsigned workers, std::uint64_t points_in_flight) {
     constexpr std::uint64_t plane_cost = 64; // in points
@@ -89,24 +79,20 @@ inline std::vector<Slab> deal_out(const std::vector<std::uint64_t>& points, std:
     if (work < workers * worth_a_thread)
         workers = 1;
 
-    std::vector<Slab> slabs;
-    const std::uint64_t per_worker =
-        points_in_flight / (workers + 1ULL); // one group or slab may wait for its turn
-    const std::uint64_t planes_in_flight =
-        std::max<std::uint64_t>(1, per_worker / std::max<std::uint64_t>(1, most_points));
-    if (points_in_flight != 0 && planes_in_flight < planes &&
-        (workers == 1 || planes_in_flight < worth_a_slab)) {
-        for (std::uint32_t turn = 0; turn < workers; ++turn)
-            slabs.push_back(
-                {0, planes, {}, static_cast<std::uint32_t>(planes_in_flight), turn, workers, true});
-        return slabs;
+    const std::uint64_t per_slab = points_in_flight / (workers + 1ULL); // one may wait for its turn
+    const std::uint64_t largest_layer = std::max<std::uint64_t>(1, most_points);
+    if (points_in_flight != 0 && per_slab / largest_layer < std::min<std::uint64_t>(planes, worth_a_slab)) {
+        const auto group = std::max<std::uint64_t>(1, points_in_flight / largest_layer);
+        return {
+            {0, planes, {}, static_cast<std::uint32_t>(std::min<std::uint64_t>(group, planes)), workers > 1}};
     }
 
+    std::vector<Slab> slabs;
     const std::uint64_t wanted =
         workers == 1 ? 1 : workers * std::clamp<std::uint64_t>(planes / (workers * 32ULL), 1, 4);
     std::uint64_t target = work / wanted + 1;
     if (points_in_flight != 0)
-        target = std::min(target, per_worker);
+        target = std::min(target, per_slab);
     std::uint64_t filled = 0;
     for (std::uint32_t p = 0; p < planes; ++p) {
         const std::uint64_t cost = points[p] + plane_cost;

@@ -91,6 +91,12 @@ class Scratch {
     PageArray<double> y_;
 };
 
+/// What one worker computes with.
+struct Bench {
+    Scratch scratch;
+    PageArray<double> spare_columns; ///< of a run whose edges have no room in the columns
+};
+
 /// Whether a ring without repeated points runs to and fro on a line, so that it bounds nothing.
 bool folds_flat(const std::vector<Point2>& ring) {
     // A point between equal neighbours is the tip of a fold; folding it in leaves two equal points, one of
@@ -117,21 +123,25 @@ bool folds_flat(const std::vector<Point2>& ring) {
     return true;
 }
 
-/// Reads the contours of one slab after the other off the graph. Each worker has its own.
+/// Reads the contours of one slab after the other off the graph. Each worker has its own, but for a slab that
+/// all workers share: then one walks, and all measure, write and deliver.
 template <class Ends>
 class SlabSweep {
   public:
     SlabSweep(const CutGraph<Ends>& graph, const Ranks& ranks, const Plan& plan, const PlaneIndex& index,
-              const Executor& executor, OrderedDelivery& delivery)
+              Executor& executor, OrderedDelivery& delivery)
         : graph_(graph), ranks_(ranks), plan_(plan), index_(index), executor_(executor), delivery_(delivery),
-          arena_(index.all_points), visited_until_(graph.count, Fill::zero), segment_at_(graph.count) {
-        room_ = std::min(most_room, EdgeColumns::padded(8 * index.all_points));
-        columns_ = PageArray<double>(EdgeColumns::columns * room_);
-    }
+          arena_(index.all_points), visited_until_(graph.count, Fill::zero), segment_at_(graph.count) {}
 
     /// Slabs must come in ascending order.
     void sweep(const Slab& slab) {
         slab_ = &slab;
+        if (benches_.empty()) {
+            benches_.resize(slab.shared ? executor_.workers() : 1);
+            // Edges that stay in the columns stay in one core's cache.
+            room_ = slab.shared ? 0 : std::min(most_room, EdgeColumns::padded(8 * index_.all_points));
+            columns_ = PageArray<double>(EdgeColumns::columns * room_);
+        }
         rings_of_plane_.assign(slab.end - slab.begin, {});
         ending_.assign(slab.end - slab.begin + std::size_t{1}, 0);
         restarts_.assign(slab.end - slab.begin, {});
@@ -139,12 +149,19 @@ class SlabSweep {
         for (std::uint32_t plane = slab.begin; plane < slab.end; ++plane) {
             if (executor_.stopping())
                 return;
+            const std::size_t known = runs_.size();
             walk_plane(plane);
+            if (slab.shared)
+                share_runs(known, plane, slab.end,
+                           [&](Run& run, std::uint32_t begin, std::uint32_t end, Bench& bench) {
+                               measure(run, begin, end, bench);
+                           });
+            list_rings(known, plane);
             stale_ += ending_[plane + 1 - slab.begin];
-            const bool group_ends = plane + 1 == slab.end || (plane + 1 - slab.begin) % slab.group == 0;
+            const bool group_ends = plane + 1 == slab.end || plane + 1 - written_ == slab.group;
             const bool much_is_stale = stale_ >= stale_enough && stale_ >= carried_;
-            if ((much_is_stale || (group_ends && slab.writes(plane))) && !write_layers(plane + 1))
-                return;
+            if (much_is_stale || group_ends)
+                write_layers(plane + 1);
             if (much_is_stale || plane + 1 == slab.end)
                 forget_ended_runs(plane + 1);
         }
@@ -316,12 +333,6 @@ class SlabSweep {
         Run run{plane,    valid_until,  static_cast<std::uint32_t>(size), closed, sequences_.size(),
                 not_kept, rings_.size()};
         sequences_.insert(sequences_.end(), sequence, sequence + size);
-        const std::size_t stride = EdgeColumns::padded(size);
-        if (room_ - columns_used_ >= stride) {
-            run.columns = columns_used_;
-            columns_used_ += stride;
-        }
-        const EdgeColumns edges = lay_out_edges(run);
         if (valid_until > plane + 1)
             for (std::size_t i = 0; i < size; ++i)
                 visited_until_[sequence[i]] = valid_until;
@@ -333,21 +344,72 @@ class SlabSweep {
         }
         runs_.push_back(run);
         rings_.resize(rings_.size() + (valid_until - plane));
-        for (std::uint32_t p = plane; p < valid_until; ++p)
-            if (slab_->writes(p))
-                measure(run, edges, p);
+        if (slab_->shared)
+            return; // measured by all when the walk is over
+        // Now, while its nodes are in the cache.
+        const std::size_t stride = EdgeColumns::padded(size);
+        if (room_ - columns_used_ >= stride) {
+            runs_.back().columns = columns_used_;
+            columns_used_ += stride;
+        }
+        measure(runs_.back(), plane, valid_until, benches_.front());
+    }
+
+    /// Calls work(run, begin, end, bench) for the runs from `first` on and the planes of each within
+    /// [begin, end): in pieces, on all workers. Few runs are cut into pieces by their planes.
+    template <class Work>
+    void share_runs(std::size_t first, std::uint32_t begin, std::uint32_t end, const Work& work) {
+        const std::uint64_t runs = runs_.size() - first;
+        if (runs == 0)
+            return;
+        const std::uint64_t enough = 8 * benches_.size();
+        const std::uint64_t pieces = std::clamp<std::uint64_t>(enough / runs, 1, end - begin);
+        executor_.for_chunks(runs * pieces, std::max<std::uint64_t>(1, runs / enough),
+                             [&](std::uint64_t from, std::uint64_t to, unsigned worker) {
+                                 for (std::uint64_t i = from; i < to; ++i) {
+                                     const std::uint64_t piece = i % pieces;
+                                     Run& run = runs_[first + i / pieces];
+                                     const std::uint32_t low = std::max(run.begin, begin);
+                                     const std::uint64_t planes = std::max(std::min(run.end, end), low) - low;
+                                     work(run, static_cast<std::uint32_t>(low + planes * piece / pieces),
+                                          static_cast<std::uint32_t>(low + planes * (piece + 1) / pieces),
+                                          benches_[worker]);
+                                 }
+                             });
+    }
+
+    /// Computes the rings of a run on the planes [begin, end), of which it serves all.
+    void measure(Run& run, std::uint32_t begin, std::uint32_t end, Bench& bench) {
+        if (begin == end)
+            return;
+        const EdgeColumns edges = lay_out_edges(run, bench);
+        for (std::uint32_t plane = begin; plane < end; ++plane)
+            rings_[run.rings + plane - run.begin] = measure_ring(run, edges, plane, bench);
+    }
+
+    /// Notes for each plane the rings of the runs from `first` on.
+    void list_rings(std::size_t first, std::uint32_t plane) {
+        for (std::size_t r = first; r < runs_.size(); ++r) {
+            const Run& run = runs_[r];
+            for (std::uint32_t p = std::max(run.begin, plane); p < run.end; ++p) {
+                const Ring& ring = rings_[run.rings + p - run.begin];
+                if (ring.count != 0)
+                    rings_of_plane_[p - slab_->begin].push_back(
+                        {ring.first, run.rings + p - run.begin, run.closed});
+            }
+        }
     }
 
     /// Prepares the edges of a run for being cut: in the columns where it has room there, else for now.
-    EdgeColumns lay_out_edges(const Run& run) {
+    EdgeColumns lay_out_edges(const Run& run, Bench& bench) {
         const std::size_t stride = EdgeColumns::padded(run.size);
         double* z0 = nullptr;
         if (run.columns != not_kept) {
             z0 = columns_.data() + EdgeColumns::columns * run.columns;
         } else {
-            if (spare_columns_.size() < EdgeColumns::columns * stride)
-                spare_columns_ = PageArray<double>(2 * EdgeColumns::columns * stride);
-            z0 = spare_columns_.data();
+            if (bench.spare_columns.size() < EdgeColumns::columns * stride)
+                bench.spare_columns = PageArray<double>(2 * EdgeColumns::columns * stride);
+            z0 = bench.spare_columns.data();
         }
         double* far_z = z0 + stride;
         double* x0 = far_z + stride;
@@ -375,34 +437,31 @@ class SlabSweep {
     }
 
     /// The edges of a run that was laid out before.
-    EdgeColumns edges_of(const Run& run) {
+    EdgeColumns edges_of(const Run& run, Bench& bench) {
         if (run.columns == not_kept)
-            return lay_out_edges(run);
+            return lay_out_edges(run, bench);
         return {columns_.data() + EdgeColumns::columns * run.columns, run.size};
     }
 
-    void measure(const Run& run, const EdgeColumns& edges, std::uint32_t plane) {
-        Ring& ring = rings_[run.rings + plane - run.begin];
+    Ring measure_ring(const Run& run, const EdgeColumns& edges, std::uint32_t plane, Bench& bench) {
+        Scratch& scratch = bench.scratch;
         std::size_t n = run.size;
-        scratch_.reserve(EdgeColumns::padded(n));
-        const Survey survey = kernels_.survey(edges, ranks_.z(plane), scratch_.x(), scratch_.y());
-        const bool repeats = survey.repeats || (run.closed && scratch_.point(0) == scratch_.point(n - 1));
+        scratch.reserve(EdgeColumns::padded(n));
+        const Survey survey = kernels_.survey(edges, ranks_.z(plane), scratch.x(), scratch.y());
+        const bool repeats = survey.repeats || (run.closed && scratch.point(0) == scratch.point(n - 1));
         if (repeats)
-            n = scratch_.drop_repeats(n, run.closed);
-        ring = {scratch_.point(0), 0, 0, 0};
-        if (n < (run.closed ? 3U : 2U))
-            return;
-        if (run.closed && !find_start(n, survey.least_x, repeats, ring))
-            return;
-        ring.count = static_cast<std::uint32_t>(n);
-        rings_of_plane_[plane - slab_->begin].push_back(
-            {ring.first, run.rings + plane - run.begin, run.closed});
+            n = scratch.drop_repeats(n, run.closed);
+        Ring ring{scratch.point(0), 0, 0, 0};
+        if (n >= (run.closed ? 3U : 2U) &&
+            (!run.closed || find_start(scratch, n, survey.least_x, repeats, ring)))
+            ring.count = static_cast<std::uint32_t>(n);
+        return ring;
     }
 
     /// Where the ring of n points in the scratch starts in normal form. False when it is a line.
-    bool find_start(std::size_t n, double least, bool repeats, Ring& ring) {
-        const double* x = scratch_.x();
-        const double* y = scratch_.y();
+    bool find_start(const Scratch& scratch, std::size_t n, double least, bool repeats, Ring& ring) const {
+        const double* x = scratch.x();
+        const double* y = scratch.y();
         std::size_t start = kernels_.find_not_above(x, 0, n, least);
         bool tie = false;
         for (std::size_t i = kernels_.find_not_above(x, start + 1, n, least); i < n;
@@ -416,18 +475,18 @@ class SlabSweep {
         }
         const std::size_t before = start == 0 ? n - 1 : start - 1;
         const std::size_t after = start + 1 == n ? 0 : start + 1;
-        const bool fold = scratch_.point(before) == scratch_.point(after);
+        const bool fold = scratch.point(before) == scratch.point(after);
         if (repeats || tie || fold) {
             std::vector<Point2> points(n);
             for (std::size_t i = 0; i < n; ++i)
-                points[i] = scratch_.point(i);
+                points[i] = scratch.point(i);
             if (folds_flat(points))
                 return false;
             if (tie)
                 start = smallest_rotation(points);
         }
         ring.start = static_cast<std::uint32_t>(start);
-        ring.first = scratch_.point(start);
+        ring.first = scratch.point(start);
         return true;
     }
 
@@ -441,62 +500,77 @@ class SlabSweep {
 
     /// A layer on its way out.
     struct Outgoing {
-        std::uint32_t plane;
-        std::uint64_t begin; ///< of its points in the piece of memory that the outgoing layers share
+        std::uint64_t begin = 0; ///< of its points in the piece of memory that the outgoing layers share
         Layer layer;
     };
 
-    /// Writes and delivers what this worker has to of the planes [written_, end). False when slicing is given
-    /// up.
-    bool write_layers(std::uint32_t end) {
-        std::vector<Outgoing> outgoing;
+    /// Calls body(begin, end, bench) over [0, n), in parallel in a slab that all workers share.
+    template <class Body>
+    void for_all(std::uint64_t n, const Body& body) {
+        if (slab_->shared)
+            executor_.for_chunks(n, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+                body(begin, end, benches_[worker]);
+            });
+        else
+            body(0, n, benches_.front());
+    }
+
+    /// Writes and delivers the planes [written_, end).
+    void write_layers(std::uint32_t end) {
+        std::vector<Outgoing> outgoing(end - written_);
+        for_all(outgoing.size(), [&](std::uint64_t from, std::uint64_t to, Bench& bench) {
+            for (std::uint64_t i = from; i < to; ++i)
+                lay_out_layer(static_cast<std::uint32_t>(written_ + i), outgoing[i].layer, bench);
+        });
         std::uint64_t total = 0;
-        for (std::uint32_t plane = written_; plane < end; ++plane) {
-            if (!slab_->writes(plane))
-                continue;
-            outgoing.push_back({plane, total, {}});
-            total += lay_out_layer(plane, total, outgoing.back().layer);
-        }
-        if (slab_->bounded && !outgoing.empty()) {
-            const std::uint32_t group = slab_->group_of(outgoing.back().plane);
-            if (group >= slab_->turns &&
-                !delivery_.wait_for(slab_->begin + (group - slab_->turns) * slab_->group))
-                return false;
+        for (Outgoing& out : outgoing) {
+            out.begin = total;
+            total += out.layer.offsets.back();
         }
 
         const PointArena::Piece piece = arena_.take(total);
         // The rings of a run are written layer after layer. Where layers are large, each line of memory has
         // left the cache since its page was cleared or used before, and is best not fetched again.
         const bool past_cache = outgoing.size() > 1 && total / outgoing.size() >= large_layer;
-        for (const Run& run : runs_) {
+        const auto write_run = [&](const Run& run, std::uint32_t first, std::uint32_t last, Bench& bench) {
             EdgeColumns edges{};
-            for (std::uint32_t p = std::max(run.begin, written_); p < std::min(run.end, end); ++p) {
+            for (std::uint32_t p = first; p < last; ++p) {
                 const Ring& ring = rings_[run.rings + p - run.begin];
                 if (ring.count == 0)
                     continue;
                 if (edges.data == nullptr)
-                    edges = edges_of(run);
-                write_ring(edges, run.closed, p, ring, piece.points + ring.place, past_cache);
+                    edges = edges_of(run, bench);
+                write_ring(edges, run.closed, p, ring,
+                           piece.points + outgoing[p - written_].begin + ring.place, past_cache, bench);
             }
+        };
+        if (slab_->shared) {
+            share_runs(0, written_, end, write_run);
+        } else {
+            for (const Run& run : runs_)
+                write_run(run, std::max(run.begin, written_), std::min(run.end, end), benches_.front());
         }
 
-        for (Outgoing& out : outgoing) {
-            const PlannedLayer& planned = plan_.layers[out.plane];
-            out.layer.index = planned.index;
-            out.layer.z = planned.z;
-            out.layer.bottom = planned.bottom;
-            out.layer.top = planned.top;
-            if (out.layer.offsets.back() != 0)
-                out.layer.points =
-                    PointArray(piece.owner, piece.points + out.begin, out.layer.offsets.back());
-            delivery_.deliver(out.plane, std::move(out.layer));
-        }
+        for_all(outgoing.size(), [&](std::uint64_t from, std::uint64_t to, Bench&) {
+            for (std::uint64_t i = from; i < to; ++i) {
+                const auto plane = static_cast<std::uint32_t>(written_ + i);
+                const PlannedLayer& planned = plan_.layers[plane];
+                Layer& layer = outgoing[i].layer;
+                layer.index = planned.index;
+                layer.z = planned.z;
+                layer.bottom = planned.bottom;
+                layer.top = planned.top;
+                if (layer.offsets.back() != 0)
+                    layer.points =
+                        PointArray(piece.owner, piece.points + outgoing[i].begin, layer.offsets.back());
+                delivery_.deliver(plane, std::move(layer));
+            }
+        });
         written_ = end;
-        return true;
     }
 
-    /// Puts the contours of a plane in order and gives each its place. Returns the number of points.
-    std::uint64_t lay_out_layer(std::uint32_t plane, std::uint64_t base, Layer& layer) {
+    /// Puts the contours of a plane in order and gives each its place.
+    void lay_out_layer(std::uint32_t plane, Layer& layer, Bench& bench) {
         std::vector<Order>& order = rings_of_plane_[plane - slab_->begin];
         std::sort(order.begin(), order.end(), [](const Order& a, const Order& b) {
             return a.closed != b.closed ? a.closed : a.first < b.first;
@@ -508,25 +582,24 @@ class SlabSweep {
                 ++end;
             if (end - i > 1)
                 sort_by_sequence(plane, order.begin() + static_cast<std::ptrdiff_t>(i),
-                                 order.begin() + static_cast<std::ptrdiff_t>(end));
+                                 order.begin() + static_cast<std::ptrdiff_t>(end), bench);
             i = end;
         }
         layer.offsets.resize(order.size() + 1);
         std::uint64_t size = 0;
         for (std::size_t i = 0; i < order.size(); ++i) {
             Ring& ring = rings_[order[i].ring];
-            ring.place = base + size;
+            ring.place = size;
             size += ring.count;
             layer.offsets[i + 1] = size;
             layer.rings += order[i].closed;
         }
         std::vector<Order>().swap(order);
-        return size;
     }
 
     /// Contours that start at the same point (they touch there) are ordered by all their points.
     template <class Iterator>
-    void sort_by_sequence(std::uint32_t plane, Iterator begin, Iterator end) {
+    void sort_by_sequence(std::uint32_t plane, Iterator begin, Iterator end, Bench& bench) {
         std::vector<std::pair<std::vector<Point2>, Order>> contours;
         for (Iterator it = begin; it != end; ++it) {
             // The run is the last one whose rings do not begin behind this ring.
@@ -535,7 +608,7 @@ class SlabSweep {
                                            [](std::uint64_t ring, const Run& r) { return ring < r.rings; }));
             const Ring& ring = rings_[it->ring];
             std::vector<Point2> points(ring.count);
-            write_ring(edges_of(*run), run->closed, plane, ring, points.data(), false);
+            write_ring(edges_of(*run, bench), run->closed, plane, ring, points.data(), false, bench);
             contours.emplace_back(std::move(points), *it);
         }
         std::stable_sort(contours.begin(), contours.end(),
@@ -545,7 +618,7 @@ class SlabSweep {
     }
 
     void write_ring(const EdgeColumns& edges, bool closed, std::uint32_t plane, const Ring& ring, Point2* to,
-                    bool past_cache) {
+                    bool past_cache, Bench& bench) {
         const double z = ranks_.z(plane);
         if (ring.count == edges.size) {
             const auto cut = past_cache ? kernels_.cut_past_cache : kernels_.cut;
@@ -553,11 +626,11 @@ class SlabSweep {
             cut(edges, 0, ring.start, z, to + (edges.size - ring.start));
             return;
         }
-        scratch_.reserve(edges.stride());
-        kernels_.survey(edges, z, scratch_.x(), scratch_.y());
-        const std::size_t n = scratch_.drop_repeats(edges.size, closed);
+        bench.scratch.reserve(edges.stride());
+        kernels_.survey(edges, z, bench.scratch.x(), bench.scratch.y());
+        const std::size_t n = bench.scratch.drop_repeats(edges.size, closed);
         for (std::size_t i = 0; i < n; ++i)
-            to[i] = scratch_.point(i + ring.start < n ? i + ring.start : i + ring.start - n);
+            to[i] = bench.scratch.point(i + ring.start < n ? i + ring.start : i + ring.start - n);
     }
 
     /// Forgets the runs that end before `plane` (all planes before it are written), and moves the others
@@ -595,21 +668,14 @@ class SlabSweep {
         stale_ = 0;
         for (std::vector<Order>& order : rings_of_plane_)
             order.clear();
-        for (const Run& run : runs_) {
-            for (std::uint32_t p = run.begin; p < run.end; ++p) {
-                const Ring& ring = rings_[run.rings + p - run.begin];
-                if (ring.count != 0)
-                    rings_of_plane_[p - slab_->begin].push_back(
-                        {ring.first, run.rings + p - run.begin, run.closed});
-            }
-        }
+        list_rings(0, plane);
     }
 
     const CutGraph<Ends>& graph_;
     const Ranks& ranks_;
     const Plan& plan_;
     const PlaneIndex& index_;
-    const Executor& executor_;
+    Executor& executor_;
     OrderedDelivery& delivery_;
     const PointKernels& kernels_ = point_kernels();
 
@@ -626,7 +692,6 @@ class SlabSweep {
 
     std::vector<std::uint32_t> sequences_; // the nodes of the runs
     PageArray<double> columns_;            // the prepared edges of the first runs, as many as have room
-    PageArray<double> spare_columns_;      // of one other run
     std::uint64_t room_ = 0;               // for edges, in the columns
     std::uint64_t columns_used_ = 0;
     std::uint64_t carried_ = 0;
@@ -635,7 +700,7 @@ class SlabSweep {
     std::vector<Ring> rings_;
     std::vector<std::vector<Order>> rings_of_plane_;
     std::vector<std::uint64_t> ending_;
-    Scratch scratch_;
+    std::vector<Bench> benches_; // one, or one for each worker
     std::uint32_t written_ = 0;
 };
 
@@ -660,12 +725,8 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
                 std::make_unique<SlabSweep<Ends>>(graph, ranks, job.plan, index, executor, delivery);
         sweeps[worker]->sweep(slab);
     };
-    if (slabs.size() > 1 && slabs.front().turns > 1) {
-        // They wait for one another, so all must be under way at once.
-        executor.run([&](unsigned worker) {
-            if (worker < slabs.size())
-                sweep(slabs[worker], worker);
-        });
+    if (slabs.size() == 1) {
+        sweep(slabs.front(), 0);
     } else {
         executor.for_chunks(slabs.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned worker) {
             const bool bounded = job.points_in_flight != 0 && s > executor.workers();
