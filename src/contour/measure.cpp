@@ -1,11 +1,13 @@
 #include "lamella/contour/measure.hpp"
 
+#include "core/vector_clones.hpp"
+
 #include <array>
 #include <cmath>
 
 namespace lamella {
 
-double ring_area(std::span<const Point2> ring) noexcept {
+LAMELLA_VECTOR_CLONES double ring_area(std::span<const Point2> ring) noexcept {
     if (ring.size() < 3)
         return 0;
     // A fan of triangles about the first point. Four running sums, added in a fixed order at the end: one

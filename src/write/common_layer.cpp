@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
+#include "core/vector_clones.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/sequential_writer.hpp"
@@ -171,6 +172,45 @@ struct FloatPoint {
     float y;
 };
 
+struct FloatBox {
+    FloatPoint least;
+    FloatPoint most;
+};
+
+// Writes points, scaled and in single precision, and tells their box. What a large file spends its time in.
+LAMELLA_VECTOR_CLONES FloatBox to_floats(std::span<const Point2> points, double scale, char* out) {
+    // Of eight points at a time: x, y, x, y, ...
+    constexpr std::size_t lanes = 16;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    std::array<float, lanes> low;
+    std::array<float, lanes> high;
+    low.fill(infinity);
+    high.fill(-infinity);
+    const double* from = &points.front().x;
+    const auto convert = [&](std::size_t n) {
+        std::array<float, lanes> values{};
+        for (std::size_t k = 0; k < n; ++k) {
+            // Adding zero turns a rounded -0 into +0.
+            values[k] = static_cast<float>(from[k] * scale) + 0.0F;
+            low[k] = values[k] < low[k] ? values[k] : low[k];
+            high[k] = values[k] > high[k] ? values[k] : high[k];
+        }
+        std::memcpy(out, values.data(), n * sizeof(float));
+        from += n;
+        out += n * sizeof(float);
+    };
+    const std::size_t doubles = 2 * points.size();
+    for (std::size_t i = 0; i + lanes <= doubles; i += lanes)
+        convert(lanes);
+    convert(doubles % lanes);
+    FloatBox box{{low[0], low[1]}, {high[0], high[1]}};
+    for (std::size_t k = 2; k < lanes; k += 2) {
+        box.least = {std::min(box.least.x, low[k]), std::min(box.least.y, low[k + 1])};
+        box.most = {std::max(box.most.x, high[k]), std::max(box.most.y, high[k + 1])};
+    }
+    return box;
+}
+
 constexpr std::size_t long_head = 14;
 
 char* put_long_head(char* out, Direction direction, std::size_t points, std::uint64_t layer) {
@@ -233,45 +273,20 @@ class LongWriter final : public SequentialWriter {
 
     // Writes the contour in units and single precision. Returns a bound on how much that changes the area of
     // a ring, in square units.
-    //
-    // The one loop that a large file spends its time in: kept plain, so that it becomes vector code.
     double convert(std::span<const Point2> contour, char* out, std::uint64_t layer) const {
-        // Of two points at a time: x, y, x, y.
-        constexpr std::size_t lanes = 4;
         constexpr float infinity = std::numeric_limits<float>::infinity();
-        std::array<float, lanes> low;
-        std::array<float, lanes> high;
-        low.fill(infinity);
-        high.fill(-infinity);
-        const double per_unit = per_unit_;
-        const double* from = &contour.front().x;
-        const auto convert_some = [&](std::size_t n) {
-            std::array<float, lanes> values{};
-            for (std::size_t k = 0; k < n; ++k) {
-                // Adding zero turns a rounded -0 into +0.
-                values[k] = static_cast<float>(from[k] * per_unit) + 0.0F;
-                low[k] = values[k] < low[k] ? values[k] : low[k];
-                high[k] = values[k] > high[k] ? values[k] : high[k];
-            }
-            std::memcpy(out, values.data(), n * sizeof(float));
-            from += n;
-            out += n * sizeof(float);
-        };
-        for (std::size_t pairs = contour.size() / 2; pairs > 0; --pairs)
-            convert_some(lanes);
-        if (contour.size() % 2 != 0)
-            convert_some(2);
-
-        const FloatPoint least{std::min(low[0], low[2]), std::min(low[1], low[3])};
-        const FloatPoint most{std::max(high[0], high[2]), std::max(high[1], high[3])};
-        if (!(least.x > -infinity && least.y > -infinity && most.x < infinity && most.y < infinity))
+        const FloatBox box = to_floats(contour, per_unit_, out);
+        if (!(box.least.x > -infinity && box.least.y > -infinity && box.most.x < infinity &&
+              box.most.y < infinity))
             throw Error(
                 ErrorKind::usage,
                 fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
         // Each point moves by half a unit in the last place at most, and a term of the area with it by that
         // times the lengths of its two edges. Twice is for the rounding of this and of the area itself.
-        const double extent = (double{most.x} - least.x) + (double{most.y} - least.y);
-        const double largest = std::max({-least.x, -least.y, most.x, most.y});
+        const double extent =
+            (double{box.most.x} - double{box.least.x}) + (double{box.most.y} - double{box.least.y});
+        const double largest =
+            std::max({-double{box.least.x}, -double{box.least.y}, double{box.most.x}, double{box.most.y}});
         const double moved = largest * double{std::numeric_limits<float>::epsilon()};
         return 2 * static_cast<double>(contour.size()) * moved * (extent + moved);
     }

@@ -1,0 +1,20 @@
+#pragma once
+
+// Loops compiled for several processors.
+
+/// Before the definition of a function: compiles it also for wider vectors, and has the widest that the
+/// processor knows chosen when the program starts. Operations are neither fused nor reordered, so all give
+/// the same bits. Not under sanitizers, whose run time is not there yet when the choice is made.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define LAMELLA_SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LAMELLA_SANITIZED
+#endif
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(LAMELLA_SANITIZED)
+#define LAMELLA_VECTOR_CLONES [[gnu::target_clones("default", "avx2", "avx512f")]]
+#else
+#define LAMELLA_VECTOR_CLONES
+#endif
