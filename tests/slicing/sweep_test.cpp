@@ -7,6 +7,7 @@
 #include "fixtures/random.hpp"
 #include "fixtures/solids.hpp"
 #include "naive_section.hpp"
+#include "slicing/sweep.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +15,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -526,6 +529,58 @@ TEST(Sweep, OfAFlatMeshIsNothing) {
     for (const SliceAt at : both_rules)
         for (const Layer& layer : slice(test::soup(level), plan_listed({0.5, 1, 1.5}, at)))
             EXPECT_EQ(layer.contours(), 0U);
+}
+
+/// The layers as they come in order when at most so many points may be in flight.
+LayerStack swept(const MeshRef& mesh, const Plan& plan, unsigned threads, std::uint64_t points_in_flight) {
+    LayerStack stack;
+    const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
+        return [&stack, kept = std::move(layer)]() mutable {
+            stack.push_back(std::move(kept));
+        };
+    };
+    const Execution execution{.threads = threads};
+    SliceReport report;
+    run_sweep({mesh, plan, keep, execution, points_in_flight, report});
+    return stack;
+}
+
+TEST(Sweep, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
+    // Many contours; a single long one; contours that come and go; chains.
+    for (const TriangleSoup& mesh :
+         {make_sheet({.holes = 36, .segments = 32}), make_sphere(10, 5), make_lattice({.cells_x = 2}),
+          TriangleSoup(test::box_without_a_side())}) {
+        const Box3 box = bounding_box(mesh);
+        const Plan plan = even_planes(box.min.z, box.max.z, 90);
+        const LayerStack expected = slice(mesh, plan, {.threads = 1});
+        for (const unsigned threads : {1U, 2U, 7U}) {
+            for (const std::uint64_t points : {1U, 1000U, 30'000U, 300'000U}) {
+                const LayerStack found = swept(mesh, plan, threads, points);
+                ASSERT_EQ(found.size(), expected.size());
+                for (std::size_t i = 0; i < found.size(); ++i) {
+                    EXPECT_EQ(found[i].index, expected[i].index);
+                    EXPECT_EQ(found[i].z, expected[i].z);
+                    EXPECT_EQ(content_hash(found[i]), content_hash(expected[i]))
+                        << i << ", " << threads << " threads, " << points << " points";
+                }
+            }
+        }
+    }
+}
+
+TEST(Sweep, EndsASharedSlabWhenTheSinkFails) {
+    const TriangleSoup sheet = make_sheet({.holes = 36, .segments = 32});
+    const Plan plan = even_planes(0, 3, 40);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        const LayerSink fails = [&](Layer&& layer) -> std::function<void()> {
+            if (layer.index == 20)
+                throw std::runtime_error("enough");
+            return {};
+        };
+        const Execution execution{.threads = threads};
+        SliceReport report;
+        EXPECT_THROW(run_sweep({sheet, plan, fails, execution, 1000, report}), std::runtime_error);
+    }
 }
 
 TEST(Sweep, WritesLargeLayersTogetherAsItWritesThemOneByOne) {
