@@ -71,8 +71,10 @@ TriangleSoup sheet(const MakeArguments& arguments) {
     return make_sheet(shape);
 }
 
-TriangleSoup rook(const MakeArguments& /*arguments*/) {
-    return make_rook();
+/// A body that is always the same.
+template <TriangleSoup (*make)()>
+TriangleSoup fixed(const MakeArguments& /*arguments*/) {
+    return make();
 }
 
 TriangleSoup lattice(const MakeArguments& arguments) {
@@ -114,13 +116,17 @@ struct Body {
     std::string_view options; ///< that it understands, besides the common ones
     TriangleSoup (*make)(const MakeArguments& arguments);
 };
-constexpr std::array<Body, 7> bodies{{{"sheet", "holes segments size thickness order", sheet},
-                                      {"rook", "", rook},
-                                      {"lattice", "cells size thickness detail", lattice},
-                                      {"box", "size", box},
-                                      {"sphere", "size detail", sphere},
-                                      {"torus", "size thickness segments", torus},
-                                      {"cylinder", "size thickness segments", cylinder}}};
+constexpr std::array<Body, 11> bodies{{{"sheet", "holes segments size thickness order", sheet},
+                                       {"rook", "", fixed<make_rook>},
+                                       {"dodecahedra", "", fixed<make_dodecahedra>},
+                                       {"calibration", "", fixed<make_calibration>},
+                                       {"head", "", fixed<make_head>},
+                                       {"sole", "", fixed<make_sole>},
+                                       {"lattice", "cells size thickness detail", lattice},
+                                       {"box", "size", box},
+                                       {"sphere", "size detail", sphere},
+                                       {"torus", "size thickness segments", torus},
+                                       {"cylinder", "size thickness segments", cylinder}}};
 
 constexpr std::string_view shape_title = "What it is like";
 
