@@ -60,27 +60,28 @@ double cut_out(double a, double b, double round) {
     return -united(-a, b, round);
 }
 
+constexpr Ellipsoid ear{{5, -8, 35}, {14, 9, 6}};
+
 /// Both sides are alike: only one ear, eye, ... is described.
 double head_distance(const Point3& at) {
     const Point3 p{at.x, at.y, std::fabs(at.z)};
     double d = distance(p, {{16, -8, 0}, {47, 48, 36}});                // skull
-    d = united(d, distance(p, {{-16, 15, 0}, {42, 31, 27}}), 14);       // face
-    d = united(d, distance(p, {{-34, 8, 14}, {16, 22, 10}}), 12);       // jaw
+    d = united(d, distance(p, {{-16, 15, 0}, {42, 31, 28}}), 14);       // face
+    d = united(d, distance(p, {{-30, 4, 14}, {20, 24, 12}}), 12);       // jaw
     d = united(d, distance(p, {{-48, 33, 0}, {10, 10, 12}}), 12);       // chin
     d = united(d, distance(p, {{-1, 30, 19}, {9, 10, 9}}), 10);         // cheekbone
-    d = united(d, distance(p, {{18, 37, 11}, {4, 6, 13}}), 8);          // brow
-    d = cut_out(d, distance(p, {{8, 46, 14}, {7, 8, 9}}), 7);           // eye socket
-    d = united(d, distance(p, {{8, 34.5, 14}, {6.5, 6.5, 7}}), 1.5);    // eye
+    d = united(d, distance(p, {{18, 36, 12}, {5, 6, 12}}), 10);         // brow
+    d = cut_out(d, distance(p, {{7, 46, 14}, {7, 8, 9}}), 7);           // eye socket
+    d = united(d, distance(p, {{7, 34, 14}, {5.5, 6, 7.5}}), 2.5);      // eye
     d = united(d, distance(p, {{-2, 44, 0}, {16, 6.5, 4}}), 6);         // bridge of the nose
     d = united(d, distance(p, {{-12, 51, 0}, {6, 7, 6}}), 6);           // its tip
     d = united(d, distance(p, {{-14, 45, 6}, {4.5, 6, 4.5}}), 3);       // its wing
     d = united(d, distance(p, {{-26.5, 43.5, 0}, {3.5, 5, 11}}), 4);    // lips
     d = united(d, distance(p, {{-33, 42.5, 0}, {3.5, 5, 9}}), 4);       //
     d = cut_out(d, distance(p, {{-29.8, 49.5, 0}, {1.2, 5, 11}}), 1.5); // mouth
-    d = united(d, distance(p, {{2, -8, 37}, {15, 9, 5}}), 3);           // ear
-    d = cut_out(d, distance(p, {{3, -6, 43}, {9, 5, 4}}), 2);           //
-    d = united(d, distance(p, {{-50, -14, 0}, {40, 23, 22}}), 12);      // neck
-    d = united(d, distance(p, {{-84, -10, 0}, {22, 34, 34}}), 14);      // its foot
+    d = united(d, distance(p, ear), 9);                                 //
+    d = cut_out(d, distance(p, {{6, -5, 44}, {8, 4.5, 5}}), 3);         // its hollow
+    d = united(d, distance(p, {{-110, -12, 0}, {90, 29, 27}}), 12);     // neck
     return -united(-d, p.x + 79, 2);                                    // cut off flat
 }
 
@@ -121,11 +122,12 @@ double rise(double x, double from, double to) {
 double relief(const Point3& p) {
     const double pores =
         0.08 * noise({p.x * 0.9, p.y * 0.9, p.z * 0.9}) + 0.03 * noise({p.x * 2.3, p.y * 2.3, p.z * 2.3});
-    const double hairline = 34 - 0.012 * p.z * p.z + 1.5 * noise({p.x * 0.2, p.y * 0.2, p.z * 0.2});
-    const double scalp = rise(p.x - 0.95 * (p.y - 20), hairline - 4, hairline + 1);
+    const double hairline = 32 - 0.01 * p.z * p.z + 1.5 * noise({p.x * 0.2, p.y * 0.2, p.z * 0.2});
+    const double scalp = rise(p.x - 0.95 * (p.y - 20), hairline - 5, hairline + 3) *
+                         rise(distance({p.x, p.y, std::fabs(p.z)}, ear), 1, 4);
     const double waves = noise({p.x * 0.35, p.y * 0.09, p.z * 0.35});
     const double strands = noise({p.x * 0.8, p.y * 0.12, p.z * 0.8});
-    return pores + scalp * (1.6 + 0.9 * waves + 0.45 * strands);
+    return pores + scalp * (1.2 + 0.9 * waves + 0.45 * strands);
 }
 
 // --- the mesh

@@ -26,7 +26,7 @@ namespace {
 
 constexpr Point3 size{324, 125, 54};
 constexpr double plate = 2;            ///< thickness
-constexpr unsigned columns = 128;      ///< heel to toe
+constexpr unsigned columns = 133;      ///< heel to toe
 constexpr unsigned rows = 50;          ///< side to side
 constexpr unsigned lean = 5;           ///< columns from the lower end of a strut to its upper end
 constexpr unsigned strut_corners = 32; ///< of a strut's section
@@ -43,23 +43,25 @@ double curve(std::array<double, 5> control, double t) {
 
 /// The outline from heel (0) to toe (1): where its middle runs, and how far it reaches to either side.
 double middle(double t) {
-    return curve({0, -0.12, 0.02, 0.30, 0.10}, t);
+    return curve({0, -0.10, -0.06, 0.32, 0.12}, t);
 }
 double reach(double t) {
-    return curve({0.74, 0.74, 0.46, 1.22, 0.80}, t);
+    return curve({0.74, 0.80, 0.24, 1.26, 0.80}, t);
 }
 
 /// A point of the square from (-1, -1) to (1, 1), bent into the outline.
 Point2 bent(double u, double v) {
     // With a half, the square would become a disc and its corners flat; with less, they stay corners.
-    constexpr double roundness = 0.46;
+    constexpr double roundness = 0.48;
     const double t = (1 + u * std::sqrt(1 - roundness * v * v)) / 2;
     return {t, middle(t) + reach(t) * v * std::sqrt(1 - roundness * u * u)};
 }
 
-/// The underside: it rises a little at the heel and more at the toe.
+/// The underside: flat, but rising a little at the heel and more at the toe.
 double underside(const Point2& p) {
-    return curve({3, 0, 0, 0, 9}, p.x);
+    const double heel = std::max(0.15 - p.x, 0.0) / 0.15;
+    const double toe = std::max(p.x - 0.65, 0.0) / 0.35;
+    return 3 * heel * heel + 9 * toe * toe;
 }
 
 /// The footbed: high at the heel, with a rim all around and a support for the arch.
@@ -68,7 +70,7 @@ double footbed(const Point2& p) {
     const double along = 2 * p.x - 1;
     const double edge = side * side + along * along * along * along; // 1 at the outline, or nearly
     const double arch = side > 0 ? side * side * curve({0, 2, 14, 0, 0}, p.x) : 0;
-    return curve({38, 36, 26, 20, 24}, p.x) + edge * edge * curve({14, 12, 6, 2, 3}, p.x) + arch;
+    return curve({38, 37, 29, 22, 24}, p.x) + edge * edge * curve({14, 12, 6, 2, 3}, p.x) + arch;
 }
 
 /// How far inside the convex quad p lies.
