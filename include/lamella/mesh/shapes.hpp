@@ -51,9 +51,9 @@ struct SheetShape {
 [[nodiscard]] TriangleSoup make_head();
 
 /// A shoe sole as in the paper's Figs. 17 and 18: 324 (heel to toe) x 125 x 54 mm in the corner of the
-/// positive octant, COUNT triangles (the paper's has 862,014), one closed surface. Two plates, the upper
+/// positive octant, 859,996 triangles (the paper's has 862,014), one closed surface. Two plates, the upper
 /// one shaped like a footbed, joined by slanted struts that run from bottom to top, so that a plane crosses
-/// SHARE of all triangles on average (the paper's 24%).
+/// 24% of all triangles on average, as in the paper.
 [[nodiscard]] TriangleSoup make_sole();
 
 /// A lattice of struts: a cubic grid of cells, each corner of a cell joined to its neighbours by struts of
