@@ -1,11 +1,12 @@
 // A head, as a scanner would deliver it: a fine mesh of uneven triangles over a smooth body with relief.
 //
-// The body is a rounded union of ellipsoids (skull, jaw, nose, ears, ...). Rays from a point within it, along
-// the corners of a subdivided icosahedron that are pushed about a little, are followed to its skin. As these
+// The body is a rounded union of ellipsoids (skull, jaw, nose, ears, ...). Rays from its middle, through the
+// corners of a subdivided icosahedron that are pushed about a little, are followed to its skin. As these
 // directions form a triangulation of the sphere without folds, triangles of the skin cannot cross, whatever
 // the body is like: each has its own cone of rays.
 //
-// The axes are those of a head that lies on its ear: x up to the crown, y forwards, z sideways. Millimetres.
+// The axes are those of a head that lies on its ear: x up to the crown, y forwards, z sideways, from a point
+// between the ears. Millimetres.
 
 #include "lamella/mesh/shapes.hpp"
 
@@ -24,7 +25,7 @@ namespace lamella {
 
 namespace {
 
-/// Each of the icosahedron's 20 faces becomes this many squared triangles.
+/// The icosahedron's edges are divided into so many; each of its faces becomes the square of it.
 constexpr unsigned fineness = 153;
 
 /// How far a corner may be pushed along each axis, as a share of the distance to its neighbours.
@@ -60,29 +61,29 @@ double cut_out(double a, double b, double round) {
     return -united(-a, b, round);
 }
 
-constexpr Ellipsoid ear{{5, -8, 35}, {14, 9, 6}};
+constexpr Ellipsoid ear{{17, -8, 35}, {14, 9, 6}};
 
 /// Both sides are alike: only one ear, eye, ... is described.
 double head_distance(const Point3& at) {
     const Point3 p{at.x, at.y, std::fabs(at.z)};
-    double d = distance(p, {{16, -8, 0}, {47, 48, 36}});                // skull
-    d = united(d, distance(p, {{-16, 15, 0}, {42, 31, 28}}), 14);       // face
-    d = united(d, distance(p, {{-30, 4, 14}, {20, 24, 12}}), 12);       // jaw
-    d = united(d, distance(p, {{-48, 33, 0}, {10, 10, 12}}), 12);       // chin
-    d = united(d, distance(p, {{-1, 30, 19}, {9, 10, 9}}), 10);         // cheekbone
-    d = united(d, distance(p, {{18, 36, 12}, {5, 6, 12}}), 10);         // brow
-    d = cut_out(d, distance(p, {{7, 46, 14}, {7, 8, 9}}), 7);           // eye socket
-    d = united(d, distance(p, {{7, 34, 14}, {5.5, 6, 7.5}}), 2.5);      // eye
-    d = united(d, distance(p, {{-2, 44, 0}, {16, 6.5, 4}}), 6);         // bridge of the nose
-    d = united(d, distance(p, {{-12, 51, 0}, {6, 7, 6}}), 6);           // its tip
-    d = united(d, distance(p, {{-14, 45, 6}, {4.5, 6, 4.5}}), 3);       // its wing
-    d = united(d, distance(p, {{-26.5, 43.5, 0}, {3.5, 5, 11}}), 4);    // lips
-    d = united(d, distance(p, {{-33, 42.5, 0}, {3.5, 5, 9}}), 4);       //
-    d = cut_out(d, distance(p, {{-29.8, 49.5, 0}, {1.2, 5, 11}}), 1.5); // mouth
-    d = united(d, distance(p, ear), 9);                                 //
-    d = cut_out(d, distance(p, {{6, -5, 44}, {8, 4.5, 5}}), 3);         // its hollow
-    d = united(d, distance(p, {{-110, -12, 0}, {90, 29, 27}}), 12);     // neck
-    return -united(-d, p.x + 79, 2);                                    // cut off flat
+    double d = distance(p, {{28, -8, 0}, {47, 48, 36}});                // skull
+    d = united(d, distance(p, {{-4, 15, 0}, {42, 31, 28}}), 14);        // face
+    d = united(d, distance(p, {{-18, 4, 14}, {20, 24, 12}}), 12);       // jaw
+    d = united(d, distance(p, {{-36, 33, 0}, {10, 10, 12}}), 12);       // chin
+    d = united(d, distance(p, {{11, 30, 19}, {9, 10, 9}}), 10);         // cheekbone
+    d = united(d, distance(p, {{30, 36, 12}, {5, 6, 12}}), 10);         // brow
+    d = cut_out(d, distance(p, {{19, 46, 14}, {7, 8, 9}}), 7);          // eye socket
+    d = united(d, distance(p, {{19, 34, 14}, {5.5, 6, 7.5}}), 2.5);     // eye
+    d = united(d, distance(p, {{10, 44, 0}, {16, 6.5, 4}}), 6);         // bridge of the nose
+    d = united(d, distance(p, {{0, 51, 0}, {6, 7, 6}}), 6);             // its tip
+    d = united(d, distance(p, {{-2, 45, 6}, {4.5, 6, 4.5}}), 3);        // its wing
+    d = united(d, distance(p, {{-14.5, 43.5, 0}, {3.5, 5, 11}}), 4);    // lips
+    d = united(d, distance(p, {{-21, 42.5, 0}, {3.5, 5, 9}}), 4);       //
+    d = cut_out(d, distance(p, {{-17.8, 49.5, 0}, {1.2, 5, 11}}), 1.5); // mouth
+    d = united(d, distance(p, ear), 9);                                 // ear
+    d = cut_out(d, distance(p, {{18, -5, 44}, {8, 4.5, 5}}), 3);        // its hollow
+    d = united(d, distance(p, {{-98, -12, 0}, {90, 29, 27}}), 12);      // neck
+    return -united(-d, p.x + 67, 2);                                    // cut off flat
 }
 
 // --- the relief
@@ -122,7 +123,7 @@ double rise(double x, double from, double to) {
 double relief(const Point3& p) {
     const double pores =
         0.08 * noise({p.x * 0.9, p.y * 0.9, p.z * 0.9}) + 0.03 * noise({p.x * 2.3, p.y * 2.3, p.z * 2.3});
-    const double hairline = 32 - 0.01 * p.z * p.z + 1.5 * noise({p.x * 0.2, p.y * 0.2, p.z * 0.2});
+    const double hairline = 44 - 0.01 * p.z * p.z + 1.5 * noise({p.x * 0.2, p.y * 0.2, p.z * 0.2});
     const double scalp = rise(p.x - 0.95 * (p.y - 20), hairline - 5, hairline + 3) *
                          rise(distance({p.x, p.y, std::fabs(p.z)}, ear), 1, 4);
     const double waves = noise({p.x * 0.35, p.y * 0.09, p.z * 0.35});
@@ -132,11 +133,11 @@ double relief(const Point3& p) {
 
 // --- the mesh
 
-/// Where the ray from `within` first leaves the body; `direction` has length 1. Regula falsi in the variant
+/// Where the ray from the origin first leaves the body; `direction` has length 1. Regula falsi in the variant
 /// that halves the weight of an end that stays (Illinois; Dowell, Jarratt 1971).
-Point3 on_skin(const Point3& within, const Point3& direction) {
+Point3 on_skin(const Point3& direction) {
     const auto along = [&](double t) -> Point3 {
-        return {within.x + t * direction.x, within.y + t * direction.y, within.z + t * direction.z};
+        return {t * direction.x, t * direction.y, t * direction.z};
     };
     double inside = 0;
     double d_inside = head_distance(along(inside));
@@ -164,9 +165,8 @@ Point3 on_skin(const Point3& within, const Point3& direction) {
             side = 1;
         }
     }
-    const Point3 skin = along((inside + outside) / 2);
-    const double out = relief(skin);
-    return {skin.x + out * direction.x, skin.y + out * direction.y, skin.z + out * direction.z};
+    const double skin = (inside + outside) / 2;
+    return along(skin + relief(along(skin)));
 }
 
 /// The direction of a corner of the grid on a face: the icosahedron's corners with their weights, which add
@@ -204,7 +204,6 @@ Point3 direction(std::array<std::uint32_t, 3> corners, std::array<unsigned, 3> w
 } // namespace
 
 TriangleSoup make_head() {
-    constexpr Point3 within{-12, 0, 0};
     // On each face of the icosahedron a triangle of rows, row i with i + 1 corners.
     constexpr std::size_t per_face = std::size_t{fineness + 1} * (fineness + 2) / 2;
     const auto in_face = [](unsigned row, unsigned column) {
@@ -215,7 +214,7 @@ TriangleSoup make_head() {
     for (const std::array<unsigned, 3>& face : icosahedron_faces)
         for (unsigned row = 0; row <= fineness; ++row)
             for (unsigned column = 0; column <= row; ++column)
-                corners.push_back(on_skin(within, direction(face, {fineness - row, row - column, column})));
+                corners.push_back(on_skin(direction(face, {fineness - row, row - column, column})));
     fit_box(corners, {141.61, 111.27, 81.29});
 
     std::vector<Triangle3f> out;
