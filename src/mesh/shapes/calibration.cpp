@@ -8,6 +8,9 @@
 #include "mesh/unit_circle.hpp"
 
 #include <array>
+#include <cstddef>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -35,7 +38,7 @@ struct Feature {
 
 /// Half the edge of a square, as the radius of the circle around it.
 constexpr double square(double half_edge) {
-    return half_edge * 1.4142135623730951;
+    return half_edge * std::numbers::sqrt2;
 }
 
 std::array<Feature, cells * cells> features() {

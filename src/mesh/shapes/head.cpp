@@ -10,7 +10,6 @@
 
 #include "lamella/mesh/shapes.hpp"
 
-#include "mesh/shapes/fit_box.hpp"
 #include "mesh/shapes/icosahedron.hpp"
 #include "mesh/shapes/shuffle.hpp"
 
@@ -18,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -199,6 +199,17 @@ Point3 direction(std::array<std::uint32_t, 3> corners, std::array<unsigned, 3> w
     const double z = p.z + push();
     const double norm = length({x, y, z});
     return {x / norm, y / norm, z / norm};
+}
+
+/// Moves and stretches points along the axes so that their box goes from the origin to `size`.
+void fit_box(std::span<Point3> points, const Point3& size) {
+    Box3 box;
+    for (const Point3& p : points)
+        box.add(p);
+    const Point3 stretch{size.x / (box.max.x - box.min.x), size.y / (box.max.y - box.min.y),
+                         size.z / (box.max.z - box.min.z)};
+    for (Point3& p : points)
+        p = {(p.x - box.min.x) * stretch.x, (p.y - box.min.y) * stretch.y, (p.z - box.min.z) * stretch.z};
 }
 
 } // namespace
