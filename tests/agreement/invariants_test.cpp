@@ -104,16 +104,35 @@ TEST_P(EverySolid, TurnedUpsideDownHasItsLayersMirrored) {
     EXPECT_EQ(hashes, mirrored_hashes);
 }
 
-TEST(Rook, ClosesOnEveryPlane) {
-    const TriangleSoup mesh = make_rook();
-    for (const NamedPlan& plan : test::plans_for(mesh, 25)) {
+/// Well formed, closed, free of crossings and of the mesh's area on some planes of every kind; in all, of the
+/// mesh's volume.
+void expect_right_layers(const TriangleSoup& mesh, std::size_t planes) {
+    for (const NamedPlan& plan : test::plans_for(mesh, planes)) {
         SCOPED_TRACE(plan.name);
         const LayerStack layers = slice(mesh, plan.plan);
         ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
         const Verification found = verify(layers, {.mesh = mesh, .rule = plan.plan.rule});
         EXPECT_EQ(found.findings, std::vector<std::string>{});
         EXPECT_TRUE(found.ok());
+        if (plan.name == "uniform_middle") {
+            double volume_of_layers = 0;
+            for (const Layer& layer : layers)
+                volume_of_layers += measure(layer).area_mm2 * layer.thickness();
+            EXPECT_NEAR(volume_of_layers, volume(mesh), 0.02 * volume(mesh));
+        }
     }
+}
+
+TEST(Rook, HasRightLayers) {
+    expect_right_layers(make_rook(), 25);
+}
+
+TEST(Head, HasRightLayers) {
+    expect_right_layers(make_head(), 25);
+}
+
+TEST(Sole, HasRightLayers) {
+    expect_right_layers(make_sole(), 27); // 2 mm: as thick as its plates
 }
 
 TEST(Box, HasItsBottomFaceAtItsBottomAndItsTopFaceAtItsTop) {
