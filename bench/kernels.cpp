@@ -108,7 +108,7 @@ void points(benchmark::State& state, const PointKernels& kernels) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
 }
 BENCHMARK_CAPTURE(points, widest, point_kernels());
-BENCHMARK_CAPTURE(points, plain, plain_point_kernels());
+BENCHMARK_CAPTURE(points, plain, *point_kernel_sets().front().kernels);
 
 void format_layers(benchmark::State& state, const char* name) {
     const Plan plan = planes_of(sheet(), 10);
