@@ -64,6 +64,13 @@ std::string point(const Point3& p) {
     return fmt::format("({}, {}, {})", brief(p.x), brief(p.y), brief(p.z));
 }
 
+std::string shells_text(const Inspection& found) {
+    if (found.cavities == 0)
+        return grouped(found.shells);
+    return fmt::format("{}, {} of them {}", grouped(found.shells), grouped(found.cavities),
+                       found.cavities == 1 ? "a cavity" : "cavities");
+}
+
 std::string mesh_text(const MeshFile& file, const Inspection& found) {
     const Box3& box = found.box;
     std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), format_name(file.format));
@@ -75,7 +82,7 @@ std::string mesh_text(const MeshFile& file, const Inspection& found) {
     text += line("volume", found.closed() ? fmt::format("{} mm3", brief(found.volume_mm3))
                                           : "none: the surface is not closed");
     text += line("area", fmt::format("{} mm2", brief(found.area_mm2)));
-    text += line("shells", grouped(found.shells));
+    text += line("shells", shells_text(found));
     text += line("closed", found.closed() ? "yes" : "no");
     if (found.sound())
         return text + line("defects", "none");
@@ -101,6 +108,7 @@ Json mesh_json(const MeshFile& file, const Inspection& found, const std::string&
             {"area_mm2", found.area_mm2},
             {"closed", found.closed()},
             {"shells", found.shells},
+            {"cavities", found.cavities},
             {"defects", defects_json(found)}};
 }
 

@@ -45,6 +45,7 @@ nlohmann::ordered_json verification_json(const std::string& path, const Verifica
                                   {"open_chains", found.open_chains},
                                   {"crossings", found.crossings},
                                   {"misoriented", found.misoriented},
+                                  {"overlapping", found.overlapping},
                                   {"volume_mm3", found.volume_mm3},
                                   {"max_area_error_mm2", nullptr}};
     if (found.max_area_error_mm2)

@@ -1,5 +1,7 @@
 #include "interrupt.hpp"
 
+#include "lamella/container/unfinished.hpp"
+
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/signalfd.h>
@@ -9,6 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <system_error>
 
@@ -22,6 +25,26 @@ int checked(int descriptor) {
     if (descriptor < 0)
         throw std::system_error(errno, std::generic_category(), "cannot watch for signals");
     return descriptor;
+}
+
+/// Waits for any of them; how many there are, 0 after the time is up.
+int wait_for(std::span<pollfd> awaited, int milliseconds) {
+    int ready = 0;
+    do {
+        ready = poll(awaited.data(), awaited.size(), milliseconds);
+    } while (ready < 0 && errno == EINTR);
+    return ready;
+}
+
+/// For when destructors cannot be waited for.
+[[noreturn]] void leave_at_once() {
+    remove_unfinished();
+    // What is stuck may be a write to standard error: nobody reads it, or not soon enough.
+    std::array<pollfd, 1> error_output{pollfd{STDERR_FILENO, POLLOUT, 0}};
+    constexpr std::string_view text = "\nlamella: error: cancelled\n";
+    if (wait_for(error_output, 0) > 0)
+        static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
+    _exit(cancelled_exit_code);
 }
 
 } // namespace
@@ -48,16 +71,15 @@ Interrupt::~Interrupt() {
 
 void Interrupt::watch() {
     std::array<pollfd, 2> awaited{pollfd{signals_, POLLIN, 0}, pollfd{ending_, POLLIN, 0}};
-    while (poll(awaited.data(), awaited.size(), -1) < 0 && errno == EINTR) {
-    }
+    wait_for(awaited, -1);
     if (awaited[1].revents != 0)
         return;
     source_.request_stop();
-    if (poll(&awaited[1], 1, patience_ms) == 0) {
-        constexpr std::string_view text = "\nlamella: error: cancelled\n";
-        static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
-        _exit(cancelled_exit_code);
-    }
+    signalfd_siginfo first{};
+    static_cast<void>(!read(signals_, &first, sizeof first)); // so that a second one shows
+    wait_for(awaited, patience_ms);
+    if (awaited[1].revents == 0)
+        leave_at_once();
 }
 
 } // namespace lamella::app

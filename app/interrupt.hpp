@@ -9,7 +9,8 @@ namespace lamella::app {
 
 /// While it lives, SIGINT and SIGTERM request a stop instead of ending the program, so that temporary files
 /// are removed. To be made before any other thread. Should the program be stuck (such as waiting for
-/// standard input) a short while after the signal, it is ended at once with exit code 130.
+/// standard input) a short while after the signal, or should another signal come, its temporary files are
+/// removed for it and it is ended at once with exit code 130.
 class Interrupt {
   public:
     Interrupt();

@@ -40,7 +40,7 @@ void rank(benchmark::State& state) {
     for (std::size_t i = 0; i < torus().size(); ++i)
         for (const Point3& corner : torus().placed(i))
             heights.push_back(corner.z);
-    for (auto _ : state) {
+    for ([[maybe_unused]] const auto _ : state) {
         std::uint64_t sum = 0;
         for (const double z : heights)
             sum += ranks(z);
@@ -51,7 +51,7 @@ void rank(benchmark::State& state) {
 BENCHMARK(rank)->Arg(30)->Arg(3000)->ArgName("planes")->Unit(benchmark::kMillisecond);
 
 void weld_corners(benchmark::State& state) {
-    for (auto _ : state)
+    for ([[maybe_unused]] const auto _ : state)
         benchmark::DoNotOptimize(weld(torus(), on(state)).vertices.data());
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(3 * torus().size()));
 }
@@ -60,7 +60,7 @@ BENCHMARK(weld_corners)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMi
 void link_triangles(benchmark::State& state) {
     const Execution execution = on(state);
     const Ranks ranks(planes_of(torus(), 400));
-    for (auto _ : state) {
+    for ([[maybe_unused]] const auto _ : state) {
         Executor executor(execution);
         ProgressMeter progress(execution, Stage::link, torus().size());
         benchmark::DoNotOptimize(build_cut_graph(torus(), ranks, executor, progress).count);
@@ -74,7 +74,7 @@ void sweep(benchmark::State& state, const TriangleSoup& soup, double planes) {
     const Plan plan = planes_of(soup, planes);
     const Execution execution = on(state);
     SliceReport report;
-    for (auto _ : state) {
+    for ([[maybe_unused]] const auto _ : state) {
         const LayerStack layers = slice(soup, plan, execution, &report);
         state.SetIterationTime(report.slice_seconds);
     }
@@ -101,20 +101,20 @@ void points(benchmark::State& state, const PointKernels& kernels) {
     const EdgeColumns edges{
         static_cast<double*>(std::align(64, EdgeColumns::columns * n * sizeof(double), start, space)), n};
     std::vector<Point2> to(n);
-    for (auto _ : state) {
+    for ([[maybe_unused]] const auto _ : state) {
         kernels.cut(edges, 0, n, 0.75, to.data());
         benchmark::ClobberMemory();
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
 }
 BENCHMARK_CAPTURE(points, widest, point_kernels());
-BENCHMARK_CAPTURE(points, plain, plain_point_kernels());
+BENCHMARK_CAPTURE(points, plain, *point_kernel_sets().front().kernels);
 
 void format_layers(benchmark::State& state, const char* name) {
     const Plan plan = planes_of(sheet(), 10);
     const LayerStack layers = slice(sheet(), plan);
     std::uint64_t bytes = 0;
-    for (auto _ : state) {
+    for ([[maybe_unused]] const auto _ : state) {
         const auto writer = open_layer_writer(
             "/dev/null", layer_format(name, ""),
             {.box = bounding_box(sheet()), .layers = layers.size(), .bottom = layers.front().bottom});

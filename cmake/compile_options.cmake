@@ -24,3 +24,7 @@ if(LAMELLA_SANITIZE)
                                                      -fno-sanitize-recover=all)
     target_link_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE})
 endif()
+# libFuzzer steers by what it sees reached: the library must tell, not the fuzz targets alone.
+if(LAMELLA_FUZZ)
+    target_compile_options(lamella_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()

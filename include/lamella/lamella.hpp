@@ -11,8 +11,10 @@
 //     lamella::write_layers("part.cli", lamella::layer_format("", "part.cli"), layers,
 //                           {.box = box, .layers = layers.size(), .bottom = layers.front().bottom});
 //
-// Lengths are millimetres. Failures are lamella::Error. Nothing here prints, exits or keeps global state.
+// Lengths are millimetres. Failures are lamella::Error. Nothing here prints, exits or keeps global state,
+// but for the temporary names in use (remove_unfinished).
 
+#include "lamella/container/unfinished.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"

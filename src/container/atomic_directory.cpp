@@ -43,6 +43,10 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
         else if (errno != EEXIST || attempt > 10'000)
             throw output_error(target_.string(), errno);
     }
+    if (!unfinished_.announce(working_.string())) {
+        ::rmdir(working_.c_str());
+        throw Error(ErrorKind::cancelled, "cancelled");
+    }
 }
 
 AtomicDirectory::~AtomicDirectory() {
@@ -76,6 +80,9 @@ void AtomicDirectory::check_replaceable() const {
 void AtomicDirectory::commit() {
     if (working_.empty())
         throw Error(ErrorKind::internal, fmt::format("'{}' was ended twice", path_));
+    // Once it has its name, nobody may be about to remove what is in it.
+    if (!unfinished_.withdraw())
+        throw Error(ErrorKind::cancelled, "cancelled");
     // Renaming onto a missing or an empty folder needs no more.
     if (std::rename(working_.c_str(), target_.c_str()) == 0) {
         working_.clear();

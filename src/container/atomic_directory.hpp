@@ -2,6 +2,8 @@
 
 // A folder of files that appears whole or not at all.
 
+#include "container/unfinished_name.hpp"
+
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -32,6 +34,7 @@ class AtomicDirectory {
     std::filesystem::path target_;
     std::function<bool(const std::filesystem::path&)> may_remove_;
     std::filesystem::path working_; ///< empty after commit
+    UnfinishedName unfinished_;
 };
 
 } // namespace lamella

@@ -179,6 +179,10 @@ void AtomicFile::open_temporary() {
         else if (errno != EINTR && (errno != EEXIST || attempt > 10'000))
             fail(errno);
     }
+    if (!unfinished_.announce(temporary_)) {
+        discard();
+        throw Error(ErrorKind::cancelled, "cancelled");
+    }
     // The permissions of a new file are the umask's; those of a replaced one stay. When that is not ours to
     // set, the umask's do.
     if (replaces && fchmod(descriptor_, status.st_mode & 07777) != 0)
@@ -232,6 +236,7 @@ void AtomicFile::commit() {
         if (std::rename(temporary_.c_str(), target_.c_str()) != 0)
             fail(errno);
         temporary_.clear();
+        unfinished_.withdraw();
     }
 }
 
@@ -242,6 +247,7 @@ void AtomicFile::discard() noexcept {
     if (!temporary_.empty())
         ::unlink(temporary_.c_str());
     temporary_.clear();
+    unfinished_.withdraw();
 }
 
 void AtomicFile::fail(int system_error) {

@@ -4,6 +4,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/unfinished_name.hpp"
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -55,6 +57,7 @@ class AtomicFile {
     std::string path_;
     std::string target_;    ///< path_ with symbolic links followed
     std::string temporary_; ///< empty when written in place
+    UnfinishedName unfinished_;
     int descriptor_ = -1;
     bool owns_descriptor_ = true;
     std::unique_ptr<char[]> buffer_;

@@ -362,11 +362,66 @@ class Search {
             }
         }
 
-        std::sort(left.begin(), left.end());
-        for (const std::uint32_t i : left)
-            for (std::uint32_t j = 0; j < ids.size(); ++j)
-                if (j != i && (!has_left[j] || j > i))
-                    test(cell, ids[i], ids[j]);
+        if (!left.empty())
+            search_side_by_side(cell, ids, has_left);
+    }
+
+    /// Tests those that left against all others that may reach them. Where many have left, each has crossed a
+    /// neighbour, and that they are many says that most of the others lie farther away: seen along their
+    /// common direction, long segments side by side shrink to short intervals, and only those that overlap
+    /// can cross. Never more pairs than all of those that left with all others.
+    void search_side_by_side(const Cell& cell, std::span<const SegmentId> ids,
+                             const std::vector<bool>& has_left) {
+        // Directions have no sense of forward: the mean is taken of doubled angles.
+        double cosines = 0;
+        double sines = 0;
+        for (const SegmentId id : ids) {
+            const auto [a, b] = local(segments_[id]);
+            const double dx = b.x - a.x;
+            const double dy = b.y - a.y;
+            const double square = dx * dx + dy * dy;
+            if (square > 0) {
+                cosines += (dx * dx - dy * dy) / square;
+                sines += 2 * dx * dy / square;
+            }
+        }
+        const double angle = std::atan2(sines, cosines) / 2;
+        const Point2 across{-std::sin(angle), std::cos(angle)};
+
+        struct Interval {
+            double begin;
+            double end;
+            std::uint32_t i;
+        };
+        constexpr double rounding = 0x1p-44; // of coordinates up to 4
+        std::vector<Interval> intervals;
+        intervals.reserve(ids.size());
+        for (std::uint32_t i = 0; i < ids.size(); ++i) {
+            const auto [a, b] = local(segments_[ids[i]]);
+            const auto [begin, end] =
+                std::minmax({a.x * across.x + a.y * across.y, b.x * across.x + b.y * across.y});
+            intervals.push_back({begin - rounding, end + rounding, i});
+        }
+        std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) {
+            return std::tie(a.begin, a.i) < std::tie(b.begin, b.i);
+        });
+        std::vector<std::size_t> left; // places in `intervals`
+        for (std::size_t k = 0; k < intervals.size(); ++k)
+            if (has_left[intervals[k].i])
+                left.push_back(k);
+        std::size_t next_left = 0;
+        for (std::size_t k = 0; k < intervals.size(); ++k) {
+            const Interval& here = intervals[k];
+            if (next_left < left.size() && left[next_left] == k) {
+                ++next_left;
+                for (std::size_t other = k + 1;
+                     other < intervals.size() && intervals[other].begin <= here.end; ++other)
+                    test(cell, ids[here.i], ids[intervals[other].i]);
+            } else {
+                for (std::size_t n = next_left; n < left.size() && intervals[left[n]].begin <= here.end; ++n)
+                    test(cell, ids[here.i], ids[intervals[left[n]].i]);
+            }
+        }
     }
 
     [[nodiscard]] Crossing described(const Pair& pair) const {

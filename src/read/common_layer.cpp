@@ -207,14 +207,16 @@ Header read_header(std::string_view bytes, const std::string& name) {
 /// Collects what the geometry section says, however it is coded.
 class Collector {
   public:
-    explicit Collector(const Header& header) : units_(header.units_mm) {}
+    Collector(const Header& header, const std::string& name) : units_(header.units_mm), name_(name) {}
 
     void start_layer(double units, std::string place) {
-        layers_.push_back({units * units_, std::move(place), {}, {}});
+        const double z = in_mm(units, place);
+        layers_.push_back({z, std::move(place), {}, {}});
     }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
     void add_point(double x, double y) {
-        layers_.back().points.push_back({x * units_ + 0.0, y * units_ + 0.0});
+        RawLayer& layer = layers_.back();
+        layer.points.push_back({in_mm(x, layer.place) + 0.0, in_mm(y, layer.place) + 0.0});
     }
     void add_hatches(std::uint64_t count) { hatches_ += count; }
 
@@ -262,6 +264,18 @@ class Collector {
     }
 
   private:
+    /// Coordinates beyond the limit could make areas and thicknesses overflow; no part is near it.
+    [[nodiscard]] double in_mm(double units, const std::string& place) const {
+        constexpr double farthest = 1e100;
+        const double mm = units * units_;
+        if (!(std::abs(mm) <= farthest))
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, layer at {}: found {} units of {} mm; heights and coordinates must "
+                                    "lie within {} mm",
+                                    name_, place, units, units_, farthest));
+        return mm;
+    }
+
     template <class Place>
     void drop(RawLayer& layer, std::size_t begin, const Place& place) {
         layer.points.resize(begin);
@@ -280,6 +294,7 @@ class Collector {
     }
 
     double units_;
+    const std::string& name_;
     std::vector<RawLayer> layers_;
     std::uint64_t hatches_ = 0;
     Oddity unclosed_{"closed contours did not return to their first point; they were closed"};
@@ -560,7 +575,8 @@ void make_layers(std::vector<RawLayer>& raw, const Header& header, LayerFile& fi
     const std::size_t n = raw.size();
     const bool has_zero_layer = raw.front().ends.empty() && n > 1;
     const double lowest = header.dimension ? (*header.dimension)[2] : 0.0;
-    const double first_step = n > 1 ? raw[1].z - raw[0].z : raw[0].z - lowest;
+    // A single layer below the bottom of the part has no thickness that could be told.
+    const double first_step = n > 1 ? raw[1].z - raw[0].z : std::max(0.0, raw[0].z - lowest);
     const bool heights_are_bottoms = !has_zero_layer && n > 1 && raw.front().z <= lowest;
     if (heights_are_bottoms)
         file.warnings.push_back(
@@ -602,7 +618,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, con
     file.label = header.label;
     file.units_mm = header.units_mm;
 
-    Collector collector(header);
+    Collector collector(header, name);
     if (header.binary)
         read_binary(bytes, name, header, execution, collector);
     else

@@ -48,10 +48,13 @@ class Numbers {
         if (from != end && *from == '+')
             ++from;
         const auto [to, error] = std::from_chars(from, end, value);
-        if (error != std::errc() || !std::isfinite(value))
+        // What lies further away could make sums and areas overflow; no part is near it.
+        constexpr double farthest = 1e100;
+        if (error != std::errc() || !(std::abs(value) <= farthest))
             throw Error(ErrorKind::input,
-                        fmt::format("{}, line {}: found '{}'; a coordinate must be a number", name_, line_,
-                                    printable(text_.substr(0, text_.find_first_of(" ,")), 40)));
+                        fmt::format("{}, line {}: found '{}'; a coordinate must be a number within {}", name_,
+                                    line_, printable(text_.substr(0, text_.find_first_of(" ,")), 40),
+                                    farthest));
         text_.remove_prefix(static_cast<std::size_t>(to - text_.data()));
         return value;
     }
@@ -146,6 +149,8 @@ class SvgReader {
         group.contours.place = fmt::format("line {}", line);
         group.slice_z = number(attributes, "slic3r:slice-z", line);
         group.height = number(attributes, "slic3r:layer-height", line);
+        if (group.height && *group.height < 0)
+            fail(line, fmt::format("found a layer height of {}; it must not be below 0", *group.height));
         groups_.push_back(std::move(group));
     }
 
@@ -259,21 +264,30 @@ class SvgReader {
             };
             if (i > 0)
                 return z(i) - z(i - 1);
-            return n > 1 ? z(1) - z(0) : z(0);
+            return n > 1 ? z(1) - z(0) : std::max(0.0, z(0));
         };
-        std::vector<double> z(n);
-        std::vector<double> bottom(n);
-        std::vector<double> top(n);
+        struct Place {
+            double z;
+            double bottom;
+            double top;
+            std::size_t group;
+        };
+        std::vector<Place> places(n);
         for (std::size_t i = 0; i < n; ++i) {
             const Group& group = groups_[i];
             const double thickness = group.height.value_or(step_below(i));
-            top[i] = legacy ? group.contours.z + thickness / 2 : group.contours.z;
-            bottom[i] = top[i] - thickness;
-            z[i] = legacy ? group.contours.z : group.slice_z.value_or(top[i] - thickness / 2);
+            const double top = legacy ? group.contours.z + thickness / 2 : group.contours.z;
+            const double bottom = top - thickness;
+            const double middle = bottom + thickness / 2;
+            places[i] = {legacy ? group.contours.z : group.slice_z.value_or(middle), bottom, top, i};
         }
+        // Layers are listed by their cuts, which need not lie as their tops do.
+        std::stable_sort(places.begin(), places.end(),
+                         [](const Place& a, const Place& b) { return a.z < b.z; });
         file_.layers.reserve(n);
         for (std::size_t i = 0; i < n; ++i)
-            file_.layers.push_back(make_layer(groups_[i].contours, i, z[i], bottom[i], top[i]));
+            file_.layers.push_back(make_layer(groups_[places[i].group].contours, i, places[i].z,
+                                              places[i].bottom, places[i].top));
     }
 
     const std::string& name_;

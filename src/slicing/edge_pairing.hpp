@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <tuple>
 #include <vector>
 
@@ -31,10 +32,34 @@ struct Ray {
 
 /// The direction from the edge to the third corner, projected along the edge into a horizontal plane.
 inline float ray_angle(const Point3& low, const Point3& high, const Point3& third) {
-    const double dz = high.z - low.z;
-    const double up = third.z - low.z;
-    const double x = (third.x - low.x) * dz - up * (high.x - low.x);
-    const double y = (third.y - low.y) * dz - up * (high.y - low.y);
+    // Scaled by powers of two, which changes no digit: else differences, and products of them, of coordinates
+    // above 1e154 overflow to a NaN, which has no place in an order. Heights have a scale of their own, so
+    // that a flat and wide mesh does not vanish.
+    const double largest =
+        std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y),
+                  std::abs(high.z), std::abs(third.x), std::abs(third.y), std::abs(third.z)});
+    const double shrink = largest > 0x1p1000 ? 0x1p-4 : 1;
+    const auto gap = [shrink](double from, double to) {
+        return to * shrink - from * shrink;
+    };
+    const auto bring_near_one = [](std::initializer_list<double*> numbers) {
+        double most = 0;
+        for (const double* number : numbers)
+            most = std::max(most, std::abs(*number));
+        if (most > 0)
+            for (double* number : numbers)
+                *number = std::scalbn(*number, -std::ilogb(most));
+    };
+    double dz = gap(low.z, high.z);
+    double up = gap(low.z, third.z);
+    bring_near_one({&dz, &up});
+    double edge_x = gap(low.x, high.x);
+    double edge_y = gap(low.y, high.y);
+    double third_x = gap(low.x, third.x);
+    double third_y = gap(low.y, third.y);
+    bring_near_one({&edge_x, &edge_y, &third_x, &third_y});
+    const double x = third_x * dz - up * edge_x;
+    const double y = third_y * dz - up * edge_y;
     const double size = std::abs(x) + std::abs(y);
     if (!(size > 0))
         return 0; // all three corners on a line: no direction

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace lamella {
 
@@ -37,6 +40,34 @@ void require_height(double height, const char* what) {
         throw Error(ErrorKind::usage, fmt::format("{} is {} mm; it must be a number above 0", what, height));
 }
 
+std::string text_of(const std::pair<std::uint64_t, std::uint64_t>& indices) {
+    if (indices.second == std::numeric_limits<std::uint64_t>::max())
+        return fmt::format("{}:", indices.first);
+    return fmt::format("{}:{}", indices.first, indices.second);
+}
+
+// An end as far away as a double can say is an open one.
+std::string text_of(const std::pair<double, double>& z_range) {
+    constexpr double far = std::numeric_limits<double>::max();
+    if (z_range.first <= -far)
+        return z_range.second >= far ? "of all z" : fmt::format("up to {} mm", z_range.second);
+    if (z_range.second >= far)
+        return fmt::format("from {} mm on", z_range.first);
+    return fmt::format("{} to {} mm", z_range.first, z_range.second);
+}
+
+void require_ranges_that_hold_something(const UniformLayers& layers) {
+    if (const auto& range = layers.index_range; range && !(range->first < range->second))
+        throw Error(ErrorKind::usage,
+                    fmt::format("the layer range {} is empty: its second number is the first layer left out "
+                                "and must be above the first number",
+                                text_of(*range)));
+    if (const auto& range = layers.z_range; range && !(range->first <= range->second))
+        throw Error(ErrorKind::usage,
+                    fmt::format("the z range {} is empty: it must go from a number to one that is not below",
+                                text_of(*range)));
+}
+
 // Layer i as the stack of slabs defines it, without a look at the part.
 PlannedLayer stacked_layer(std::uint64_t i, double z_min, double first_height, double height, double f) {
     if (i == 0)
@@ -60,8 +91,17 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
                         "slicing direction may have some",
                         z_min, z_max));
 
+    require_ranges_that_hold_something(layers);
+
     const double f = fraction(layers.slice_at);
     const bool at_top = layers.slice_at == SliceAt::top;
+    if (!at_top && !(z_max - z_min > negligible * height))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format(
+                "the part is {:.6g} mm high (z from {} to {} mm), no more than a thousandth of the "
+                "layer height of {} mm, which counts as nothing; choose a layer height below {:.6g} mm",
+                z_max - z_min, z_min, z_max, height, (z_max - z_min) / negligible));
     const auto meets_part = [&](double z) {
         return at_top ? z <= z_max + negligible * height : z < z_max - negligible * height;
     };
@@ -87,8 +127,9 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
         throw Error(
             ErrorKind::usage,
             fmt::format("no layer: the first cut, at z = {} mm, misses the part (z from {} to {} mm); "
-                        "choose a layer height below {} mm",
-                        stacked_layer(0, z_min, first_height, height, f).z, z_min, z_max, z_max - z_min));
+                        "choose a {}layer height below {} mm",
+                        stacked_layer(0, z_min, first_height, height, f).z, z_min, z_max,
+                        layers.first_layer_height ? "first " : "", z_max - z_min));
 
     std::uint64_t begin = 0;
     std::uint64_t end = count;
@@ -97,17 +138,23 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
         end = std::min(layers.index_range->second, count);
         if (begin >= end)
             throw Error(ErrorKind::usage,
-                        fmt::format("the layers {}:{} are none of this part's layers 0:{}",
-                                    layers.index_range->first, layers.index_range->second, count));
+                        fmt::format("the layers {} are none of this part's layers 0:{}; the last one is {}",
+                                    text_of(*layers.index_range), count, count - 1));
     }
 
     Plan plan;
     plan.rule = rule_for(layers.slice_at);
     plan.layers.reserve(std::min<std::uint64_t>(end - begin, 1U << 20)); // a z range may leave few of many
+    // What z_min + i h may be off: four roundings of numbers up to twice the largest height.
+    const double rounding =
+        4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(z_min), std::abs(z_max));
     for (std::uint64_t i = begin; i < end; ++i) {
         PlannedLayer layer = stacked_layer(i, z_min, first_height, height, f);
-        if (at_top)
-            layer.z = std::min(layer.z, z_max); // rounding must not lift the last cut off the top face
+        // Rounding must neither lift the last cut off the top face nor leave it just below.
+        if (at_top && i + 1 == count && layer.z >= z_max - rounding) {
+            layer.z = z_max;
+            layer.top = std::max(layer.top, z_max);
+        }
         if (layers.z_range && !(layer.z >= layers.z_range->first && layer.z <= layers.z_range->second))
             continue;
         if (!plan.layers.empty() && !(plan.layers.back().z < layer.z))
@@ -119,9 +166,13 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
     }
     if (plan.layers.empty())
         throw Error(ErrorKind::usage,
-                    fmt::format("no cut of this part (z from {} to {} mm) lies in the z range {} "
-                                "to {} mm",
-                                z_min, z_max, layers.z_range->first, layers.z_range->second));
+                    fmt::format("no cut of {} (z from {} to {} mm) lies in the z range {}; the cuts go from "
+                                "{:.6g} to {:.6g} mm",
+                                layers.index_range ? "the layers " + text_of(*layers.index_range)
+                                                   : std::string("this part"),
+                                z_min, z_max, text_of(*layers.z_range),
+                                stacked_layer(begin, z_min, first_height, height, f).z,
+                                stacked_layer(end - 1, z_min, first_height, height, f).z));
     return plan;
 }
 

@@ -1,5 +1,6 @@
 #include "slicing/point_kernels.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -272,19 +273,25 @@ LAMELLA_POINT_KERNELS(Avx512, [[gnu::target("avx512f,avx512dq,avx512vl")]], 8);
 
 } // namespace
 
-const PointKernels& plain_point_kernels() noexcept {
-    return Plain::kernels;
+std::span<const PointKernelSet> point_kernel_sets() noexcept {
+    static constexpr std::array sets {
+        PointKernelSet{"plain", &Plain::kernels},
+#if defined(__x86_64__)
+            PointKernelSet{"avx2", &Avx2::kernels}, PointKernelSet{"avx512", &Avx512::kernels},
+#endif
+    };
+    std::size_t runnable = 1;
+#if defined(__x86_64__)
+    const bool avx2 = __builtin_cpu_supports("avx2");
+    const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512vl");
+    runnable += (avx2 ? 1 : 0) + (avx512 ? 1 : 0);
+#endif
+    return std::span(sets).first(runnable);
 }
 
 const PointKernels& point_kernels() noexcept {
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
-        return Avx512::kernels;
-    if (__builtin_cpu_supports("avx2"))
-        return Avx2::kernels;
-#endif
-    return Plain::kernels;
+    return *point_kernel_sets().back().kernels;
 }
 
 } // namespace lamella

@@ -7,6 +7,8 @@
 #include "lamella/core/point.hpp"
 
 #include <cstddef>
+#include <span>
+#include <string_view>
 
 namespace lamella {
 
@@ -49,10 +51,16 @@ struct PointKernels {
     std::size_t (*find_not_above)(const double* x, std::size_t from, std::size_t n, double value);
 };
 
-/// The kernels for this processor.
-[[nodiscard]] const PointKernels& point_kernels() noexcept;
+/// The kernels of one instruction set.
+struct PointKernelSet {
+    std::string_view name;
+    const PointKernels* kernels; ///< never null; they live as long as the program
+};
 
-/// The plain ones, for tests of equality.
-[[nodiscard]] const PointKernels& plain_point_kernels() noexcept;
+/// All sets that this processor can run, the narrowest first: "plain" always, then "avx2" and "avx512".
+[[nodiscard]] std::span<const PointKernelSet> point_kernel_sets() noexcept;
+
+/// The widest of them.
+[[nodiscard]] const PointKernels& point_kernels() noexcept;
 
 } // namespace lamella

@@ -3,7 +3,7 @@
 from program import ProgramTest, binary_stl, box_triangles, main, open_box
 
 MESH_KEYS = ["path", "format", "unit", "triangles", "vertices", "bbox", "volume_mm3", "area_mm2", "closed",
-             "shells", "defects"]
+             "shells", "cavities", "defects"]
 
 
 class Info(ProgramTest):
@@ -34,6 +34,17 @@ class Info(ProgramTest):
         text = self.succeed("info", "open.stl").text
         self.assertRegex(text, "4 boundary edges: .*hole")
         self.assertIn("not closed", text)
+
+    def test_a_cavity_is_told_and_is_no_defect(self):
+        hollow = [tuple((x + 5, y + 5, z + 2) for x, y, z in t[::-1]) for t in box_triangles(3, 4, 5)]
+        self.write("hollow.stl", binary_stl(box_triangles(20, 30, 10) + hollow))
+        found = self.info("hollow.stl")
+        self.assertEqual((found["shells"], found["cavities"]), (2, 1))
+        self.assertEqual(set(found["defects"].values()), {0})
+        self.assertAlmostEqual(found["volume_mm3"], 6000 - 60, places=3)
+        self.assertRegex(self.succeed("info", "hollow.stl").text, r"shells +2, 1 of them a cavity\n")
+        self.assertEqual(self.info(self.box())["cavities"], 0)
+        self.assertRegex(self.succeed("info", "box.stl").text, r"shells +1\n")
 
     def test_strict_turns_a_defect_into_an_exit_code(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))

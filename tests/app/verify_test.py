@@ -2,8 +2,8 @@
 
 from program import ProgramTest, main
 
-KEYS = ["path", "ok", "layers", "contours", "open_chains", "crossings", "misoriented", "volume_mm3",
-        "max_area_error_mm2"]
+KEYS = ["path", "ok", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
+        "volume_mm3", "max_area_error_mm2"]
 
 
 def ascii_cli(*polylines):
@@ -66,6 +66,12 @@ class Verify(ProgramTest):
     def test_a_hole_that_runs_the_wrong_way(self):
         self.write("a.cli", ascii_cli((0, SQUARE[::-1])))
         self.assertEqual(self.verify("a.cli", code=4)["misoriented"], 1)
+
+    def test_a_body_within_another_is_told_and_is_no_error(self):
+        inner = [(2, 2), (8, 2), (8, 8), (2, 8), (2, 2)]
+        self.write("a.cli", ascii_cli((1, SQUARE), (1, inner)))
+        found = self.verify("a.cli")
+        self.assertEqual((found["overlapping"], found["misoriented"]), (1, 0))
 
     def test_contours_that_cross(self):
         shifted = [(x + 5, y + 5) for x, y in SQUARE]

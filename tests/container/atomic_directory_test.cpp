@@ -1,9 +1,11 @@
 #include "lamella/core/error.hpp"
 
 #include "container/atomic_directory.hpp"
+#include "container/child_process.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -27,6 +29,26 @@ std::string error_of(const std::string& path) {
         return error.what();
     }
     return {};
+}
+
+TEST(AtomicDirectory, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
+    const TemporaryFolder folder;
+    const int code = exit_code_of_child([&] {
+        AtomicDirectory done(folder.file("done"), is_layer);
+        done.commit();
+        AtomicDirectory directory(folder.file("out"), is_layer);
+        for (int i = 0; i < 1000; ++i) // more than one reading of a folder gives
+            write_file(directory.working_path() / (std::to_string(i) + ".svg"), "a");
+        remove_unfinished();
+        try {
+            directory.commit();
+        } catch (const Error& error) {
+            _exit(error.kind() == ErrorKind::cancelled ? 0 : 1); // before any destructor
+        }
+        _exit(2);
+    });
+    EXPECT_EQ(code, 0);
+    EXPECT_EQ(folder.entries(), Names{"done"});
 }
 
 TEST(AtomicDirectory, AppearsWholeAtTheEnd) {

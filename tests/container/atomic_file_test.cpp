@@ -1,4 +1,5 @@
 #include "container/atomic_file.hpp"
+#include "container/child_process.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -65,6 +67,32 @@ TEST(AtomicFile, LeavesNothingBehindWhenItIsNotEnded) {
         EXPECT_EQ(folder.entries().size(), 1U);
     }
     EXPECT_EQ(folder.entries(), Names{});
+}
+
+TEST(AtomicFile, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
+    const TemporaryFolder folder;
+    const int code = exit_code_of_child([&] {
+        AtomicFile done(folder.file("done"));
+        done.append("done");
+        done.commit();
+        std::vector<std::unique_ptr<AtomicFile>> files;
+        for (int i = 0; i < 20; ++i) {
+            files.push_back(std::make_unique<AtomicFile>(folder.file(std::to_string(i))));
+            files.back()->append(std::string(300'000, 'x'));
+            if (i % 3 == 0)
+                files.pop_back(); // its place in the list is used again
+        }
+        remove_unfinished();
+        remove_unfinished();
+        try {
+            const AtomicFile late(folder.file("late"));
+        } catch (const Error& error) {
+            _exit(error.kind() == ErrorKind::cancelled ? 0 : 1); // before any destructor
+        }
+        _exit(2);
+    });
+    EXPECT_EQ(code, 0);
+    EXPECT_EQ(folder.entries(), Names{"done"});
 }
 
 TEST(AtomicFile, KeepsTheOldFileWhenTheNewOneIsNotEnded) {

@@ -23,10 +23,11 @@ Pairs join(const std::vector<std::uint64_t>& keys, std::size_t parts, unsigned t
     Executor executor({.threads = threads});
     Pairs out;
     std::mutex mutex;
-    join_equal_keys<std::uint64_t>(executor, spans, hash, [&](std::uint32_t first, std::uint32_t other, unsigned) {
-        const std::lock_guard lock(mutex);
-        EXPECT_TRUE(out.emplace(other, first).second) << "reported twice: " << other;
-    });
+    join_equal_keys<std::uint64_t>(
+        executor, spans, hash, [&](std::uint32_t first, std::uint32_t other, unsigned) {
+            const std::lock_guard lock(mutex);
+            EXPECT_TRUE(out.emplace(other, first).second) << "reported twice: " << other;
+        });
     return out;
 }
 
@@ -100,10 +101,11 @@ TEST(KeyGroups, ReportsEqualKeysInAscendingOrder) {
     const std::vector<std::span<const std::uint64_t>> parts{std::span(keys).first(20000),
                                                             std::span(keys).subspan(20000)};
     std::vector<std::uint32_t> last(keys.size(), 0);
-    join_equal_keys<std::uint64_t>(executor, parts, good_hash, [&](std::uint32_t first, std::uint32_t other, unsigned) {
-        EXPECT_LT(last[first], other);
-        last[first] = other;
-    });
+    join_equal_keys<std::uint64_t>(executor, parts, good_hash,
+                                   [&](std::uint32_t first, std::uint32_t other, unsigned) {
+                                       EXPECT_LT(last[first], other);
+                                       last[first] = other;
+                                   });
 }
 
 TEST(Mix, SpreadsNeighbouringNumbersOverTopAndBottomBits) {

@@ -223,6 +223,24 @@ TEST(Crossings, OfAStrayLineThroughManyWallsAreAllFound) {
     EXPECT_EQ(find_crossings(layer_of(walls, {{{0, 2.0 * n + 1}, {8.0 * n, 2.0 * n + 2}}})).count, 2U * n);
 }
 
+TEST(Crossings, OfManyLongWallsWithTheirNeighboursAreFoundAmongNeighbours) {
+    // Every wall crosses the one beside it, so that each has a part in a crossing; to look at all pairs of
+    // half a million would take longer than a test may.
+    constexpr int n = 250000;
+    constexpr double length = 4.0 * n;
+    for (const double slope : {1.0, 0.0, -0.375}) {
+        std::vector<Contour> walls;
+        for (int i = 0; i < n; ++i) {
+            const double y = 4.0 * i;
+            walls.push_back({{0, y}, {length, y + slope * length}});
+            walls.push_back({{0, y + 2}, {length, y - 1 + slope * length}});
+        }
+        const Crossings found = find_crossings(layer_of({}, walls), 2);
+        ASSERT_EQ(found.count, static_cast<std::uint64_t>(n)) << slope;
+        EXPECT_EQ(keys(found), (std::vector<Key>{{0, 0, 1, 0}, {2, 0, 3, 0}})) << slope;
+    }
+}
+
 TEST(Crossings, OfFineDetailInALargeFrameAreAllFound) {
     // 10,000 small diamonds in a corner of a frame a million times their size; each overlaps its neighbours.
     std::vector<Contour> rings{rectangle(-9, -9, 1e6, 1e6)};

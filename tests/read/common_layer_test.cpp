@@ -152,6 +152,22 @@ TEST(ReadCommonLayer, ContoursOnTheBottomMakeHeightsBottoms) {
     EXPECT_EQ(file.warnings.size(), 1U);
 }
 
+TEST(ReadCommonLayer, ASingleLayerBelowTheBottomOfThePartHasNoThickness) {
+    const LayerFile file = read(ascii("$$LAYER/-10\n$$POLYLINE/1,1,4,0,0,9,0,9,9,0,0\n"));
+    ASSERT_EQ(file.layers.size(), 1U);
+    EXPECT_DOUBLE_EQ(file.layers[0].z, -0.1);
+    EXPECT_EQ(file.layers[0].bottom, file.layers[0].top);
+}
+
+TEST(ReadCommonLayer, NumbersThatOverflowInMillimetresAreRefused) {
+    const std::string units = "$$UNITS/1e200\n";
+    expect_error(ascii("$$LAYER/1e200\n", units), "1e+200 units of 1e+200 mm");
+    expect_error(ascii("$$LAYER/-1e200\n", units), "must lie within");
+    expect_error(ascii("$$LAYER/0\n$$POLYLINE/1,1,4,0,0,1,0,1,1e50,0,0\n", "$$UNITS/1e60\n"),
+                 "1e+50 units of 1e+60 mm");
+    expect_error(binary(u16(127) + bits(3e38F), "$$UNITS/1e300\n"), "must lie within");
+}
+
 TEST(ReadCommonLayer, LayersOutOfOrderAreSortedAndEqualOnesJoined) {
     const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
     const LayerFile file = read(

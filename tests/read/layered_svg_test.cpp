@@ -61,6 +61,27 @@ TEST(ReadLayeredSvg, HeightsOfTheOlderFormAreMillionths) {
     EXPECT_NEAR(file.layers[1].top, 1.0, 1e-12);
 }
 
+TEST(ReadLayeredSvg, LayersAreListedByTheirCuts) {
+    const LayerFile file = read(svg("<g slic3r:z=\"1\" slic3r:slice-z=\"0.9\">" + square +
+                                    "</g><g slic3r:z=\"1.5\" slic3r:slice-z=\"0.2\"/>"));
+    ASSERT_EQ(file.layers.size(), 2U);
+    EXPECT_DOUBLE_EQ(file.layers[0].z, 0.2);
+    EXPECT_DOUBLE_EQ(file.layers[1].z, 0.9);
+    EXPECT_EQ(file.layers[1].rings, 1U);
+    EXPECT_EQ(file.layers[1].index, 1U);
+}
+
+TEST(ReadLayeredSvg, NoSlabIsUpsideDown) {
+    const LayerFile file = read(svg("<g slic3r:z=\"-1\">" + square + "</g>"));
+    EXPECT_EQ(file.layers.at(0).bottom, file.layers.at(0).top);
+    expect_error(svg("<g slic3r:z=\"1\" slic3r:layer-height=\"-0.5\"/>"), "must not be below 0");
+}
+
+TEST(ReadLayeredSvg, NumbersThatCouldOverflowAreRefused) {
+    expect_error(svg("<g slic3r:z=\"1e305\"/>"), "found '1e305'");
+    expect_error(svg("<g slic3r:z=\"1\"><polygon points=\"0,0 1,0 1e200,1\"/></g>"), "within 1e+100");
+}
+
 TEST(ReadLayeredSvg, PathsAreTurnedBackUpright) {
     const LayerFile file = read(svg("<g slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\" slic3r:layer-height=\"0.5\">"
                                     "<path d=\"M 0 10 10 10 10 0 0 0 z M 2 6 L 2 8 h 2 V 6 Z\"/></g>"));

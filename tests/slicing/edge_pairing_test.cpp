@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -99,6 +100,30 @@ TEST(RayAngle, OfAPlaneThroughTheEdgeIsTheSameWhereverTheThirdCornerIs) {
 
 TEST(RayAngle, OfACornerOnTheEdgeIsZero) {
     EXPECT_EQ(edge_pairing::ray_angle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}), 0.0F);
+}
+
+TEST(RayAngle, IsTheSameInAnyUnit) {
+    const Point3 low{1, -2, 0.5};
+    const Point3 high{-3, 1, 4};
+    const Point3 third{-5, 7, -6};
+    const float expected = edge_pairing::ray_angle(low, high, third);
+    const auto scaled = [](const Point3& p, double unit, double unit_z) {
+        return Point3{p.x * unit, p.y * unit, p.z * unit_z};
+    };
+    // From the smallest to the largest numbers that leave every coordinate its digits.
+    for (const double unit : {0x1p-1000, 0x1p-530, 1.0, 0x1p511, 0x1p520, 0x1p1000, 0x1p1020})
+        for (const double unit_z : {0x1p-1000, 1.0, 0x1p1000})
+            EXPECT_EQ(edge_pairing::ray_angle(scaled(low, unit, unit_z), scaled(high, unit, unit_z),
+                                              scaled(third, unit, unit_z)),
+                      expected)
+                << unit << ", heights " << unit_z;
+}
+
+TEST(RayAngle, IsANumberWhereDifferencesOverflow) {
+    constexpr double most = std::numeric_limits<double>::max();
+    const float angle = edge_pairing::ray_angle({-most, -most, -most}, {most, most, most}, {most, -most, 0});
+    EXPECT_GE(angle, 0.0F);
+    EXPECT_LT(angle, 4.0F);
 }
 
 Layer section(const Triangles& triangles, double z = 0.5) {

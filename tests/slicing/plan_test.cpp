@@ -237,28 +237,82 @@ TEST(PlanUniform, RefusesALayerHeightThatMissesThePart) {
     expect_error(ErrorKind::usage, {"z = 3.5 mm", "from 0 to 3 mm"},
                  [] { (void)plan_uniform(0, 3, layers(7, SliceAt::middle)); });
     EXPECT_EQ(count(3, 1000, SliceAt::bottom), 1U) << "cut at the bottom, a single layer is there";
-    expect_error(ErrorKind::usage, {"z = 0 mm", "below 3 mm"},
+    expect_error(ErrorKind::usage, {"3 mm high", "a thousandth", "1e+300 mm", "below 3000 mm"},
                  [] { (void)plan_uniform(0, 3, layers(1e300, SliceAt::bottom)); });
+    EXPECT_EQ(count(3, 2999, SliceAt::bottom), 1U) << "what the message says is possible";
+    expect_error(ErrorKind::usage, {"3 mm high", "a thousandth", "3000 mm"},
+                 [] { (void)plan_uniform(0, 3, layers(3000, SliceAt::bottom)); });
+    UniformLayers thick_first = layers(0.1, SliceAt::middle);
+    thick_first.first_layer_height = 7;
+    expect_error(ErrorKind::usage, {"z = 3.5 mm", "choose a first layer height below 3 mm"},
+                 [&] { (void)plan_uniform(0, 3, thick_first); });
     expect_error(ErrorKind::usage, {"1e+300"}, [] { (void)plan_uniform(0, 3, layers(1e300, SliceAt::top)); });
 }
 
 TEST(PlanUniform, RefusesRangesThatHoldNoLayer) {
+    constexpr std::uint64_t open = std::numeric_limits<std::uint64_t>::max();
     UniformLayers wanted = layers(0.5, SliceAt::bottom);
     wanted.index_range = {8, 12};
     expect_error(ErrorKind::usage, {"8:12", "0:8"}, [&] { (void)plan_uniform(0, 4, wanted); });
-    wanted.index_range = {5, 5};
-    expect_error(ErrorKind::usage, {"5:5"}, [&] { (void)plan_uniform(0, 4, wanted); });
-    wanted.index_range = {5, 2};
-    expect_error(ErrorKind::usage, {"5:2"}, [&] { (void)plan_uniform(0, 4, wanted); });
+    wanted.index_range = {9, open};
+    expect_error(ErrorKind::usage, {"layers 9: are none", "0:8"}, [&] { (void)plan_uniform(0, 4, wanted); });
     wanted.index_range.reset();
-    for (const auto& range :
-         {std::pair(4.5, 9.0), std::pair(0.6, 0.9), std::pair(2.0, 1.0), std::pair(-3.0, -1.0)}) {
+    for (const auto& range : {std::pair(4.5, 9.0), std::pair(0.6, 0.9), std::pair(-3.0, -1.0)}) {
         wanted.z_range = range;
-        expect_error(ErrorKind::usage, {"from 0 to 4 mm", "z range"},
+        expect_error(ErrorKind::usage, {"from 0 to 4 mm", "z range", "from 0 to 3.5 mm"},
                      [&] { (void)plan_uniform(0, 4, wanted); });
     }
+    wanted.index_range = {2, 4};
+    wanted.z_range = {0.0, 0.5};
+    expect_error(ErrorKind::usage, {"layers 2:4", "0 to 0.5 mm", "from 1 to 1.5 mm"},
+                 [&] { (void)plan_uniform(0, 4, wanted); });
+}
+
+TEST(PlanUniform, NamesTheEndThatAnOpenRangeHas) {
+    UniformLayers wanted = layers(0.5, SliceAt::bottom);
+    for (const double far : {std::numeric_limits<double>::max(), infinity}) {
+        wanted.z_range = {-far, -1.0};
+        expect_error(ErrorKind::usage, {"z range up to -1 mm"}, [&] { (void)plan_uniform(0, 4, wanted); });
+        wanted.z_range = {9.0, far};
+        expect_error(ErrorKind::usage, {"z range from 9 mm on"}, [&] { (void)plan_uniform(0, 4, wanted); });
+    }
+}
+
+TEST(PlanUniform, CallsAnEmptyRangeEmpty) {
+    UniformLayers wanted = layers(0.5, SliceAt::bottom);
+    for (const auto& [range, text] : {std::pair(std::pair(5U, 5U), "the layer range 5:5 is empty"),
+                                      std::pair(std::pair(5U, 2U), "the layer range 5:2 is empty")}) {
+        wanted.index_range = range;
+        expect_error(ErrorKind::usage, {text}, [&] { (void)plan_uniform(0, 4, wanted); });
+    }
+    wanted.index_range.reset();
+    wanted.z_range = {2.0, 1.0};
+    expect_error(ErrorKind::usage, {"z range 2 to 1 mm is empty"}, [&] { (void)plan_uniform(0, 4, wanted); });
     wanted.z_range = {nan, nan};
-    expect_error(ErrorKind::usage, {"nan"}, [&] { (void)plan_uniform(0, 4, wanted); });
+    expect_error(ErrorKind::usage, {"nan", "is empty"}, [&] { (void)plan_uniform(0, 4, wanted); });
+}
+
+TEST(PlanUniform, PutsALastCutThatRoundingLeavesBesideTheTopFaceOnIt) {
+    test::Random random(2);
+    int beside = 0;
+    for (int trial = 0; trial < 5000; ++trial) {
+        const double z_min = random.real(-50, 50);
+        const double height = random.real(0.01, 0.5);
+        const auto n = static_cast<double>(random.integer(1, 2000));
+        // The top face as another program might have computed it.
+        const double z_max = z_min + n * height + random.real(-1, 1) * 1e-15;
+        const Plan plan = plan_uniform(z_min, z_max, layers(height, SliceAt::top));
+        ASSERT_EQ(plan.layers.size(), static_cast<std::size_t>(n));
+        ASSERT_EQ(plan.layers.back().z, z_max) << "from " << z_min << " by " << height;
+        expect_sound(plan);
+        beside += z_min + height + (n - 1) * height < z_max ? 1 : 0;
+    }
+    EXPECT_GT(beside, 100) << "the case that this test is about";
+}
+
+TEST(PlanUniform, LeavesALastCutBelowTheTopFaceWhereItReallyIs) {
+    EXPECT_EQ(plan_uniform(0, 3.0001, layers(0.5, SliceAt::top)).layers.back().z, 3.0);
+    EXPECT_EQ(plan_uniform(0, 3 + 1e-12, layers(0.5, SliceAt::top)).layers.back().z, 3.0);
 }
 
 TEST(PlanUniform, RefusesMoreLayersThanCanBeNumbered) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,10 +83,9 @@ std::vector<Point2> random_points(std::size_t n, test::Random& random) {
     return out;
 }
 
-class PointKernelsTest : public testing::TestWithParam<bool> {
+class PointKernelsTest : public testing::TestWithParam<PointKernelSet> {
   protected:
-    /// Those of this processor, and those that every processor has.
-    const PointKernels& kernels_ = GetParam() ? point_kernels() : plain_point_kernels();
+    const PointKernels& kernels_ = *GetParam().kernels;
 
     Survey survey(const Edges& edges, double z, PageArray<double>& x, PageArray<double>& y) const {
         const std::size_t room = EdgeColumns::padded(edges.size());
@@ -271,8 +271,17 @@ TEST_P(PointKernelsTest, FindNotAboveFindsTheFirstOne) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, PointKernelsTest, testing::Bool(),
-                         [](const auto& which) { return std::string(which.param ? "Widest" : "Plain"); });
+INSTANTIATE_TEST_SUITE_P(Kernels, PointKernelsTest, testing::ValuesIn(point_kernel_sets()),
+                         [](const auto& set) { return std::string(set.param.name); });
+
+TEST(PointKernelSets, BeginWithThoseOfEveryProcessorAndEndWithThoseThatAreUsed) {
+    const std::span<const PointKernelSet> sets = point_kernel_sets();
+    ASSERT_FALSE(sets.empty());
+    EXPECT_EQ(sets.front().name, "plain");
+    EXPECT_EQ(sets.back().kernels, &point_kernels());
+    for (std::size_t i = 1; i < sets.size(); ++i)
+        EXPECT_NE(sets[i].kernels->cut, sets[i - 1].kernels->cut);
+}
 
 } // namespace
 } // namespace lamella

@@ -28,7 +28,8 @@ struct Crossings {
 /// Contours that touch in a point or along a piece do not cross, and neither do those that change sides in a
 /// vertex. Decided exactly, on the points as they are. `keep` bounds Crossings::first.
 ///
-/// Expected O(n + crossings); O(n log n) for hostile layers without crossings. Throws Error{limit} for a
+/// Expected O(n + crossings); O(n log n) for hostile layers without crossings, O((n + crossings) log n) for
+/// long walls side by side that cross their neighbours. Throws Error{limit} for a
 /// layer of more than 2^32 - 1 points.
 [[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16);
 

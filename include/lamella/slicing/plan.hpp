@@ -47,10 +47,11 @@ struct UniformLayers {
 /// Layers of material stacked from z_min: layer i fills [z_min + i h, z_min + (i + 1) h] and exists when its
 /// cut meets the part. So a last layer that is not full is kept when it is cut at the bottom, kept when cut
 /// in the middle if it is more than half full, and dropped when cut at the top; a remainder below a
-/// thousandth of the layer height counts as nothing. Heights are z_first + i * h, never a running sum.
+/// thousandth of the layer height counts as nothing. Heights are z_first + i * h, never a running sum; cut at
+/// the top, a last cut within rounding of z_max is at z_max.
 ///
-/// Throws Error{usage} when a height is not a positive finite number, when no layer is left, or when there
-/// would be more than 2^31 - 2 layers.
+/// Throws Error{usage} when a height is not a positive finite number, when a range is empty, when no layer is
+/// left, or when there would be more than 2^31 - 2 layers.
 [[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers);
 
 /// Cuts at exactly these z. Layer i is cut at z[i]; its slab reaches half-way to its neighbours (for slice_at

@@ -1,0 +1,32 @@
+#pragma once
+
+// The temporary names in use, for `remove_unfinished`.
+
+#include "lamella/container/unfinished.hpp"
+
+#include <string>
+
+namespace lamella {
+
+/// One temporary name that is taken down for removal as long as this object lives.
+class UnfinishedName {
+  public:
+    UnfinishedName() = default;
+    ~UnfinishedName() { withdraw(); }
+    UnfinishedName(const UnfinishedName&) = delete;
+    UnfinishedName& operator=(const UnfinishedName&) = delete;
+
+    /// Takes down the name of what has just been created. False when the process is about to end: then the
+    /// caller has to remove it and to stop. To be called once.
+    [[nodiscard]] bool announce(const std::string& path);
+
+    /// Forgets it: what had the name has its final one, or is gone. False when it has been removed.
+    bool withdraw() noexcept;
+
+    struct Slot;
+
+  private:
+    Slot* slot_ = nullptr;
+};
+
+} // namespace lamella
