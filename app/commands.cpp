@@ -20,7 +20,7 @@ std::span<const ExitCode> exit_codes() noexcept {
          {2, "the command line or a configuration file asks for what cannot be done"},
          {3, "an input cannot be read or holds nothing to work on"},
          {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify)"},
-         {5, "a limit was hit, such as memory"},
+         {5, "a limit was hit, such as memory or --timeout"},
          {6, "the output cannot be written; nothing was left at its path"},
          {130, "cancelled, by Ctrl-C or the terminate signal"}}};
     return codes;

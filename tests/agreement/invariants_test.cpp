@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 namespace lamella {
 namespace {
@@ -40,6 +43,32 @@ TEST_P(EverySolid, ClosesInEveryPlacementOnEveryPlane) {
             EXPECT_TRUE(found.areas_agree);
             for (const std::string& line : found.findings)
                 ADD_FAILURE() << line;
+        }
+    }
+}
+
+/// Sorting segments by their end points may go astray there.
+bool contours_touch(const Layer& layer) {
+    std::set<Point2> points;
+    return !std::all_of(layer.points.begin(), layer.points.end(),
+                        [&](const Point2& p) { return points.insert(p).second; });
+}
+
+TEST_P(EverySolid, HasTheSameLayersWithEveryEngine) {
+    const TriangleSoup made = GetParam().make();
+    for (const Placement& placement : test::placements()) {
+        const TriangleSoup mesh = made.transformed(placement.map);
+        for (const NamedPlan& plan : test::plans_for(mesh, 15)) {
+            const LayerStack expected = slice(mesh, plan.plan);
+            for (const Engine& one : engines()) {
+                SCOPED_TRACE(std::string(one.name) + ", " + placement.name + ", planes " + plan.name);
+                const LayerStack layers = slice(mesh, plan.plan, {}, nullptr, one);
+                ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
+                for (std::size_t i = 0; i < layers.size(); ++i)
+                    EXPECT_TRUE(same_contours(layers[i], expected[i]) ||
+                                (one.name == "conventional" && contours_touch(expected[i])))
+                        << "layer " << i;
+            }
         }
     }
 }

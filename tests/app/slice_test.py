@@ -12,6 +12,9 @@ INPUT_KEYS = ["path", "triangles", "vertices", "bbox", "unit", "volume_mm3", "de
 DEFECT_KEYS = ["boundary_edges", "nonmanifold_edges", "orientation_conflicts", "duplicate_triangles",
                "degenerate_triangles", "inverted_shells"]
 SECONDS_KEYS = ["read", "weld", "link", "slice", "polygon", "write", "total"]
+MATCHING_KEYS = ["searches", "comparisons", "inserted", "by_edge_link", "node_bytes", "bytes"]
+CASES = ["new", "front", "back", "link", "close"]
+PAPER_ENGINES = ["conventional", "ecc", "ecc-edge-match", "eecc"]
 LAYER_KEYS = ["index", "z", "thickness", "contours", "holes", "points", "area_mm2", "perimeter_mm",
               "open_chains", "hash"]
 
@@ -109,6 +112,49 @@ class Slice(ProgramTest):
         result = self.succeed("slice", "-", "-o", "-", "--format", "cli", stdin=self.bytes_of("box.stl"))
         self.assertEqual(result.out, self.bytes_of("box.cli"))
         self.assertIn("100 layers", result.err)
+
+    def test_every_engine_gives_the_same_layers(self):
+        self.succeed("make", "torus", "-o", "torus.stl", "--shuffle", "7", "--segments", "32")
+        arguments = ["torus.stl", "--rotate", "20,30,0", "--layer-height", "0.5"]
+        expected = self.stats(*arguments)
+        self.assertEqual(expected["engine"], "sweep")
+        for engine in PAPER_ENGINES:
+            with self.subTest(engine):
+                stats = self.stats(*arguments, "--engine", engine)
+                self.assertEqual(stats["engine"], engine)
+                self.assertEqual(stats["layers"], expected["layers"])
+        self.succeed("slice", "torus.stl", "-o", "sweep.cli")
+        self.succeed("slice", "torus.stl", "-o", "eecc.cli", "--engine", "eecc")
+        self.assertEqual(self.bytes_of("sweep.cli"), self.bytes_of("eecc.cli"))
+        self.fail_with(2, "eecc", "slice", "torus.stl", "-o", "a.cli", "--engine", "eec")
+
+    def test_the_engines_of_the_paper_tell_what_they_counted(self):
+        self.succeed("make", "sheet", "-o", "sheet.stl", "--holes", "9", "--segments", "16", "--order", "split")
+        self.assertNotIn("matching", self.stats("sheet.stl"))
+        walls, layers, contours = 2 * 9 * 16 + 8, 30, 10
+        for engine in PAPER_ENGINES:
+            with self.subTest(engine):
+                stats = self.stats("sheet.stl", "--engine", engine)
+                self.assertEqual(list(stats), STATS_KEYS[:-1] + ["matching", "layers"])
+                self.assertGreater(stats["seconds"]["weld"], 0)
+                matching = stats["matching"]
+                self.assertEqual(list(matching), MATCHING_KEYS)
+                inserted, linked = matching["inserted"], matching["by_edge_link"]
+                self.assertEqual([list(inserted), list(linked)], [CASES, CASES])
+                self.assertEqual(sum(inserted.values()), walls * layers)
+                self.assertEqual(inserted["close"], contours * layers)
+                self.assertGreaterEqual(matching["comparisons"], inserted["back"])
+                searches = {"conventional": (walls - contours) * layers, "ecc": walls * layers,
+                            "ecc-edge-match": walls + contours * (layers - 1), "eecc": walls + contours * (layers - 1)}
+                self.assertEqual(matching["searches"], searches[engine])
+                if engine != "conventional":
+                    self.assertEqual(matching["searches"] + sum(linked.values()), sum(inserted.values()))
+
+    def test_a_mesh_that_was_inspected_is_not_welded_again(self):
+        result = self.succeed("slice", self.box(), "-o", "box.cli", "--engine", "eecc", "--inspect", "--progress",
+                              "json")
+        events = [json.loads(line) for line in result.err.splitlines()]
+        self.assertEqual(sum(e["stage"] == "weld" and e["done"] == 0 for e in events), 1)
 
     def test_slice_at_moves_the_cuts(self):
         self.box()

@@ -1,10 +1,13 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "expect_error.hpp"
+#include "fixtures/named_solids.hpp"
+#include "paper_engines.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
+#include <string>
 #include <string_view>
 
 namespace lamella {
@@ -23,6 +26,23 @@ TEST(Engines, HaveDifferentNamesAndSayWhatTheyAre) {
         EXPECT_EQ(one.summary.find('\n'), std::string_view::npos) << one.name;
         EXPECT_NE(one.run, nullptr) << one.name;
         EXPECT_EQ(&engine(one.name), &one);
+    }
+}
+
+TEST(Engines, GiveTheSameLayersWhereverAPartStands) {
+    for (const test::Solid& solid : test::small_solids()) {
+        const TriangleSoup made = solid.make();
+        for (const test::Placement& placement : test::placements()) {
+            const TriangleSoup mesh = shuffled(made, 3).transformed(placement.map);
+            for (const test::NamedPlan& plan : test::plans_for(mesh, 8)) {
+                const LayerStack expected = slice(mesh, plan.plan);
+                for (const Engine& one : engines()) {
+                    SCOPED_TRACE(std::string(solid.name) + ", " + placement.name + ", planes " + plan.name);
+                    test::expect_same_where_it_can(one.name, slice(mesh, plan.plan, {}, nullptr, one),
+                                                   expected);
+                }
+            }
+        }
     }
 }
 

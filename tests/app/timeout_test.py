@@ -1,0 +1,63 @@
+"""lamella slice --timeout: a run that takes too long ends by itself, says how far it came, and leaves no file."""
+
+import json
+import subprocess
+
+from program import PROGRAM, ProgramTest, main
+
+ENGINES = ["sweep", "conventional", "ecc", "ecc-edge-match", "eecc"]
+
+
+class Timeout(ProgramTest):
+    def test_every_engine_is_stopped(self):
+        # Half a million layers: minutes of work with any engine, had it been left alone.
+        self.succeed("make", "rook")
+        for engine in ENGINES:
+            with self.subTest(engine):
+                self.fail_with(5, r"rook\.stl: stopped after 0\.3 s \(--timeout\) in the stage (link|slice), of which "
+                                  r"\d+ % was done; nothing was written", "slice", "rook.stl", "-o", "rook.cli",
+                               "--layer-height", "0.0001", "--engine", engine, "--timeout", "0.3")
+
+    def test_an_older_result_stays(self):
+        self.succeed("make", "rook")
+        self.write("rook.cli", "old")
+        result = self.run_program("slice", "rook.stl", "-o", "rook.cli", "--layer-height", "0.0001", "--stats",
+                                  "rook.json", "--timeout=0.2")
+        self.assertEqual(result.code, 5)
+        self.assertEqual(self.bytes_of("rook.cli"), b"old")
+        self.assertEqual(self.listing(), ["rook.cli", "rook.stl"])
+
+    def test_a_run_that_ends_in_time_is_as_without_it(self):
+        self.box()
+        self.succeed("slice", "box.stl", "-o", "a.cli")
+        for seconds in ["240", "1e300"]:
+            result = self.succeed("slice", "box.stl", "-o", "b.cli", "--timeout", seconds)
+            self.assertEqual(result.err, "")
+            self.assertEqual(self.bytes_of("a.cli"), self.bytes_of("b.cli"))
+
+    def test_waiting_for_standard_input_is_stopped(self):
+        process = subprocess.Popen([PROGRAM, "slice", "-", "-o", "out.cli", "--timeout", "0.1"], cwd=self.folder,
+                                   stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        self.assertEqual(process.wait(timeout=60), 5)
+        self.assertIn(b"stopped after 0.1 s (--timeout)", process.stderr.read())
+        self.assertEqual(self.listing(), [])
+        process.stdin.close()
+        process.stderr.close()
+
+    def test_progress_as_json_ends_with_the_error(self):
+        self.succeed("make", "rook")
+        result = self.run_program("slice", "rook.stl", "-o", "rook.cli", "--layer-height", "0.0001", "--engine",
+                                  "eecc", "--progress", "json", "--timeout", "0.3")
+        events = [json.loads(line) for line in result.err.splitlines()]
+        self.assertEqual(events[-1]["exit_code"], 5)
+        self.assertIn(f"in the stage {events[-2]['stage']}", events[-1]["error"])
+
+    def test_only_a_time_makes_sense(self):
+        self.box()
+        for text in ["0", "-1", "soon", "nan", "inf"]:
+            self.fail_with(2, "--timeout", "slice", "box.stl", "-o", "box.cli", f"--timeout={text}")
+
+
+if __name__ == "__main__":
+    main()
