@@ -68,11 +68,17 @@ TriangleSoup sheet(const MakeArguments& arguments) {
     shape.thickness_mm = arguments.thickness.value_or(shape.thickness_mm);
     if (arguments.order == "split")
         shape.order = TriangleOrder::split;
+    if (arguments.order == "shuffle") {
+        shape.order = TriangleOrder::shuffle;
+        shape.seed = arguments.shuffle.value_or(shape.seed);
+    }
     return make_sheet(shape);
 }
 
-TriangleSoup rook(const MakeArguments& /*arguments*/) {
-    return make_rook();
+/// A body that is always the same.
+template <TriangleSoup (*make)()>
+TriangleSoup fixed(const MakeArguments& /*arguments*/) {
+    return make();
 }
 
 TriangleSoup lattice(const MakeArguments& arguments) {
@@ -114,13 +120,17 @@ struct Body {
     std::string_view options; ///< that it understands, besides the common ones
     TriangleSoup (*make)(const MakeArguments& arguments);
 };
-constexpr std::array<Body, 7> bodies{{{"sheet", "holes segments size thickness order", sheet},
-                                      {"rook", "", rook},
-                                      {"lattice", "cells size thickness detail", lattice},
-                                      {"box", "size", box},
-                                      {"sphere", "size detail", sphere},
-                                      {"torus", "size thickness segments", torus},
-                                      {"cylinder", "size thickness segments", cylinder}}};
+constexpr std::array<Body, 11> bodies{{{"sheet", "holes segments size thickness order", sheet},
+                                       {"rook", "", fixed<make_rook>},
+                                       {"dodecahedra", "", fixed<make_dodecahedra>},
+                                       {"calibration", "", fixed<make_calibration>},
+                                       {"head", "", fixed<make_head>},
+                                       {"sole", "", fixed<make_sole>},
+                                       {"lattice", "cells size thickness detail", lattice},
+                                       {"box", "size", box},
+                                       {"sphere", "size detail", sphere},
+                                       {"torus", "size thickness segments", torus},
+                                       {"cylinder", "size thickness segments", cylinder}}};
 
 constexpr std::string_view shape_title = "What it is like";
 
@@ -132,11 +142,12 @@ void check_options(const Body& body, const Command& command) {
     for (const OptionGroup& group : command.groups)
         for (const Option& option : group.options)
             if (group.title == shape_title && option.given && !understands(option))
-                throw Error(ErrorKind::usage, body.options.empty()
-                                                  ? fmt::format("--{}: a {} is always the same; use --scale",
-                                                                option.name, body.name)
-                                                  : fmt::format("--{}: a {} has none; it has: {}",
-                                                                option.name, body.name, body.options));
+                throw Error(ErrorKind::usage,
+                            body.options.empty()
+                                ? fmt::format("--{}: {} has none: its shape is fixed; use --scale",
+                                              option.name, body.name)
+                                : fmt::format("--{}: a {} has none; it has: {}", option.name, body.name,
+                                              body.options));
 }
 
 OptionGroup shape_options(MakeArguments& target) {
@@ -153,9 +164,11 @@ OptionGroup shape_options(MakeArguments& target) {
                 target.thickness),
          count("cells", "N", "lattice: cells along each axis", target.cells),
          count("detail", "N", "lattice, sphere: how fine; the triangles grow fast with it", target.detail),
-         choice("order", "HOW",
-                "sheet: triangles of a wall together, or all lower ones first (hard for some algorithms)",
-                {"wall", "split"}, target.order)}};
+         choice(
+             "order", "HOW",
+             "sheet: the triangles of a wall together, all lower ones first (hard for some algorithms), or "
+             "in random order (--shuffle gives the seed, else 1)",
+             {"wall", "split", "shuffle"}, target.order)}};
 }
 
 int run_make(const MakeArguments& arguments, const Context& context) {
@@ -165,7 +178,7 @@ int run_make(const MakeArguments& arguments, const Context& context) {
     const std::string output = arguments.output.empty() ? arguments.body + ".stl" : arguments.output;
 
     TriangleSoup soup = body.make(arguments);
-    if (arguments.shuffle)
+    if (arguments.shuffle && arguments.order != "shuffle")
         soup = shuffled(soup, *arguments.shuffle);
     soup = soup.transformed(pose);
     if (arguments.ascii)
@@ -214,6 +227,7 @@ Command make_command() {
         .examples = {{"lamella make rook", "writes rook.stl"},
                      {"lamella make sheet --holes 1225 -o sheet.stl", "2.5 million triangles"},
                      {"lamella make sheet --holes 100 --rotate-x 90", "a sheet on its edge"},
+                     {"lamella make sole", "struts from bottom to top: 860,000 long triangles"},
                      {"lamella make box --size 20,30,2.5 --ascii", "a small file to read"}},
         .run = [arguments](const Context& context) {
             return run_make(*arguments, context);

@@ -8,7 +8,7 @@ class Make(ProgramTest):
         return self.succeed("info", name, "--json").json()
 
     def test_every_body_is_sound(self):
-        for body in ["sheet", "rook", "box", "sphere", "torus", "cylinder"]:
+        for body in ["sheet", "rook", "dodecahedra", "calibration", "head", "sole", "box", "sphere", "torus", "cylinder"]:
             with self.subTest(body):
                 text = self.succeed("make", body).text
                 self.assertIn(f"{body}.stl", text)
@@ -28,6 +28,40 @@ class Make(ProgramTest):
             self.assertEqual(self.info("sheet.stl")["triangles"], 4 * holes * (segments + 1) + 12)
         self.succeed("make", "sheet", "--holes", "100")
         self.assertEqual(self.info("sheet.stl")["triangles"], 102812)
+
+    def test_the_parts_of_the_paper_have_its_counts_and_sizes(self):
+        for body, triangles, size, shells in [("dodecahedra", 2074, [157.81, 133.62, 165.15], 13),
+                                              ("calibration", 316, [165.1, 165.1, 25.4], 1),
+                                              ("rook", 93930, [31.75, 31.75, 53.15], 1),
+                                              ("head", 467882, [141.61, 111.27, 81.29], 1),
+                                              ("sole", 862014, [324, 125, 54], 1)]:
+            with self.subTest(body):
+                self.succeed("make", body)
+                found = self.info(f"{body}.stl")
+                self.assertAlmostEqual(found["triangles"], triangles, delta=0.01 * triangles)
+                self.assertEqual(found["shells"], shells)
+                low, high = found["bbox"]
+                for l, h, expected in zip(low, high, size):
+                    self.assertAlmostEqual(h - l, expected, delta=0.01)
+
+    def test_they_can_be_sliced_and_are_right(self):
+        for body, height in [("dodecahedra", 0.1), ("calibration", 0.1), ("head", 0.1), ("sole", 2)]:
+            with self.subTest(body):
+                self.succeed("make", body)
+                self.succeed("slice", f"{body}.stl", "-o", f"{body}.cli", "--layer-height", height)
+                self.succeed("verify", f"{body}.cli", "--mesh", f"{body}.stl")
+
+    def test_the_order_of_a_sheets_triangles(self):
+        def sheet(*options):
+            self.succeed("make", "sheet", "--holes", "9", "-o", "sheet.stl", *options)
+            return self.bytes_of("sheet.stl")
+
+        wall, split, shuffled = [sheet("--order", order) for order in ["wall", "split", "shuffle"]]
+        self.assertEqual(wall, sheet())
+        self.assertEqual(len({wall, split, shuffled}), 3)
+        self.assertEqual(shuffled, sheet("--shuffle", "1"))
+        self.assertEqual(sheet("--order", "shuffle", "--shuffle", "7"), sheet("--shuffle", "7"))
+        self.fail_with(2, "--order.*wall.*split.*shuffle", "make", "sheet", "--order", "random")
 
     def test_sizes(self):
         for arguments, size in [(["box", "--size", "1,2,3"], [1, 2, 3]), (["box", "--size", "5"], [5, 5, 5]),
@@ -61,6 +95,8 @@ class Make(ProgramTest):
     def test_options_that_a_body_does_not_have(self):
         self.fail_with(2, "--holes.*box.*size", "make", "box", "--holes", "9")
         self.fail_with(2, "--size.*rook.*--scale", "make", "rook", "--size", "9")
+        self.fail_with(2, "--detail.*head.*--scale", "make", "head", "--detail", "9")
+        self.fail_with(2, "--order.*sole", "make", "sole", "--order", "shuffle")
         self.fail_with(2, "holes", "make", "sheet", "--holes", "10")
         self.fail_with(2, "segments", "make", "sheet", "--segments", "2")
         self.fail_with(2, "too many", "make", "sheet", "--holes", "99999999999")

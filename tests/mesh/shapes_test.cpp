@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/inspect.hpp"
 #include "lamella/mesh/shapes.hpp"
 
 #include "mesh/naive.hpp"
@@ -155,6 +156,86 @@ TEST(Rook, IsAClosedManifoldOfThePapersSizeAndCount) {
     EXPECT_LT(volume(rook), 42'000); // the cylinder around it
 }
 
+/// Of the paper's size and, within one per cent, of its count; sound, and of so many shells.
+void expect_part(const TriangleSoup& part, double triangles, const Point3& size, std::uint64_t shells) {
+    EXPECT_NEAR(static_cast<double>(part.size()), triangles, triangles / 100);
+    EXPECT_GT(smallest_area(part), 0);
+    const Inspection found = inspect(weld(part));
+    EXPECT_TRUE(found.sound());
+    EXPECT_EQ(found.shells, shells);
+    EXPECT_EQ(found.cavities, 0U);
+    EXPECT_GT(found.volume_mm3, 0);
+    EXPECT_LT(found.volume_mm3, size.x * size.y * size.z);
+    EXPECT_EQ(found.box.min, (Point3{0, 0, 0}));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.box.max.x), static_cast<float>(size.x));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.box.max.y), static_cast<float>(size.y));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.box.max.z), static_cast<float>(size.z));
+}
+
+TEST(Dodecahedra, AreClosedBodiesOfThePapersSizeAndCount) {
+    const TriangleSoup parts = make_dodecahedra();
+    expect_part(parts, 2074, {157.81, 133.62, 165.15}, 13);
+    // 8 solids of 20 corners, and 5 frames with a tunnel through each face but one: 11 more handles each.
+    const auto corners = static_cast<std::int64_t>(inspect(weld(parts)).vertices);
+    EXPECT_EQ(corners - static_cast<std::int64_t>(parts.size()) / 2, 8 * 2 + 5 * (2 - 2 * 11));
+}
+
+TEST(Calibration, IsAClosedPlateOfThePapersSizeAndCount) {
+    const TriangleSoup plate = make_calibration();
+    EXPECT_EQ(plate.size(), 316U);
+    expect_part(plate, 316, {165.1, 165.1, 25.4}, 1);
+    // Two holes go through.
+    EXPECT_EQ(static_cast<int>(inspect(weld(plate)).vertices) - 316 / 2, 2 - 2 * 2);
+}
+
+TEST(Calibration, FeaturesStandOnTheUncutPlate) {
+    // Everything horizontal together covers top and bottom once: nothing overlaps, nothing is left out.
+    double up = 0;
+    double down = 0;
+    const TriangleSoup plate = make_calibration();
+    for (std::size_t i = 0; i < plate.size(); ++i) {
+        const Triangle3 t = plate.placed(i);
+        const double turn = (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
+        (turn > 0 ? up : down) += turn / 2;
+    }
+    const double holes = polygon_area(18, 12) + 24 * 24;
+    EXPECT_NEAR(up, 165.1 * 165.1 - holes, 0.01);
+    EXPECT_NEAR(down, holes - 165.1 * 165.1, 0.01);
+}
+
+TEST(Head, IsOneClosedSurfaceOfThePapersSizeAndCount) {
+    const TriangleSoup head = make_head();
+    expect_part(head, 467882, {141.61, 111.27, 81.29}, 1);
+    // Without handles.
+    EXPECT_EQ(inspect(weld(head)).vertices, head.size() / 2 + 2);
+}
+
+TEST(Head, HasUnevenTrianglesAsAScan) {
+    const TriangleSoup head = make_head();
+    std::vector<double> areas(head.size());
+    for (std::size_t i = 0; i < areas.size(); ++i)
+        areas[i] = naive_area(head.placed(i));
+    std::sort(areas.begin(), areas.end());
+    EXPECT_GT(areas[areas.size() * 9 / 10], 2 * areas[areas.size() / 10]);
+}
+
+TEST(Sole, IsOneClosedSurfaceOfThePapersSizeAndCount) {
+    expect_part(make_sole(), 862014, {324, 125, 54}, 1);
+}
+
+TEST(Sole, HasAboutAQuarterOfItsTrianglesInEachPlane) {
+    // 0.1 mm apart, in the middle of each layer.
+    const TriangleSoup sole = make_sole();
+    constexpr int planes = 540;
+    std::uint64_t cut = 0;
+    for (std::size_t i = 0; i < sole.size(); ++i) {
+        const Triangle3 t = sole.placed(i);
+        const auto [low, high] = std::minmax({t[0].z, t[1].z, t[2].z});
+        cut += static_cast<std::uint64_t>(std::ceil(high * 10 - 0.5) - std::ceil(low * 10 - 0.5));
+    }
+    EXPECT_NEAR(static_cast<double>(cut) / planes / static_cast<double>(sole.size()), 0.24, 0.02);
+}
+
 TEST(Lattice, IsOneClosedManifold) {
     for (const unsigned detail : {1U, 2U, 3U, 5U})
         for (const double strut : {0.1, 1.2, 4.4}) {
@@ -248,6 +329,10 @@ TEST(Shuffled, IsAPermutationThatTheSeedDecides) {
 TEST(Shapes, HaveTheSameBytesOnEveryMachine) {
     EXPECT_EQ(fingerprint(make_sheet({.holes = 9, .segments = 50})), 0x786f5fa003d0dc39ULL);
     EXPECT_EQ(fingerprint(make_rook()), 0x297f9d82519e9365ULL);
+    EXPECT_EQ(fingerprint(make_dodecahedra()), 0x91761daea0d274d9ULL);
+    EXPECT_EQ(fingerprint(make_calibration()), 0xfbec2f3ec5d3ca9cULL);
+    EXPECT_EQ(fingerprint(make_head()), 0x5c436b0339081c56ULL);
+    EXPECT_EQ(fingerprint(make_sole()), 0x38d48d7953631d83ULL);
     EXPECT_EQ(fingerprint(make_lattice({.cells_x = 2, .cells_y = 2, .cells_z = 2})), 0x6e876af465dd9de1ULL);
     EXPECT_EQ(fingerprint(make_sphere(10, 5)), 0xc5adc09277d78269ULL);
     EXPECT_EQ(fingerprint(make_torus(10, 3, 50, 20)), 0xa121c2d317fe8885ULL);

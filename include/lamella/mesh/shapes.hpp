@@ -36,6 +36,26 @@ struct SheetShape {
 /// triangles (the paper's has 93,930). It stands on z = 0 around the z axis.
 [[nodiscard]] TriangleSoup make_rook();
 
+/// An assembly of dodecahedra as in the paper's Fig. 10: 157.81 x 133.62 x 165.15 mm in the corner of the
+/// positive octant, 2,088 triangles (the paper's has 2,074). 13 bodies that do not touch: two nests of frames
+/// within frames around a solid core, and six solid ones.
+[[nodiscard]] TriangleSoup make_dodecahedra();
+
+/// A calibration plate as in the paper's Fig. 11: 165.1 x 165.1 x 25.4 mm in the corner of the positive
+/// octant, 316 triangles as the paper's: round, square and blind holes, posts, fins and steps.
+[[nodiscard]] TriangleSoup make_calibration();
+
+/// A head like the scan of the paper's Fig. 16: 141.61 (neck to crown) x 111.27 (front to back) x 81.29 mm
+/// (side to side) in the corner of the positive octant, 468,180 triangles of uneven size (the paper's has
+/// 467,882). No two of them cross: every ray from within leaves the head once.
+[[nodiscard]] TriangleSoup make_head();
+
+/// A shoe sole as in the paper's Figs. 17 and 18: 324 (heel to toe) x 125 x 54 mm in the corner of the
+/// positive octant, 859,996 triangles (the paper's has 862,014), one closed surface. Two plates, the upper
+/// one shaped like a footbed, joined by slanted struts that run from bottom to top, so that a plane crosses
+/// 24% of all triangles on average, as in the paper.
+[[nodiscard]] TriangleSoup make_sole();
+
 /// A lattice of struts: a cubic grid of cells, each corner of a cell joined to its neighbours by struts of
 /// round section that thicken towards the nodes, all of it one closed surface without inner walls, in the
 /// corner of the positive octant. Throws Error{usage} for impossible sizes. The default has 900,432

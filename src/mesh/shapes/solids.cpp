@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/shapes.hpp"
 
+#include "mesh/shapes/icosahedron.hpp"
 #include "mesh/shapes/resolution.hpp"
 #include "mesh/unit_circle.hpp"
 
@@ -90,29 +91,10 @@ TriangleSoup make_sphere(double radius_mm, unsigned level) {
     if (level > 11)
         throw Error(ErrorKind::usage,
                     fmt::format("cannot make a sphere of level {}: expected 0 to 11", level));
-    const double golden = (1 + std::sqrt(5.0)) / 2;
-    const double scale = 1 / std::sqrt(1 + golden * golden);
-    const double s = scale;
-    const double l = golden * scale;
-    const std::array<Point3, 12> v{{{-s, l, 0},
-                                    {s, l, 0},
-                                    {-s, -l, 0},
-                                    {s, -l, 0},
-                                    {0, -s, l},
-                                    {0, s, l},
-                                    {0, -s, -l},
-                                    {0, s, -l},
-                                    {l, 0, -s},
-                                    {l, 0, s},
-                                    {-l, 0, -s},
-                                    {-l, 0, s}}};
-    constexpr std::array<std::array<int, 3>, 20> faces{
-        {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-         {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-         {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
+    const std::array<Point3, 12> v = icosahedron_corners();
     std::vector<Triangle3f> out;
     out.reserve(std::size_t{20} << (2 * level));
-    for (const auto& f : faces)
+    for (const auto& f : icosahedron_faces)
         subdivide(out, {v[f[0]], v[f[1]], v[f[2]]}, level, radius_mm);
     return TriangleSoup(std::move(out));
 }
