@@ -5,6 +5,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "deadline.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
@@ -43,6 +44,7 @@ struct SliceArguments {
     bool inspect = false;
     bool strict = false;
     std::string stats;
+    std::optional<double> timeout;
     RunOptions run;
 };
 
@@ -89,6 +91,15 @@ OptionGroup checking_options(SliceArguments& target) {
               target.inspect),
          flag("strict", "make an error of any defect of the file or its mesh, and write nothing",
               target.strict)}};
+}
+
+OptionGroup timed_run_options(SliceArguments& target) {
+    OptionGroup group = run_options(target.run);
+    group.options.push_back(
+        row("timeout", ValueKind::number, "SECONDS",
+            "stop after so long, say how far it came (exit code 5), and leave no output",
+            [&target](const std::string& text) { target.timeout = parse_positive(text); }));
+    return group;
 }
 
 /// Names two options that cannot go together.
@@ -180,9 +191,23 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
     return warnings;
 }
 
+FileResult slice_in_time(const FileJob& job, const Execution& execution,
+                         const std::optional<double>& timeout) {
+    if (!timeout)
+        return slice_file(job, execution);
+    Deadline deadline(*timeout, one_line(job.input), execution);
+    try {
+        return slice_file(job, deadline.execution());
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::cancelled)
+            deadline.check();
+        throw;
+    }
+}
+
 int run_slice(const SliceArguments& arguments, const Context& context) {
     const FileJob job = make_job(arguments);
-    const FileResult result = slice_file(job, arguments.run.execution(context));
+    const FileResult result = slice_in_time(job, arguments.run.execution(context), arguments.timeout);
     for (const std::string& warning : result.warnings)
         context.messages.warn(warning);
     for (const std::string& warning : layer_warnings(job, result))
@@ -223,7 +248,7 @@ Command slice_command() {
                           }}},
         .groups = {output_options(*arguments), plan_options(*arguments),
                    placement_options(arguments->placement), checking_options(*arguments),
-                   run_options(arguments->run), common_options(true)},
+                   timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},
                      {"lamella slice part.stl -o part.svg --unit inch --rotate-x 90",

@@ -30,6 +30,23 @@ Json matrix_json(const Transform& map) {
     return rows;
 }
 
+Json cases_json(const MatchingCounts::Cases& cases) {
+    return {{"new", cases.new_list},
+            {"front", cases.front},
+            {"back", cases.back},
+            {"link", cases.link},
+            {"close", cases.close}};
+}
+
+Json matching_json(const MatchingCounts& counts) {
+    return {{"searches", counts.searches},
+            {"comparisons", counts.comparisons},
+            {"inserted", cases_json(counts.inserted)},
+            {"by_edge_link", cases_json(counts.by_edge_link)},
+            {"node_bytes", counts.node_bytes},
+            {"bytes", counts.bytes}};
+}
+
 Json layers_json(const FileResult& result) {
     Json layers = Json::array();
     for (const LayerStatistics& layer : result.layers)
@@ -88,32 +105,35 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
     options["matrix"] = matrix_json(job.placement);
     const bool inspected = result.inspection.has_value();
     const FileResult::Seconds& seconds = result.seconds;
-    return {{"lamella", LAMELLA_VERSION},
-            {"options", std::move(options)},
-            {"input",
-             {{"path", job.input},
-              {"triangles", result.triangles},
-              {"vertices", inspected ? Json(result.inspection->vertices) : Json()},
-              {"bbox", box_json(result.box)},
-              {"unit", unit},
-              {"volume_mm3", result.mesh_volume_mm3},
-              {"defects", inspected ? defects_json(*result.inspection) : Json()}}},
-            {"engine", result.engine},
-            {"threads", result.threads},
-            {"seconds",
-             {{"read", seconds.read},
-              {"weld", seconds.weld},
-              {"link", seconds.link},
-              {"slice", seconds.slice},
-              {"polygon", 0.0},
-              {"write", seconds.write},
-              {"total", seconds.total}}},
-            {"peak_rss_bytes", peak_rss_bytes()},
-            {"points", result.report.points},
-            {"contours", result.report.contours},
-            {"open_chains", result.report.open_chains},
-            {"volume_mm3", result.volume_mm3},
-            {"layers", layers_json(result)}};
+    Json stats = {{"lamella", LAMELLA_VERSION},
+                  {"options", std::move(options)},
+                  {"input",
+                   {{"path", job.input},
+                    {"triangles", result.triangles},
+                    {"vertices", inspected ? Json(result.inspection->vertices) : Json()},
+                    {"bbox", box_json(result.box)},
+                    {"unit", unit},
+                    {"volume_mm3", result.mesh_volume_mm3},
+                    {"defects", inspected ? defects_json(*result.inspection) : Json()}}},
+                  {"engine", result.engine},
+                  {"threads", result.threads},
+                  {"seconds",
+                   {{"read", seconds.read},
+                    {"weld", seconds.weld},
+                    {"link", seconds.link},
+                    {"slice", seconds.slice},
+                    {"polygon", 0.0},
+                    {"write", seconds.write},
+                    {"total", seconds.total}}},
+                  {"peak_rss_bytes", peak_rss_bytes()},
+                  {"points", result.report.points},
+                  {"contours", result.report.contours},
+                  {"open_chains", result.report.open_chains},
+                  {"volume_mm3", result.volume_mm3}};
+    if (result.report.matching)
+        stats["matching"] = matching_json(*result.report.matching);
+    stats["layers"] = layers_json(result);
+    return stats;
 }
 
 std::string json_text(const Json& object) {

@@ -40,7 +40,7 @@ THIRD_PARTY = {
 THIRD_PARTY_ANYWHERE = {"fmt"}
 
 # One file pair per engine in src/slicing. Only the table of engines knows them.
-ENGINES = ["sweep"]
+ENGINES = ["sweep", "conventional", "ecc", "ecc_edge_match", "eecc"]
 ENGINE_TABLE = "src/slicing/engines.cpp"
 
 # The one consumer that opens private headers: it times the kernels alone.

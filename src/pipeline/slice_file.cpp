@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -173,9 +174,13 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     if (job.layer_statistics)
         result.mesh_volume_mm3 = volume(file.mesh, execution);
 
+    std::optional<IndexedMesh> welded; // for engines that would weld it once more
     if (job.inspect || job.strict) {
         const Stopwatch welding;
-        result.inspection = inspect(weld(file.mesh, execution), execution);
+        IndexedMesh mesh = weld(file.mesh, execution);
+        result.inspection = inspect(mesh, execution);
+        if (with.welds)
+            welded = std::move(mesh);
         result.seconds.weld = welding.seconds();
         if (job.strict && !result.inspection->sound())
             throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects: {}", job.input,
@@ -200,7 +205,8 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
             result.seconds.write += writing.seconds();
         };
     };
-    slice_to(sink, file.mesh, plan, execution, &result.report, with);
+    const MeshRef mesh = welded ? MeshRef(*welded) : MeshRef(file.mesh);
+    slice_to(sink, mesh, plan, execution, &result.report, with);
     gatherer.finish(plan, result);
     if (job.strict && result.report.open_chains > 0)
         throw Error(ErrorKind::defect,
@@ -212,6 +218,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
         result.seconds.write += writing.seconds();
         result.bytes = writer->bytes();
     }
+    result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;
     result.seconds.slice = result.report.slice_seconds;
     result.seconds.total = total.seconds();

@@ -8,6 +8,7 @@
 #include "slicing/ordered_delivery.hpp"
 #include "slicing/point_arena.hpp"
 #include "slicing/point_kernels.hpp"
+#include "slicing/shrunken_contours.hpp"
 #include "slicing/slabs.hpp"
 
 #include <algorithm>
@@ -90,32 +91,6 @@ class Scratch {
     PageArray<double> x_;
     PageArray<double> y_;
 };
-
-/// Whether a ring without repeated points runs to and fro on a line, so that it bounds nothing.
-bool folds_flat(const std::vector<Point2>& ring) {
-    // A point between equal neighbours is the tip of a fold; folding it in leaves two equal points, one of
-    // which goes. A ring that this eats up was a line.
-    std::vector<Point2> rest;
-    for (const Point2& p : ring) {
-        if (!rest.empty() && rest.back() == p)
-            continue;
-        if (rest.size() >= 2 && rest[rest.size() - 2] == p)
-            rest.pop_back();
-        else
-            rest.push_back(p);
-    }
-    std::size_t begin = 0;
-    std::size_t end = rest.size();
-    while (end - begin >= 3) {
-        if (rest[begin] == rest[end - 1] || rest[begin] == rest[end - 2])
-            --end;
-        else if (rest[begin + 1] == rest[end - 1])
-            ++begin;
-        else
-            return false;
-    }
-    return true;
-}
 
 /// Reads the contours of one slab after the other off the graph. Each worker has its own.
 template <class Ends>

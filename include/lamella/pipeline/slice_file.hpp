@@ -82,8 +82,8 @@ struct FileResult {
     double volume_mm3 = 0;
 
     /// Wall time. `read` includes finding the bounding box, for that is when a mapped file is read;
-    /// `weld` includes the inspection; `write` is the part of writing that must be done in order, while
-    /// formatting is done in parallel and part of `slice`.
+    /// `weld` includes the inspection, and the weld of engines that need one; `write` is the part of writing
+    /// that must be done in order, while formatting is done in parallel and part of `slice`.
     struct Seconds {
         double read = 0;
         double weld = 0;

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -32,14 +33,47 @@ class MeshRef {
     const IndexedMesh* mesh_ = nullptr;
 };
 
+/// What the engines of the EECC paper (King, Rennie, Bennett 2021) count while they sort intersections into
+/// contours; its Tables 2, 3 and 4 and its section 4.1 are made of these. An intersection is one triangle on
+/// one plane; for `conventional` it is one segment that is longer than nothing.
+struct MatchingCounts {
+    /// What became of intersections when they were inserted.
+    struct Cases {
+        std::uint64_t new_list = 0; ///< no match: a contour of its own
+        std::uint64_t front = 0;    ///< put before the first one of a contour
+        std::uint64_t back = 0;     ///< put behind the last one of a contour
+        std::uint64_t link = 0;     ///< put between two contours, which it made one
+        std::uint64_t close = 0;    ///< put behind the last one of a contour that it completed
+
+        [[nodiscard]] std::uint64_t total() const noexcept { return new_list + front + back + link + close; }
+    };
+
+    /// How often the lists of a plane were gone through for a match (Table 2; "requires sorting" in Table 3).
+    std::uint64_t searches = 0;
+    /// How many lists all searches together looked at, each for a match with its first and its last
+    /// intersection; for `conventional`, how many segments.
+    std::uint64_t comparisons = 0;
+    /// All intersections (Table 4).
+    Cases inserted;
+    /// Those among them that were placed by an edge link, without a search (the other columns of Table 3).
+    /// inserted.total() == by_edge_link.total() + searches, but for `conventional`.
+    Cases by_edge_link;
+    /// Size of the node of one intersection: what section 4.1 counts.
+    std::uint64_t node_bytes = 0;
+    /// The most memory that nodes, lists and edges together took, as allocated.
+    std::uint64_t bytes = 0;
+};
+
 /// What a slicing run did; the statistics of the program are made from it.
 struct SliceReport {
-    double link_seconds = 0;  ///< ranks and cut graph
-    double slice_seconds = 0; ///< walk and points
+    double weld_seconds = 0;  ///< in engines that need an indexed mesh and were given a soup
+    double link_seconds = 0;  ///< sweep: ranks and cut graph; the paper's: ranks, intersections and lists
+    double slice_seconds = 0; ///< sweep: walk and points; the paper's: reading the lists off
     std::uint64_t layers = 0;
     std::uint64_t contours = 0;
     std::uint64_t open_chains = 0;
     std::uint64_t points = 0;
+    std::optional<MatchingCounts> matching; ///< of the engines of the paper
 };
 
 /// Receives layers while slicing goes on. It is called once for every layer, from several threads at once and
@@ -64,6 +98,8 @@ struct Engine {
     std::string_view name;    ///< as in `--engine`
     std::string_view summary; ///< one line for help texts
     std::string_view source;  ///< the publication it follows, or ""
+    /// It works on an indexed mesh and welds a soup first: who has welded already gives it that mesh.
+    bool welds;
     void (*run)(const SliceJob& job);
 };
 

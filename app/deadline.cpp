@@ -1,0 +1,91 @@
+#include "deadline.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "numbers.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+constexpr int limit_exit_code = 5;
+// Reading may wait for standard input for ever. Later there are gigabytes to let go of, and a temporary file.
+constexpr std::chrono::milliseconds patience_reading{700};
+constexpr std::chrono::seconds patience{20};
+constexpr double longest_seconds = 1e9; // some thirty years: clocks can count further
+
+} // namespace
+
+Deadline::Deadline(double seconds, std::string what, const Execution& execution)
+    : seconds_(seconds), what_(std::move(what)), given_(execution),
+      pass_on_(execution.cancel, [this] { stop_.request_stop(); }), watcher_([this] { watch(); }) {}
+
+Deadline::~Deadline() {
+    {
+        const std::lock_guard lock(mutex_);
+        ending_ = true;
+    }
+    done_.notify_all();
+    watcher_.join();
+}
+
+Execution Deadline::execution() {
+    Execution execution = given_;
+    execution.progress = [this](const Progress& progress) {
+        {
+            const std::lock_guard lock(mutex_);
+            last_ = progress;
+            started_ = true;
+        }
+        if (given_.progress)
+            given_.progress(progress);
+    };
+    execution.cancel = stop_.get_token();
+    return execution;
+}
+
+void Deadline::check() const {
+    const std::lock_guard lock(mutex_);
+    if (expired_ && !given_.cancel.stop_requested())
+        throw Error(ErrorKind::limit, message());
+}
+
+void Deadline::watch() {
+    const auto is_ending = [this] {
+        return ending_;
+    };
+    std::unique_lock lock(mutex_);
+    const std::chrono::duration<double> time(std::min(seconds_, longest_seconds));
+    if (done_.wait_for(lock, time, is_ending))
+        return;
+    expired_ = true;
+    lock.unlock(); // whoever is waiting for the stop may want to report progress
+    stop_.request_stop();
+    lock.lock();
+    const bool reading = !started_ || last_.stage == Stage::read;
+    if (!done_.wait_for(lock, reading ? patience_reading : patience, is_ending)) {
+        const std::string text = "\nlamella: error: " + message() + "\n";
+        static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
+        _exit(limit_exit_code);
+    }
+}
+
+std::string Deadline::message() const {
+    std::string text = fmt::format("{}: stopped after {} s (--timeout)", what_, brief(seconds_));
+    if (started_) {
+        const double part =
+            last_.total == 0 ? 1 : static_cast<double>(last_.done) / static_cast<double>(last_.total);
+        text +=
+            fmt::format(" in the stage {}, of which {:.0f} % was done", stage_name(last_.stage), 100 * part);
+    }
+    return text + "; nothing was written";
+}
+
+} // namespace lamella::app

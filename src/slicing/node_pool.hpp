@@ -1,0 +1,43 @@
+#pragma once
+
+// Memory for the nodes of linked lists: as many as there are, none moved, all of them freed together.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lamella {
+
+template <class T>
+class NodePool {
+  public:
+    /// The node stays where it is as long as the pool lives.
+    T* make(const T& value) {
+        if (blocks_.empty() || blocks_.back().size() == blocks_.back().capacity()) {
+            const std::size_t size =
+                blocks_.empty() ? first_block : std::min(2 * blocks_.back().size(), largest_block);
+            blocks_.emplace_back().reserve(size);
+        }
+        blocks_.back().push_back(value);
+        return &blocks_.back().back();
+    }
+
+    void clear() { blocks_.clear(); }
+
+    /// As allocated, room for further nodes included.
+    [[nodiscard]] std::uint64_t bytes() const noexcept {
+        std::uint64_t nodes = 0;
+        for (const std::vector<T>& block : blocks_)
+            nodes += block.capacity();
+        return nodes * sizeof(T);
+    }
+
+  private:
+    static constexpr std::size_t first_block = 64;
+    static constexpr std::size_t largest_block = 1U << 16;
+
+    std::vector<std::vector<T>> blocks_;
+};
+
+} // namespace lamella

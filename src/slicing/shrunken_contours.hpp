@@ -1,0 +1,61 @@
+#pragma once
+
+// What a plane through vertices leaves behind: points that repeat, and rings that shrank to a point or a line
+// (docs/conventions.md, "Cut points").
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/point.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace lamella {
+
+/// Drops points that equal the one before them and, on a ring, last points that equal the first. O(n).
+inline void drop_repeated_points(std::vector<Point2>& contour, bool closed) {
+    std::size_t kept = 0;
+    for (const Point2& p : contour)
+        if (kept == 0 || !(contour[kept - 1] == p))
+            contour[kept++] = p;
+    while (closed && kept > 1 && contour[kept - 1] == contour[0])
+        --kept;
+    contour.resize(kept);
+}
+
+/// Whether a ring without repeated points runs to and fro on a line, so that it bounds nothing. O(n).
+inline bool folds_flat(const std::vector<Point2>& ring) {
+    // A point between equal neighbours is the tip of a fold; folding it in leaves two equal points, one of
+    // which goes. A ring that this eats up was a line.
+    std::vector<Point2> rest;
+    for (const Point2& p : ring) {
+        if (!rest.empty() && rest.back() == p)
+            continue;
+        if (rest.size() >= 2 && rest[rest.size() - 2] == p)
+            rest.pop_back();
+        else
+            rest.push_back(p);
+    }
+    std::size_t begin = 0;
+    std::size_t end = rest.size();
+    while (end - begin >= 3) {
+        if (rest[begin] == rest[end - 1] || rest[begin] == rest[end - 2])
+            --end;
+        else if (rest[begin + 1] == rest[end - 1])
+            ++begin;
+        else
+            return false;
+    }
+    return true;
+}
+
+/// Gives a contour to a layer, unless it shrank to a point or a line. `contour` is used up. O(n).
+inline void add_contour(LayerBuilder& layer, std::vector<Point2>& contour, bool closed) {
+    drop_repeated_points(contour, closed);
+    if (contour.size() < (closed ? 3U : 2U) || (closed && folds_flat(contour)))
+        return;
+    for (const Point2& p : contour)
+        layer.add_point(p);
+    layer.end_contour(closed);
+}
+
+} // namespace lamella
