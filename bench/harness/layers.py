@@ -44,7 +44,7 @@ class Agreement:
             return "equal"
         parts = []
         if self.missing:
-            parts.append(f"{self.missing} layers only in one of the two")
+            parts.append("one layer more or less" if self.missing == 1 else f"{self.missing} layers more or less")
         if self.same_count != self.layers:
             parts.append(f"{self.contours:,} contours for {self.expected_contours:,}")
         for name, off in (("areas", self.area_off), ("lengths", self.perimeter_off)):

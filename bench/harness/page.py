@@ -1,6 +1,7 @@
 """A report of headings, paragraphs, tables and charts, as Markdown and as one self-contained HTML page."""
 
 import html
+import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,6 +35,13 @@ class Chart:
     name: str  # of the file beside the Markdown
     title: str
     svg: str
+
+
+def brief(value):
+    """Three digits that count, and never an exponent."""
+    if value == 0:
+        return "0"
+    return f"{value:,.{max(0, 2 - math.floor(math.log10(abs(value))))}f}"
 
 
 class Page:

@@ -48,6 +48,7 @@ PAPER_PARTS = [
     sheet(1225),
 ]
 LATTICE = Part("lattice", "lattice", ("lattice", "--cells", "12"))
+ALL_PARTS = [*PAPER_PARTS[:8], LATTICE, *PAPER_PARTS[8:]]
 # For tests of the reports themselves.
 TINY_PARTS = [Part("box", "box", ("box", "--size", "20,30,2.5")), sheet(4, segments=32)]
 

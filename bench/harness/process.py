@@ -16,7 +16,7 @@ class Outcome:
     seconds: float  # wall time of the whole process
     user: float
     system: float
-    peak_rss_bytes: int  # no less than some 10 MB, the size of the launcher
+    peak_rss_bytes: int  # no less than some 7 MB, the size of the launcher
     ended: str  # "ok", "timeout", "killed by SIGSEGV", "exit code 3"
     text: str  # standard output and error
 

@@ -16,7 +16,7 @@ from bench.rivals.cura import CURA
 from bench.rivals.prusa_slicer import PRUSA_SLICER
 from bench.rivals.slic3r import SLIC3R
 
-PARTS = sorted([*parts.PAPER_PARTS, parts.LATTICE], key=lambda part: part.name == "sheet-1225")
+PARTS = parts.ALL_PARTS
 
 
 def main(arguments):
@@ -26,16 +26,17 @@ def main(arguments):
     folder = Path(options.out)
     folder.mkdir(parents=True, exist_ok=True)
     here = machine.describe(options.lamella)
-    comparison = Comparison(options.lamella, folder, options.timeout, options.threads)
+    threads = len(os.sched_getaffinity(0))
+    comparison = Comparison(options.lamella, folder, options.timeout, threads)
     cells = []
     for part in chosen:
         cells += comparison.run(part, [rival for rival, _ in present], tell)
         # After each part, so that a long run that is stopped has left what it found.
         sliced = [one for one in chosen if any(cell.part == one.name for cell in cells)]
-        page = report.build_page(cells, sliced, present, absent, here, options.timeout, options.threads)
+        page = report.build_page(cells, sliced, present, absent, here, options.timeout, threads)
         page.write(folder, "rivals")
         (folder / "report.json").write_text(
-            json.dumps(report.as_json(cells, present, absent, here, options.timeout, options.threads), indent=1) + "\n",
+            json.dumps(report.as_json(cells, present, absent, here, options.timeout, threads), indent=1) + "\n",
             encoding="utf-8")
     print(f"The report is in {folder}/rivals.html")
 
@@ -47,7 +48,6 @@ def parse(arguments):
                         help="folder of the built cgal_slicer (default: %(default)s)")
     parser.add_argument("--out", default="out/rivals", help="folder of the report (default: %(default)s)")
     parser.add_argument("--timeout", type=float, default=300, help="seconds for one run (default: %(default)s)")
-    parser.add_argument("--threads", type=int, default=len(os.sched_getaffinity(0)), help="for those that have threads")
     parser.add_argument("--parts", nargs="+", metavar="PART", help="which parts (default: all)")
     parser.add_argument("--rivals", nargs="*", metavar="RIVAL", help="which rivals (default: all that are installed)")
     return parser.parse_args(arguments)

@@ -1,4 +1,4 @@
-"""PrusaSlicer: one wall, no infill, as G-code."""
+"""PrusaSlicer: one wall, no infill, as G-code. It has no option for threads and takes what it may use."""
 
 import datetime
 import re
@@ -13,7 +13,7 @@ WIDTH_MM = 0.45
 def command(job):
     height = f"{job.layer_height:g}"
     # Gaps and thin walls would be filled with strokes that are no contours.
-    return ["prusa-slicer", "--export-gcode", "--loglevel", "3", "--threads", job.threads,
+    return ["prusa-slicer", "--export-gcode", "--loglevel", "3",
             "--layer-height", height, "--first-layer-height", height,
             "--perimeters", "1", "--perimeter-generator", "classic", "--gap-fill-enabled=0", "--thin-walls=0",
             "--external-perimeter-extrusion-width", f"{WIDTH_MM}", "--first-layer-extrusion-width", f"{WIDTH_MM}",

@@ -3,7 +3,7 @@
 import dataclasses
 
 from bench.harness import chart
-from bench.harness.page import Chart, Page, Table
+from bench.harness.page import Chart, Page, Table, brief
 
 OURS = ("lamella", "lamella-1")
 
@@ -29,8 +29,8 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
              "write is in the table below. Printers' slicers go on to tool paths, with one wall and no infill, as in "
              "the paper; their time for **cutting alone** is what they report of their first stage, which for some "
              "includes cleaning up the contours. Lamella's is from the mesh in memory to the layers in memory. Times are "
-             "medians where a run is short. Memory is the peak resident size; the measuring itself needs 10 MB, and "
-             "nothing shows less.",
+             "medians where a run is short. Memory is the peak resident size; what starts the programs weighs some "
+             "7 MB, and nothing shows less.",
              "**Equal** means: the same number of contours in every layer, and areas or lengths that agree to one in a "
              "million. Otherwise the differences are told: layers without a partner at that height, contours in all "
              "layers, and sums of differences over sums. A cell counts when at most one layer is missing and contours, "
@@ -75,14 +75,14 @@ def ending(cell):
 def seconds(value):
     if value is None:
         return ""
-    return f"{value:.3f}" if value < 1 else (f"{value:.2f}" if value < 10 else f"{value:.1f}")
+    return brief(value)
 
 
 def ratio(value, ours):
     if value is None or not ours:
         return ""
     times = value / ours
-    return f"{times:.1f} x" if times < 20 else f"{times:,.0f} x"
+    return f"{brief(times)} x"
 
 
 def megabytes(value):
