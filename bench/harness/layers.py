@@ -24,9 +24,10 @@ class Agreement:
 
     @property
     def exact(self):
-        """As many contours in every layer, and areas or lengths that differ by less than one in a million."""
+        """As many contours in every layer, and areas and lengths that differ by less than one in
+        100,000."""
         return (self.missing == 0 and self.same_count == self.layers and self.measured()
-                and all(off is None or off < 1e-6 for off in (self.area_off, self.perimeter_off)))
+                and all(off is None or off < 1e-5 for off in (self.area_off, self.perimeter_off)))
 
     @property
     def near(self):

@@ -63,9 +63,9 @@ def named(names, parts):
 
 
 def make(part, lamella, folder):
-    """The STL file of a part; made unless it is there already."""
+    """The STL file of a part; made unless it is there already, and by this program."""
     path = part.path(folder)
-    if not path.exists():
+    if not path.exists() or path.stat().st_mtime < Path(lamella).stat().st_mtime:
         Path(folder).mkdir(parents=True, exist_ok=True)
         half_made = path.with_suffix(".part")
         subprocess.run([str(lamella), "make", *part.make, "-o", str(half_made)], check=True, capture_output=True)

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from bench.harness import machine, parts
-from bench.paper import growth, report
+from bench.paper import growth as growths
+from bench.paper import report
 from bench.paper.cell import ENGINES, Laboratory
 from bench.rivals.__main__ import tell as tell_rival
 from bench.rivals.compare import Comparison
@@ -31,14 +32,15 @@ class Measured:
     order_cells: list = field(default_factory=list)
     rival_cells: list = field(default_factory=list)
     rival_titles: dict = field(default_factory=dict)
-    growth: growth.Growth = field(default_factory=growth.Growth)
+    growth: growths.Growth = field(default_factory=growths.Growth)
 
 
 def main(arguments):
     options = parse(arguments)
     figures = json.loads(FIGURES.read_text(encoding="utf-8"))
     folder = Path(options.out)
-    folder.mkdir(parents=True, exist_ok=True)
+    work, parts_folder = folder / "work", folder.parent / "parts"
+    work.mkdir(parents=True, exist_ok=True)
     here = machine.describe(options.lamella)
     tiny = options.tiny
     chosen = parts.TINY_PARTS if tiny else parts.named(options.parts, parts.PAPER_PARTS) if options.parts else parts.PAPER_PARTS
@@ -49,12 +51,12 @@ def main(arguments):
         text = json.dumps(report.as_json(measured, here, options.timeout), indent=1)
         (folder / "paper.json").write_text(text + "\n", encoding="utf-8")
 
-    measured.growth = growth.measure(options.lamella, folder, options.timeout, small=tiny, tell=tell_growth)
-    laboratory = Laboratory(options.lamella, folder, options.timeout)
+    measured.growth = growths.measure(options.lamella, work, parts_folder, options.timeout, small=tiny, tell=tell_growth)
+    laboratory = Laboratory(options.lamella, work, parts_folder, options.timeout)
     sheets = {order: parts.sheet(4 if tiny else 100, order, 32 if tiny else None) for order in ("wall", "split", "shuffle")}
     measured.order_parts = {order: part.name for order, part in sheets.items()}
     for part in sheets.values():
-        measured.order_cells += Laboratory(options.lamella, folder, options.timeout).cells(part, ENGINES, tell)
+        measured.order_cells += Laboratory(options.lamella, work, parts_folder, options.timeout).cells(part, ENGINES, tell)
     for part in chosen:
         measured.cells += laboratory.cells(part, ENGINES, tell)
         write()  # so that a long run that is stopped has left what it found

@@ -43,14 +43,15 @@ class Cell:
 @dataclass
 class Laboratory:
     program: Path
-    folder: Path
+    folder: Path  # for what is left over: listings, statistics
+    parts_folder: Path
     timeout: float
     repeat_below: float = 1.0
     most_runs: int = 5
     beyond: dict = field(default_factory=dict)  # (engine, family) -> the last cell that could be measured or not
 
     def cells(self, part, engines, tell=lambda cell: None):
-        mesh = parts.make(part, self.program, Path(self.folder) / "parts")
+        mesh = parts.make(part, self.program, self.parts_folder)
         mesh.read_bytes()  # so that all read from memory
         reference = self.slice(part, mesh, REFERENCE)[-1]
         if not reference.ok:
@@ -112,7 +113,7 @@ class Laboratory:
         if not given_up:
             step = min(30, len(heights))
             few = heights[step // 2::step]
-            listed = Path(self.folder) / "heights.txt"
+            listed = self.folder / "heights.txt"
             listed.write_text("".join(f"{z!r}\n" for z in few), encoding="utf-8")
             run = self.slice(part, mesh, cell.engine, "--z-list", listed)[-1]
             if run.ok:

@@ -37,7 +37,7 @@ class Growth:
     of_memory: list = field(default_factory=list)
 
 
-def measure(program, folder, timeout, small=False, tell=lambda sample: None):
+def measure(program, folder, parts_folder, timeout, small=False, tell=lambda sample: None):
     """`small` is for tests of the report."""
     holes = [4, 16] if small else [4, 16, 36, 64, 100, 196]
     planes = [2, 6] if small else [1, 3, 10, 30, 100]
@@ -46,7 +46,7 @@ def measure(program, folder, timeout, small=False, tell=lambda sample: None):
 
     def samples(into, part, engines, m):
         for engine in engines:
-            sample = count(program, folder, timeout, part, engine, m)
+            sample = count(program, folder, parts_folder, timeout, part, engine, m)
             if sample:
                 into.append(sample)
                 tell(sample)
@@ -61,8 +61,8 @@ def measure(program, folder, timeout, small=False, tell=lambda sample: None):
     return growth
 
 
-def count(program, folder, timeout, part, engine, m):
-    mesh = parts.make(part, program, folder / "parts")
+def count(program, folder, parts_folder, timeout, part, engine, m):
+    mesh = parts.make(part, program, parts_folder)
     run = lamella.slice_part(program, mesh, folder, "--layer-height", f"{THICKNESS_MM / m!r}", engine=engine,
                              timeout=timeout)
     if not run.ok:

@@ -161,7 +161,7 @@ def exponents(measured, figures):
                 fitted = growth.exponent(chosen, x, y)
                 # The worst case of the paper is the split order; edge matching alone is not in its table.
                 paper = figures.get(engine, {}).get(key, "") if order == "split" else ""
-                table.add(title, ENGINE_TITLES[engine], order, paper, "-" if fitted is None else f"{fitted:.2f}")
+                table.add(title, ENGINE_TITLES[engine], order, paper, "-" if fitted is None else f"{fitted:.2f}".replace("-0.00", "0.00"))
     return table
 
 

@@ -42,7 +42,7 @@ class Comparison:
 
     def run(self, part, rivals, tell=lambda cell: None):
         """All cells of one part, Lamella's first."""
-        mesh = parts.make(part, self.program, self.folder / "parts")
+        mesh = parts.make(part, self.program, self.folder.parent / "parts")
         mesh.read_bytes()  # everybody reads from memory
         work = self.folder / "work"
         work.mkdir(parents=True, exist_ok=True)

@@ -31,8 +31,8 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
              "includes cleaning up the contours. Lamella's is from the mesh in memory to the layers in memory. Times are "
              "medians where a run is short. Memory is the peak resident size; what starts the programs weighs some "
              "7 MB, and nothing shows less.",
-             "**Equal** means: the same number of contours in every layer, and areas or lengths that agree to one in a "
-             "million. Otherwise the differences are told: layers without a partner at that height, contours in all "
+             "**Equal** means: the same number of contours in every layer, and areas and lengths that agree to one in "
+             "100,000. Otherwise the differences are told: layers without a partner at that height, contours in all "
              "layers, and sums of differences over sums. A cell counts when at most one layer is missing and contours, "
              "areas and lengths agree within 1%. Tool paths run inside the contour and close gaps by design: areas are "
              "computed back from them.")

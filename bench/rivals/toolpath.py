@@ -1,8 +1,9 @@
 """Contours from the tool path of a printer (G-code) that has one wall and nothing else.
 
-The wall's middle runs half its width w inside the contour. For a region with the contour's turns, Steiner's formula
-gives back what the contour encloses: area + length * w/2 + pi (w/2)^2 for each outer ring, and less that for a hole.
-Corners are rounded by it, so areas are near, not exact.
+The wall's middle runs half its width w within the material. Steiner's formula gives back what the contour encloses:
+area + length * w/2 + pi (w/2)^2 for an outer ring, area - length * w/2 + pi (w/2)^2 for a hole. Corners are rounded by
+it, so areas are near, not exact. Printers run rings in either direction: a ring is a hole when it lies in an odd number
+of others.
 """
 
 import math
@@ -15,17 +16,28 @@ def read_layers(path, starts_layer, is_wall, width, layer_height):
     """Rings of each layer, from extruding moves that follow one another.
 
     `starts_layer(line)` tells the comment that begins a layer; `is_wall(line)` is asked about every comment: True and
-    False switch, None keeps. Holes are told from bodies by their direction: clockwise.
+    False switch, None keeps.
     """
     layers = []
+    for number, rings in enumerate(read_rings(path, starts_layer, is_wall)):
+        if rings:
+            layers.append(Layer((number + 0.5) * layer_height, len(rings), enclosed_area(rings, width)))
+    return layers
+
+
+def read_rings(path, starts_layer, is_wall):
+    """The rings of each layer in turn."""
+    rings = None  # of the layer that is being read
     wall = False
     x = y = extruded = 0.0
     ring = []
 
     def close():
         nonlocal ring
-        if len(ring) >= 3 and layers:
-            add_ring(layers[-1], ring, width)
+        if ring and math.dist(ring[0], ring[-1]) < 1e-9:
+            ring.pop()
+        if len(ring) >= 3 and rings is not None:
+            rings.append(ring)
         ring = []
 
     with open(path, encoding="utf-8", errors="replace") as lines:
@@ -33,7 +45,9 @@ def read_layers(path, starts_layer, is_wall, width, layer_height):
             if line.startswith(";"):
                 if starts_layer(line):
                     close()
-                    layers.append(Layer((len(layers) + 0.5) * layer_height, 0, 0.0))
+                    if rings is not None:
+                        yield rings
+                    rings = []
                 switched = is_wall(line)
                 if switched is not None:
                     close()
@@ -55,13 +69,31 @@ def read_layers(path, starts_layer, is_wall, width, layer_height):
                 close()
             x, y, extruded = to_x, to_y, amount
     close()
-    return [layer for layer in layers if layer.contours]
+    if rings is not None:
+        yield rings
 
 
-def add_ring(layer, ring, width):
-    if math.dist(ring[0], ring[-1]) < 1e-9:
-        ring.pop()
-    area = signed_area(ring)
-    turn = 1 if area > 0 else -1
-    layer.contours += 1
-    layer.area_mm2 += area + length(ring) * width / 2 + turn * math.pi * width * width / 4
+def enclosed_area(rings, width):
+    boxes = [box(ring) for ring in rings]
+    area = 0.0
+    for i, ring in enumerate(rings):
+        x, y = ring[0]
+        around = sum(j != i and low_x < x < high_x and low_y < y < high_y and contains(rings[j], x, y)
+                     for j, (low_x, low_y, high_x, high_y) in enumerate(boxes))
+        side = 1 if around % 2 == 0 else -1
+        area += side * (abs(signed_area(ring)) + side * length(ring) * width / 2 + math.pi * width * width / 4)
+    return area
+
+
+def box(ring):
+    xs, ys = zip(*ring)
+    return min(xs), min(ys), max(xs), max(ys)
+
+
+def contains(ring, x, y):
+    """By the crossings of a ray to the right."""
+    inside = False
+    for (ax, ay), (bx, by) in zip(ring, ring[1:] + ring[:1]):
+        if (ay > y) != (by > y) and x < ax + (y - ay) * (bx - ax) / (by - ay):
+            inside = not inside
+    return inside
