@@ -104,33 +104,43 @@ class Laboratory:
                     matching=stats.get("matching"), check=check)
 
     def estimate(self, cell, part, mesh, reference, smaller):
-        """From every n-th plane, for planes do not influence one another; else from the next smaller part of the
-        family, whose work grows with the square of the triangles."""
-        heights = [layer["z"] for layer in reference.stats["layers"]]
+        """From some of the planes, for planes do not influence one another but for the cache; else from the next smaller
+        part of the family, whose work grows with the square of the triangles."""
+        planes = reference.stats["layers"]
         cell.triangles = reference.stats["input"]["triangles"]
-        cell.layers = len(heights)
+        cell.layers = len(planes)
         given_up = smaller is not None and smaller.estimated_from.startswith("the square")
-        if not given_up:
-            step = min(30, len(heights))
-            few = heights[step // 2::step]
-            listed = self.folder / "heights.txt"
-            listed.write_text("".join(f"{z!r}\n" for z in few), encoding="utf-8")
-            run = self.slice(part, mesh, cell.engine, "--z-list", listed)[-1]
-            if run.ok:
-                by_height = {layer["z"]: layer for layer in reference.stats["layers"]}
-                if not checked(run.stats["layers"], [by_height[z] for z in few]):
-                    cell.ended = "wrong"
-                    return
-                seconds, share = run.stats["seconds"], len(heights) / len(few)
-                # Reading and welding are done once, however many planes there are.
-                cell.estimate = seconds["total"] + (seconds["link"] + seconds["slice"]) * (share - 1)
-                cell.estimated_from = f"{len(few)} of {len(heights)} planes"
-                if "matching" in run.stats:
-                    cell.searches_estimate = run.stats["matching"]["searches"] * share
+        few = evenly(planes, max(1, len(planes) // 30))
+        run = None if given_up else self.some_planes(part, mesh, cell.engine, few)
+        if run is not None and run.ok:
+            # As many as half of the limit should hold: the fewer the planes, the more of their lists fit the cache.
+            count = int(len(few) * self.timeout / 2 / max(run.outcome.seconds, 1e-3))
+            more = evenly(planes, min(count, len(planes) // 2))
+            second = self.some_planes(part, mesh, cell.engine, more) if len(more) > len(few) else None
+            if second is not None and second.ok:
+                few, run = more, second
+            if not checked(run.stats["layers"], few):
+                cell.ended = "wrong"
                 return
-        if smaller is not None and smaller.estimate:
+            seconds, share = run.stats["seconds"], len(planes) / len(few)
+            # Reading and welding are done once, however many planes there are.
+            cell.estimate = seconds["total"] + (seconds["link"] + seconds["slice"]) * (share - 1)
+            cell.estimated_from = f"{len(few)} of {len(planes)} planes"
+            if "matching" in run.stats:
+                cell.searches_estimate = run.stats["matching"]["searches"] * share
+        elif smaller is not None and smaller.estimate:
             cell.estimate = smaller.estimate * (cell.triangles / smaller.triangles) ** 2
             cell.estimated_from = f"the square of the triangles, from {smaller.part}"
+
+    def some_planes(self, part, mesh, engine, layers):
+        listed = self.folder / "heights.txt"
+        listed.write_text("".join(f"{layer['z']!r}\n" for layer in layers), encoding="utf-8")
+        return self.slice(part, mesh, engine, "--z-list", listed)[-1]
+
+
+def evenly(items, count):
+    """`count` of the items, spread over all of them."""
+    return [items[int((i + 0.5) * len(items) / count)] for i in range(count)]
 
 
 def checked(layers, reference):

@@ -20,7 +20,8 @@ def build_page(measured, figures, machine, timeout):
              f"{machine['system']}; {machine['compiler']}; {machine['program']}; {machine['date']}.",
              f"Each measurement is a process of its own; seconds are from opening the file to the last layer in memory, "
              f"medians where a run is short. Limit for a run: {timeout:g} s. **≈** marks what was not measured in "
-             "full but estimated from a part of the planes or from the next smaller sheet. A time counts when the layers "
+             "full but estimated from a part of the planes (rather low: the lists of fewer planes fit the cache better) or "
+             "from the next smaller sheet. A time counts when the layers "
              "are those of the sweep engine: see *correctness* below.".replace("*correctness*", "**Correctness**"))
     page.heading("Table 5: time")
     page.show(tables.times(measured.cells, titles, figures["table5_seconds"], ENGINES, figures["stopped_after_seconds"]))

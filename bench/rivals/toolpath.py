@@ -16,7 +16,8 @@ def read_layers(path, starts_layer, is_wall, width, layer_height):
     """Rings of each layer, from extruding moves that follow one another.
 
     `starts_layer(line)` tells the comment that begins a layer; `is_wall(line)` is asked about every comment: True and
-    False switch, None keeps.
+    False switch, None keeps. A ring
+    may consist of several kinds of wall.
     """
     layers = []
     for number, rings in enumerate(read_rings(path, starts_layer, is_wall)):
@@ -49,7 +50,7 @@ def read_rings(path, starts_layer, is_wall):
                         yield rings
                     rings = []
                 switched = is_wall(line)
-                if switched is not None:
+                if switched is not None and switched != wall:
                     close()
                     wall = switched
                 continue

@@ -72,7 +72,7 @@ class Cells(unittest.TestCase):
             estimated = Cell(part.name, "ecc", "timeout")
             mesh = part.path(Path(folder) / "parts")
             laboratory.estimate(estimated, part, mesh, laboratory.slice(part, mesh, "sweep")[-1], None)
-        self.assertEqual(estimated.estimated_from, "1 of 30 planes")
+        self.assertEqual(estimated.estimated_from, "15 of 30 planes")
         self.assertEqual(estimated.searches_estimate, measured.matching["searches"])
 
     def test_beyond_that_the_square_of_the_triangles_is_taken(self):
