@@ -16,6 +16,7 @@ class Bar:
     value: Optional[float]  # None: no bar, the note says why
     inner: Optional[float] = None  # a part of the value, drawn as a mark within
     note: str = ""
+    hollow: bool = False  # it went no further than this: an outline
 
 
 def bars(items, title, axis, inner_label=""):
@@ -48,8 +49,10 @@ def bars(items, title, axis, inner_label=""):
             end = left
             if item.value:
                 end = x(item.value)
+                paint = colour(series.index(item.series))
+                fill = f'fill="none" stroke="{paint}" stroke-dasharray="4 3"' if item.hollow else f'fill="{paint}"'
                 parts.append(f'<rect x="{left}" y="{y + 2}" width="{max(end - left, 1):.1f}" height="{row - 4}" '
-                             f'fill="{colour(series.index(item.series))}"/>')
+                             f'{fill}/>')
                 if item.inner and x(item.inner) < end - 2:
                     parts.append(line(x(item.inner), y + 2, x(item.inner), y + row - 2, "#fff", 2))
             else:
@@ -71,7 +74,7 @@ def scatter(series, title, x_axis, y_axis):
     """Points on two logarithmic axes, each series with its fitted power law."""
     low_x, high_x = decades([x for one in series for x, _ in one.points])
     low_y, high_y = decades([y for one in series for _, y in one.points])
-    left, right, top, bottom, width, height = 84, 250, 40, 380, 860, 430
+    left, right, top, bottom, width, height = 84, 290, 56, 396, 900, 446
 
     def place(px, py):
         return (left + (width - left - right) * (math.log10(px) - low_x) / (high_x - low_x),
@@ -84,19 +87,20 @@ def scatter(series, title, x_axis, y_axis):
     for decade in range(low_y, high_y + 1):
         _, y = place(10**low_x, 10**decade)
         parts += [line(left, y, width - right, y, "#ddd"), text(left - 8, y + 4, power_of_ten(decade), anchor="end")]
-    parts += [text(left, height - 8, x_axis), text(0, top - 6, y_axis)]
+    parts += [text(left, height - 8, x_axis), text(0, top - 16, y_axis)]
     for i, one in enumerate(series):
+        radius = max(7 - 1.5 * i, 2)  # so that points upon one another are seen
         for point in one.points:
             cx, cy = place(*point)
-            parts.append(f'<circle cx="{cx:.1f}" cy="{cy:.1f}" r="4.5" fill="{colour(i)}"/>')
+            parts.append(f'<circle cx="{cx:.1f}" cy="{cy:.1f}" r="{radius}" fill="{colour(i)}"/>')
         label = one.name
         if one.fit:
             factor, exponent = one.fit
             ends = [min(x for x, _ in one.points), max(x for x, _ in one.points)]
             parts.append(line(*place(ends[0], factor * ends[0]**exponent), *place(ends[1], factor * ends[1]**exponent),
                               colour(i), 1.5))
-            label += f": power {exponent:.2f}"
-        parts += [f'<circle cx="{width - right + 20}" cy="{top + 10 + 22 * i}" r="4.5" fill="{colour(i)}"/>',
+            label += f": power {exponent:.2f}".replace("-0.00", "0.00")
+        parts += [f'<circle cx="{width - right + 20}" cy="{top + 10 + 22 * i}" r="{radius}" fill="{colour(i)}"/>',
                   text(width - right + 32, top + 14 + 22 * i, label)]
     return svg(width, height, title, parts)
 
@@ -113,7 +117,7 @@ def decades(values):
 
 
 def power_of_ten(exponent):
-    return f"{10**exponent:,}" if 0 <= exponent < 5 else (f"{10.0**exponent:g}" if -4 < exponent < 0 else f"1e{exponent}")
+    return f"{10**exponent:,}" if 0 <= exponent < 7 else (f"{10.0**exponent:g}" if -4 < exponent < 0 else f"1e{exponent}")
 
 
 def colour(i):

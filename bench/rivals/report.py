@@ -99,10 +99,11 @@ def time_chart(cells, titles, part_titles):
             if cell.slicer not in OURS:
                 note += f", {ratio(cell.seconds, first[cell.part].seconds)}" if cell.counts else ", other layers"
         else:
-            note = ending(cell)
-        items.append(chart.Bar(part_titles[cell.part], titles[cell.slicer], cell.seconds if cell.ok else None,
-                               cell.slicing_seconds if cell.ok else None, note))
-    return chart.bars(items, "Time of the whole process", "seconds, logarithmic", "cutting alone")
+            note = ending(cell) + (f" after {seconds(cell.seconds)} s" if cell.ended == "timeout" else "")
+        limit_hit = cell.ended == "timeout"
+        items.append(chart.Bar(part_titles[cell.part], titles[cell.slicer], cell.seconds if cell.ok or limit_hit else None,
+                               cell.slicing_seconds if cell.ok else None, note, hollow=limit_hit))
+    return chart.bars(items, "Time of the whole process", "seconds, logarithmic; x: times Lamella's", "cutting alone")
 
 
 def as_json(cells, rivals, absent, machine, timeout, threads):

@@ -61,6 +61,11 @@ class Charts(unittest.TestCase):
         self.assertEqual(len(self.widths(text)), 1)
         self.assertIn("killed by SIGSEGV", text)
 
+    def test_a_run_that_was_stopped_is_an_outline(self):
+        text = chart.bars([chart.Bar("part", "a", 2.0, hollow=True)], "Time", "s")
+        self.assertEqual([rect.get("fill") for rect in xml.fromstring(text).iter("{http://www.w3.org/2000/svg}rect")
+                          if rect.get("x") == "150"], ["none"])
+
     def test_a_scatter_chart_is_well_formed_and_names_the_power(self):
         text = chart.scatter([chart.Series("ECC <worst>", [(1, 1), (10, 100)], (1.0, 2.0))], "Growth", "k", "lists")
         xml.fromstring(text)
