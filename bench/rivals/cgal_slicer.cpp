@@ -3,18 +3,17 @@
 //     cgal_slicer MESH HEIGHTS RESULT
 //     cgal_slicer --version
 //
-// HEIGHTS has one z a line; RESULT is JSON with the seconds of reading and of slicing and, for each height, the
-// number of rings and the sum of their lengths. Reading makes a surface mesh of the STL file, which the slicer
-// needs; slicing includes its search tree.
+// HEIGHTS has one z a line; RESULT is JSON with the seconds of reading and of slicing and, for each height,
+// the number of rings and the sum of their lengths. Reading makes a surface mesh of the STL file, which the
+// slicer needs; slicing includes its search tree.
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/IO/STL.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_slicer.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version.h>
-
-#include <CGAL/IO/STL.h>
 
 #include <array>
 #include <chrono>

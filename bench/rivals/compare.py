@@ -22,6 +22,7 @@ class Cell:
     slicing_seconds: Optional[float] = None  # cutting alone, where it can be told
     processor_seconds: Optional[float] = None
     peak_rss_bytes: Optional[int] = None
+    last_words: str = ""  # of a program that failed
     agreement: Optional[Agreement] = None  # None for Lamella, which is what others are compared with
 
     @property
@@ -110,7 +111,9 @@ def slicer_name(threads):
 
 def measured(part, slicer, outcomes):
     last = outcomes[-1]
+    lines = [line.strip() for line in last.text.splitlines() if line.strip()]
     return Cell(part, slicer, last.ended, len(outcomes),
                 seconds=statistics.median(outcome.seconds for outcome in outcomes),
                 processor_seconds=statistics.median(outcome.user + outcome.system for outcome in outcomes),
-                peak_rss_bytes=max(outcome.peak_rss_bytes for outcome in outcomes))
+                peak_rss_bytes=max(outcome.peak_rss_bytes for outcome in outcomes),
+                last_words=lines[-1][:160] if lines and not (last.ok or last.timed_out) else "")

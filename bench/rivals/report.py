@@ -57,7 +57,8 @@ def part_table(cells, titles):
     for cell in cells:
         if cell.seconds is None or not cell.ok:
             said = f"{ending(cell)}" + ("" if cell.seconds is None else f" after {seconds(cell.seconds)}")
-            table.add(titles[cell.slicer], said, "", "", "", "", megabytes(cell.peak_rss_bytes), "")
+            table.add(titles[cell.slicer], said, "", "", "", "", megabytes(cell.peak_rss_bytes),
+                      f"it says: {cell.last_words}" if cell.last_words else "")
             continue
         values = [seconds(cell.seconds), ratio(cell.seconds, ours.seconds), seconds(cell.slicing_seconds),
                   ratio(cell.slicing_seconds, ours.slicing_seconds)]

@@ -57,6 +57,12 @@ class Rivals(unittest.TestCase):
         self.assertIn("killed by SIGSEGV", report.time_chart(cells, {"lamella": "L", "lamella-1": "L1", "crash": "C"},
                                                              {"box": "box"}))
 
+    def test_a_failure_is_told_in_the_words_of_the_program(self):
+        refusal = stand_in("refusal", "raise SystemExit('the first layer is empty')")
+        cells = self.cells(refusal)
+        self.assertEqual(cells[2].ended, "exit code 1")
+        self.assertIn("it says: the first layer is empty", self.table(cells, refusal))
+
     def test_other_layers_are_shown_in_brackets(self):
         half = stand_in("half", "", lambda job: [Layer(z - job.bottom, 1, 300.0) for z in job.z])
         cells = self.cells(half)
