@@ -1,6 +1,7 @@
 """Layers as figures, whoever cut them, and how far two slicers agree."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Optional
 
 
@@ -21,19 +22,20 @@ class Agreement:
     expected_contours: int
     area_off: Optional[float]  # sum of the differences over sum of areas
     perimeter_off: Optional[float]
+    lowered: int = 0  # by that many layers the other one puts the part lower
 
     @property
     def exact(self):
         """As many contours in every layer, and areas and lengths that differ by less than one in
         100,000."""
-        return (self.missing == 0 and self.same_count == self.layers and self.measured()
+        return (self.missing == 0 and self.lowered == 0 and self.same_count == self.layers and self.measured()
                 and all(off is None or off < 1e-5 for off in (self.area_off, self.perimeter_off)))
 
     @property
     def near(self):
-        """What the rounding and thinning of tool-path programs leave of the same layers: one layer more or less at the
-        top, the number of contours within one in a hundred, areas or lengths within one in a hundred."""
-        return (self.layers > 0 and self.missing <= 1 and self.measured()
+        """What the rounding and thinning of tool-path programs leave of the same layers: one layer more or less (or one
+        in a hundred), the number of contours within one in a hundred, areas and lengths within one in a hundred."""
+        return (self.layers > 0 and self.missing <= max(1, 0.01 * self.layers) and self.measured()
                 and abs(self.contours - self.expected_contours) <= 0.01 * self.expected_contours
                 and all(off is None or off < 0.01 for off in (self.area_off, self.perimeter_off)))
 
@@ -44,6 +46,8 @@ class Agreement:
         if self.exact:
             return "equal"
         parts = []
+        if self.lowered:
+            parts.append("stands one layer lower" if self.lowered == 1 else f"stands {self.lowered} layers lower")
         if self.missing:
             parts.append("one layer more or less" if self.missing == 1 else f"{self.missing} layers more or less")
         if self.same_count != self.layers:
@@ -54,8 +58,19 @@ class Agreement:
         return ", ".join(parts)
 
 
-def agreement(found, expected):
-    """Compares by height, to a thousandth of a millimetre."""
+def agreement(found, expected, layer_height=None):
+    """Compares by height, to a thousandth of a millimetre. With `layer_height`, for programs that leave out the lowest
+    layers when no wall fits into them and put the rest lower, also one and two layers lower: the closest is taken."""
+    if layer_height is None or not found:
+        return agreement_as_it_stands(found, expected)
+    tries = []
+    for lowered in range(3):
+        raised = [replace(layer, z=layer.z + lowered * layer_height) for layer in found]
+        tries.append(replace(agreement_as_it_stands(raised, expected), lowered=lowered))
+    return min(tries, key=lambda one: math.inf if one.area_off is None else one.area_off)
+
+
+def agreement_as_it_stands(found, expected):
     by_height = {round(layer.z, 3): layer for layer in expected}
     pairs = [(layer, by_height[round(layer.z, 3)]) for layer in found if round(layer.z, 3) in by_height]
     return Agreement(

@@ -88,7 +88,7 @@ class Comparison:
         if not cell.ok:
             return cell
         try:
-            cell.agreement = agreement(rival.layers(job), expected)
+            cell.agreement = agreement(rival.layers(job), expected, job.layer_height if rival.sinks else None)
             cell.slicing_seconds = rival.slicing_seconds(job, outcomes[-1].text)
         except (OSError, ValueError, KeyError, IndexError) as error:
             cell.ended = f"no layers: {error}"
@@ -116,4 +116,4 @@ def measured(part, slicer, outcomes):
                 seconds=statistics.median(outcome.seconds for outcome in outcomes),
                 processor_seconds=statistics.median(outcome.user + outcome.system for outcome in outcomes),
                 peak_rss_bytes=max(outcome.peak_rss_bytes for outcome in outcomes),
-                last_words=lines[-1][:160] if lines and not (last.ok or last.timed_out) else "")
+                last_words=" ".join(lines[-2:])[-200:] if lines and not (last.ok or last.timed_out) else "")

@@ -17,8 +17,6 @@ def command(job):
         "layer_height": f"{job.layer_height:g}", "layer_height_0": f"{job.layer_height:g}",
         "wall_line_count": 1, "wall_line_width_0": WIDTH_MM,
         "infill_sparse_density": 0, "infill_line_distance": 0, "top_layers": 0, "bottom_layers": 0,
-        # Else it puts the part lower where the wall does not fit into the lowest layers.
-        "remove_empty_first_layers": "false",
         "adhesion_type": "none", "support_enable": "false",
         "machine_width": 1000, "machine_depth": 1000, "machine_height": 1000, "machine_center_is_zero": "true",
         "center_object": "true",
@@ -50,4 +48,5 @@ CURA = Rival(
     layers=lambda job: toolpath.read_layers(job.file("cura.gcode"), lambda line: line.startswith(";LAYER:"), is_wall,
                                             WIDTH_MM, job.layer_height),
     slicing_seconds=slicing_seconds,
-    threaded=True)
+    threaded=True,
+    sinks=True)

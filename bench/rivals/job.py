@@ -29,3 +29,4 @@ class Rival:
     layers: Callable[[Job], list]  # what it found, read from what it left
     slicing_seconds: Callable[[Job, str], Optional[float]]  # cutting alone; from the files and the printed text
     threaded: bool
+    sinks: bool = False  # it leaves out lowest layers that are too small for a wall, and puts the others lower

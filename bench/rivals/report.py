@@ -33,13 +33,13 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
              "7 MB, and nothing shows less.",
              "**Equal** means: the same number of contours in every layer, and areas and lengths that agree to one in "
              "100,000. Otherwise the differences are told: layers without a partner at that height, contours in all "
-             "layers, and sums of differences over sums. A cell counts when at most one layer is missing and contours, "
-             "areas and lengths agree within 1%. Tool paths run inside the contour and close gaps by design: areas are "
+             "layers, and sums of differences over sums. A cell counts when at most one layer is missing (or 1% of them) "
+             "and contours, areas and lengths agree within 1%. Tool paths run inside the contour and close gaps by design: areas are "
              "computed back from them.")
-    table = Table(["slicer", "version", "writes", "compared"], texts=4)
-    table.add("Lamella", machine["program"].split()[-1], "CLI file", "is compared with")
+    table = Table(["slicer", "version", "threads", "writes", "compared"], texts=5)
+    table.add("Lamella", machine["program"].split()[-1], "all, or one", "CLI file", "is compared with")
     for rival, version in rivals:
-        table.add(rival.title, version, rival.writes, rival.compared)
+        table.add(rival.title, version, "all" if rival.threaded else "one", rival.writes, rival.compared)
     page.show(table)
     for title, why in absent.items():
         page.say(f"**{title}** is missing: {why}.")

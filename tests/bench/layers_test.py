@@ -26,6 +26,16 @@ class Agreement(unittest.TestCase):
         self.assertTrue(found.near)
         self.assertIn("one layer more or less", found.text())
 
+    def test_a_stack_that_stands_one_layer_lower_is_told(self):
+        uneven = [Layer(0.05 + 0.1 * i, 2, 10.0 + 5 * (i % 3), 20.0) for i in range(200)]
+        sunk = [Layer(layer.z - 0.1, 2, layer.area_mm2) for layer in uneven[1:]]
+        self.assertFalse(agreement(sunk, uneven).near)
+        found = agreement(sunk, uneven, layer_height=0.1)
+        self.assertEqual(found.lowered, 1)
+        self.assertTrue(found.near)
+        self.assertFalse(found.exact)
+        self.assertIn("one layer lower", found.text())
+
     def test_a_lost_contour_in_a_small_stack_does_not_count(self):
         other = stack(5)
         other[2].contours = 1
