@@ -9,6 +9,8 @@ from bench.harness import lamella, parts
 
 ENGINES = ["conventional", "ecc", "ecc-edge-match", "eecc", "sweep"]
 REFERENCE = "sweep"
+# Whose work is proportional to the planes. With edge matching most is done on the first plane of a triangle.
+PROPORTIONAL = ["conventional", "ecc"]
 # Relative to the largest layer; for engines that order or round otherwise. Equal hashes need no tolerance.
 AREA_TOLERANCE = 1e-9
 
@@ -35,9 +37,9 @@ class Cell:
         return self.ended == "ok"
 
     @property
-    def intersections(self):
-        """Triangles crossing planes; 0 for engines that do not count them."""
-        return sum(self.matching["inserted"].values()) if self.matching else 0
+    def best_known(self):
+        """Measured or estimated seconds of a cell that is not wrong."""
+        return self.seconds if self.ok else (self.estimate if self.ended == "timeout" else None)
 
 
 @dataclass
@@ -48,7 +50,7 @@ class Laboratory:
     timeout: float
     repeat_below: float = 1.0
     most_runs: int = 5
-    beyond: dict = field(default_factory=dict)  # (engine, family) -> the last cell that could be measured or not
+    latest: dict = field(default_factory=dict)  # (engine, family) -> the cell of the next smaller part
 
     def cells(self, part, engines, tell=lambda cell: None):
         mesh = parts.make(part, self.program, self.parts_folder)
@@ -63,17 +65,14 @@ class Laboratory:
         return found
 
     def cell(self, part, mesh, engine, reference):
-        smaller = self.beyond.get((engine, part.family)) if part.family else None
-        if smaller is None:
-            runs = self.slice(part, mesh, engine)
-            cell = self.judged(part, engine, runs, reference)
-            if cell.ended != "timeout":
-                return cell
+        smaller = self.latest.get((engine, part.family)) if part.family else None
+        if smaller is None or smaller.ended != "timeout":
+            cell = self.judged(part, engine, self.slice(part, mesh, engine), reference)
         else:
             cell = Cell(part.name, engine, "timeout")
-        self.estimate(cell, part, mesh, reference, smaller)
-        if part.family:
-            self.beyond[(engine, part.family)] = cell
+        if cell.ended == "timeout":
+            self.estimate(cell, part, mesh, reference, smaller)
+        self.latest[(engine, part.family)] = cell
         return cell
 
     def slice(self, part, mesh, engine, *options):
@@ -110,32 +109,51 @@ class Laboratory:
         cell.triangles = reference.stats["input"]["triangles"]
         cell.layers = len(planes)
         given_up = smaller is not None and smaller.estimated_from.startswith("the square")
-        few = evenly(planes, max(1, len(planes) // 30))
-        run = None if given_up else self.some_planes(part, mesh, cell.engine, few)
-        if run is not None and run.ok:
-            # As many as half of the limit should hold: the fewer the planes, the more of their lists fit the cache.
-            count = int(len(few) * self.timeout / 2 / max(run.outcome.seconds, 1e-3))
-            more = evenly(planes, min(count, len(planes) // 2))
-            second = self.some_planes(part, mesh, cell.engine, more) if len(more) > len(few) else None
-            if second is not None and second.ok:
-                few, run = more, second
-            if not checked(run.stats["layers"], few):
-                cell.ended = "wrong"
-                return
-            seconds, share = run.stats["seconds"], len(planes) / len(few)
-            # Reading and welding are done once, however many planes there are.
-            cell.estimate = seconds["total"] + (seconds["link"] + seconds["slice"]) * (share - 1)
-            cell.estimated_from = f"{len(few)} of {len(planes)} planes"
-            if "matching" in run.stats:
-                cell.searches_estimate = run.stats["matching"]["searches"] * share
-        elif smaller is not None and smaller.estimate:
-            cell.estimate = smaller.estimate * (cell.triangles / smaller.triangles) ** 2
+        samples = [] if given_up else self.some_planes(part, mesh, cell.engine, planes)
+        if None in samples:
+            cell.ended = "wrong"
+        elif len(samples) > 1 or (samples and cell.engine in PROPORTIONAL):
+            # A line through what two numbers of planes took, or one through nothing.
+            first = samples[0] if len(samples) > 1 else Sample(0, 0.0, 0)
+            last = samples[-1]
+            further = (len(planes) - last.planes) / (last.planes - first.planes)
+            cell.estimate = last.total + max(0.0, last.seconds - first.seconds) * further
+            cell.searches_estimate = last.searches + (last.searches - first.searches) * further
+            cell.estimated_from = f"{' and '.join(str(one.planes) for one in samples)} of {len(planes)} planes"
+        elif smaller is not None and smaller.best_known:
+            cell.estimate = smaller.best_known * (cell.triangles / smaller.triangles) ** 2
             cell.estimated_from = f"the square of the triangles, from {smaller.part}"
 
-    def some_planes(self, part, mesh, engine, layers):
-        listed = self.folder / "heights.txt"
-        listed.write_text("".join(f"{layer['z']!r}\n" for layer in layers), encoding="utf-8")
-        return self.slice(part, mesh, engine, "--z-list", listed)[-1]
+    def some_planes(self, part, mesh, engine, planes):
+        """Samples of two numbers of planes, if the limit allows; a None among them is a wrong result."""
+        samples, count = [], max(1, len(planes) // 30)
+        while len(samples) < 2:
+            chosen = evenly(planes, count)
+            listed = self.folder / "heights.txt"
+            listed.write_text("".join(f"{layer['z']!r}\n" for layer in chosen), encoding="utf-8")
+            run = self.slice(part, mesh, engine, "--z-list", listed)[-1]
+            if not run.ok:
+                break
+            if not checked(run.stats["layers"], chosen):
+                return [None]
+            seconds = run.stats["seconds"]
+            samples.append(Sample(count, seconds["link"] + seconds["slice"], run.stats.get("matching", {}).get("searches", 0),
+                                  seconds["total"]))
+            # As many as half of the limit should hold: the fewer the planes, the more of their lists fit the cache.
+            count = min(int(count * self.timeout / 2 / max(run.outcome.seconds, 1e-3)), len(planes) // 2)
+            if count <= samples[-1].planes:
+                break
+        return samples
+
+
+@dataclass
+class Sample:
+    """What some of the planes took."""
+
+    planes: int
+    seconds: float  # for lists and layers: what grows with the planes
+    searches: int
+    total: float = 0.0
 
 
 def evenly(items, count):

@@ -42,19 +42,12 @@ def ours(cell):
     return cell.ended
 
 
-def best_known(cell):
-    """Measured or estimated seconds of a cell that is not wrong."""
-    if cell is None:
-        return None
-    return cell.seconds if cell.ok else (cell.estimate if cell.ended == "timeout" else None)
-
-
 def compared(paper, cell, stopped_after):
     """`paper` is a number, None where they stopped, "" where they say nothing."""
     if cell is None:
         return ""
     said = "not told" if paper == "" else (f"> {stopped_after:,}" if paper is None else brief(paper))
-    mine = best_known(cell)
+    mine = cell.best_known
     if mine is None or paper == "":
         return f"{said} / {ours(cell)}"
     ratio = (stopped_after if paper is None else paper) / mine
@@ -64,7 +57,7 @@ def compared(paper, cell, stopped_after):
 
 
 def to_sweep(eecc, sweep):
-    mine, its = best_known(eecc), best_known(sweep)
+    mine, its = (cell and cell.best_known for cell in (eecc, sweep))
     return f"{'≈ ' if not eecc.ok else ''}{brief(mine / its)} x" if mine and its else ""
 
 
@@ -131,13 +124,13 @@ def against_rivals(rival_cells, cells, titles, rival_titles, figures):
                 said = "" if paper == "" else ("crashed" if paper is None else brief(paper))
                 mine = brief(cell.seconds) if cell.ok else cell.ended
                 times_ = brief(paper / cell.seconds) if paper and cell.ok else ""
-                layers = "" if cell.agreement is None else cell.agreement.text()
+                layers = cell.last_words if cell.agreement is None else cell.agreement.text()
                 table.add(titles[part], rival_titles[cell.slicer], said, mine, times_, layers)
         for engine in ("eecc", "sweep"):
             cell = find(cells, part, engine)
             if cell:
                 paper = theirs.get(engine)
-                mine = best_known(cell)
+                mine = cell.best_known
                 table.add(titles[part], ENGINE_TITLES[engine], brief(paper) if paper else "", ours(cell),
                           brief(paper / mine) if paper and mine else "", "")
     return table

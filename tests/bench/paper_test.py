@@ -72,7 +72,7 @@ class Cells(unittest.TestCase):
             estimated = Cell(part.name, "ecc", "timeout")
             mesh = part.path(Path(folder) / "parts")
             laboratory.estimate(estimated, part, mesh, laboratory.slice(part, mesh, "sweep")[-1], None)
-        self.assertEqual(estimated.estimated_from, "15 of 30 planes")
+        self.assertEqual(estimated.estimated_from, "1 and 15 of 30 planes")
         self.assertEqual(estimated.searches_estimate, measured.matching["searches"])
 
     def test_beyond_that_the_square_of_the_triangles_is_taken(self):
@@ -85,6 +85,19 @@ class Cells(unittest.TestCase):
             cell = Cell(part.name, "ecc", "timeout")
             laboratory.estimate(cell, part, mesh, laboratory.slice(part, mesh, "sweep")[-1], smaller)
         self.assertAlmostEqual(cell.estimate, 40.0)
+
+    def test_searches_of_all_planes_follow_from_two_numbers_of_planes(self):
+        """Also with edge matching, where most of them are on the first plane of a triangle."""
+        with tempfile.TemporaryDirectory() as folder:
+            part = parts.TINY_PARTS[1]
+            laboratory = Laboratory(LAMELLA, Path(folder), Path(folder) / "parts", timeout=60)
+            cells = {engine: laboratory.cells(part, [engine])[0] for engine in ("ecc", "eecc")}
+            mesh = part.path(Path(folder) / "parts")
+            reference = laboratory.slice(part, mesh, "sweep")[-1]
+            for engine, measured in cells.items():
+                estimated = Cell(part.name, engine, "timeout")
+                laboratory.estimate(estimated, part, mesh, reference, None)
+                self.assertAlmostEqual(estimated.searches_estimate, measured.matching["searches"], delta=30)
 
 
 class Run(unittest.TestCase):
