@@ -43,7 +43,9 @@ def main(arguments):
     work.mkdir(parents=True, exist_ok=True)
     here = machine.describe(options.lamella)
     tiny = options.tiny
-    chosen = parts.TINY_PARTS if tiny else parts.named(options.parts, parts.PAPER_PARTS) if options.parts else parts.PAPER_PARTS
+    chosen = parts.TINY_PARTS if tiny else parts.PAPER_PARTS
+    if options.parts:
+        chosen = parts.named(options.parts, chosen)
     measured = Measured(chosen)
 
     def write():

@@ -154,7 +154,8 @@ def exponents(measured, figures):
                 fitted = growth.exponent(chosen, x, y)
                 # The worst case of the paper is the split order; edge matching alone is not in its table.
                 paper = figures.get(engine, {}).get(key, "") if order == "split" else ""
-                table.add(title, ENGINE_TITLES[engine], order, paper, "-" if fitted is None else f"{fitted:.2f}".replace("-0.00", "0.00"))
+                said = "-" if fitted is None else f"{fitted:.2f}".replace("-0.00", "0.00")
+                table.add(title, ENGINE_TITLES[engine], order, paper, said)
     return table
 
 

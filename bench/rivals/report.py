@@ -51,8 +51,8 @@ def counted(threads):
 
 
 def part_table(cells, titles):
-    table = Table(["slicer", "whole process s", "to Lamella's", "cutting alone s", "to Lamella's", "processor s", "peak MB",
-                   "same layers"])
+    table = Table(["slicer", "whole process s", "to Lamella's", "cutting alone s", "to Lamella's", "processor s",
+                   "peak MB", "same layers"])
     ours = cells[0]
     for cell in cells:
         if cell.seconds is None or not cell.ok:
