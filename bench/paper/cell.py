@@ -117,7 +117,8 @@ class Laboratory:
             first = samples[0] if len(samples) > 1 else Sample(0, 0.0, 0)
             last = samples[-1]
             further = (len(planes) - last.planes) / (last.planes - first.planes)
-            cell.estimate = last.total + max(0.0, last.seconds - first.seconds) * further
+            # Never less than the limit, which it passed: lists of few planes fit the cache, those of all may not.
+            cell.estimate = max(self.timeout, last.total + max(0.0, last.seconds - first.seconds) * further)
             cell.searches_estimate = last.searches + (last.searches - first.searches) * further
             cell.estimated_from = f"{' and '.join(str(one.planes) for one in samples)} of {len(planes)} planes"
         elif smaller is not None and smaller.best_known:

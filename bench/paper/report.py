@@ -20,7 +20,7 @@ def build_page(measured, figures, machine, timeout):
              f"{machine['system']}; {machine['compiler']}; {machine['program']}; {machine['date']}.",
              f"Each measurement is a process of its own; seconds are from opening the file to the last layer in memory, "
              f"medians where a run is short. Limit for a run: {timeout:g} s. **≈** marks what was not measured in "
-             "full but estimated from a part of the planes (rather low: the lists of fewer planes fit the cache better) or "
+             "full but estimated from a part of the planes (a lower bound: lists of few planes fit the cache, those of all may not, which can be ten times slower) or "
              "from the next smaller sheet. A time counts when the layers "
              "are those of the sweep engine: see *correctness* below.".replace("*correctness*", "**Correctness**"))
     page.heading("Table 5: time")
