@@ -71,6 +71,18 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/files
 	build-bench/bench/kernels
 
+# The comparisons need other people's programs, and run for an hour or more in full; see bench/README.md for options.
+packages-rivals: packages
+	@tools/install_packages.sh tools/packages-bench.txt tools/packages-rivals.txt
+
+rivals: build packages-rivals  ## compare with other slicers on the same parts: out/rivals/ (bench/README.md)
+	cmake --preset bench
+	cmake --build build-bench --target lamella_cgal_slicer
+	python3 -B -m bench.rivals $(OPTIONS)
+
+paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
+	python3 -B -m bench.paper $(OPTIONS)
+
 format:  ## lay out the sources by .clang-format
 	@tools/install_packages.sh tools/packages-lint.txt
 	@clang-format -i $(SOURCES)
@@ -93,4 +105,4 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
-        bench format format-check lint install clean
+        bench packages-rivals rivals paper format format-check lint install clean

@@ -1,0 +1,1 @@
+"""What `bench/rivals` and `bench/paper` share: processes measured from outside, parts, tables and charts."""

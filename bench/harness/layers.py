@@ -1,0 +1,89 @@
+"""Layers as figures, whoever cut them, and how far two slicers agree."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Optional
+
+
+@dataclass
+class Layer:
+    z: float  # of the cut, mm from the bottom of the part
+    contours: int
+    area_mm2: Optional[float] = None
+    perimeter_mm: Optional[float] = None
+
+
+@dataclass
+class Agreement:
+    layers: int  # that both have
+    missing: int  # that only one of the two has
+    same_count: int  # layers with as many contours
+    contours: int  # of the other slicer, in all
+    expected_contours: int
+    area_off: Optional[float]  # sum of the differences over sum of areas
+    perimeter_off: Optional[float]
+    lowered: int = 0  # by that many layers the other one puts the part lower
+
+    @property
+    def exact(self):
+        """As many contours in every layer, and areas and lengths that differ by less than one in
+        100,000."""
+        return (self.missing == 0 and self.lowered == 0 and self.same_count == self.layers and self.measured()
+                and all(off is None or off < 1e-5 for off in (self.area_off, self.perimeter_off)))
+
+    @property
+    def near(self):
+        """What the rounding and thinning of tool-path programs leave of the same layers: one layer more or less (or one
+        in a hundred), the number of contours within one in a hundred, areas and lengths within one in a hundred."""
+        return (self.layers > 0 and self.missing <= max(1, 0.01 * self.layers) and self.measured()
+                and abs(self.contours - self.expected_contours) <= 0.01 * self.expected_contours
+                and all(off is None or off < 0.01 for off in (self.area_off, self.perimeter_off)))
+
+    def measured(self):
+        return self.area_off is not None or self.perimeter_off is not None
+
+    def text(self):
+        if self.exact:
+            return "equal"
+        parts = []
+        if self.lowered:
+            parts.append("stands one layer lower" if self.lowered == 1 else f"stands {self.lowered} layers lower")
+        if self.missing:
+            parts.append("one layer more or less" if self.missing == 1 else f"{self.missing} layers more or less")
+        if self.same_count != self.layers:
+            parts.append(f"{self.contours:,} contours for {self.expected_contours:,}")
+        for name, off in (("areas", self.area_off), ("lengths", self.perimeter_off)):
+            if off is not None:
+                parts.append(f"{name} off by {100 * off:.2g}%")
+        return ", ".join(parts)
+
+
+def agreement(found, expected, layer_height=None):
+    """Compares by height, to a thousandth of a millimetre. With `layer_height`, for programs that leave out the lowest
+    layers when no wall fits into them and put the rest lower, also one and two layers lower: the closest is taken."""
+    if layer_height is None or not found:
+        return agreement_as_it_stands(found, expected)
+    tries = []
+    for lowered in range(3):
+        raised = [replace(layer, z=layer.z + lowered * layer_height) for layer in found]
+        tries.append(replace(agreement_as_it_stands(raised, expected), lowered=lowered))
+    return min(tries, key=lambda one: math.inf if one.area_off is None else one.area_off)
+
+
+def agreement_as_it_stands(found, expected):
+    by_height = {round(layer.z, 3): layer for layer in expected}
+    pairs = [(layer, by_height[round(layer.z, 3)]) for layer in found if round(layer.z, 3) in by_height]
+    return Agreement(
+        layers=len(pairs),
+        missing=max(len(found), len(expected)) - len(pairs),
+        same_count=sum(mine.contours == theirs.contours for mine, theirs in pairs),
+        contours=sum(mine.contours for mine, _ in pairs),
+        expected_contours=sum(theirs.contours for _, theirs in pairs),
+        area_off=relative_difference([(mine.area_mm2, theirs.area_mm2) for mine, theirs in pairs]),
+        perimeter_off=relative_difference([(mine.perimeter_mm, theirs.perimeter_mm) for mine, theirs in pairs]))
+
+
+def relative_difference(pairs):
+    pairs = [(a, b) for a, b in pairs if a is not None and b is not None]
+    total = sum(abs(b) for _, b in pairs)
+    return sum(abs(a - b) for a, b in pairs) / total if total else None

@@ -1,0 +1,1 @@
+"""The tables of the EECC paper, measured again: see ../README.md."""

@@ -1,0 +1,104 @@
+"""Measures the tables of the EECC paper again; writes paper.md, paper.html and paper.json.
+
+    python3 -m bench.paper [options]            (from the root of the source tree; `make paper` does it)
+"""
+
+import argparse
+import json
+import os
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from bench.harness import machine, parts
+from bench.paper import growth as growths
+from bench.paper import report
+from bench.paper.cell import ENGINES, Laboratory
+from bench.rivals.__main__ import tell as tell_rival
+from bench.rivals.compare import Comparison
+from bench.rivals.cura import CURA
+from bench.rivals.prusa_slicer import PRUSA_SLICER
+from bench.rivals.slic3r import SLIC3R
+
+FIGURES = Path(__file__).with_name("figures.json")
+RIVALS = [CURA, SLIC3R, PRUSA_SLICER]  # the last is not in the paper, but is Slic3r's successor
+
+
+@dataclass
+class Measured:
+    parts: list
+    cells: list = field(default_factory=list)
+    order_parts: dict = field(default_factory=dict)
+    order_cells: list = field(default_factory=list)
+    rival_cells: list = field(default_factory=list)
+    rival_titles: dict = field(default_factory=dict)
+    growth: growths.Growth = field(default_factory=growths.Growth)
+
+
+def main(arguments):
+    options = parse(arguments)
+    figures = json.loads(FIGURES.read_text(encoding="utf-8"))
+    folder = Path(options.out)
+    work, parts_folder = folder / "work", folder.parent / "parts"
+    work.mkdir(parents=True, exist_ok=True)
+    here = machine.describe(options.lamella)
+    tiny = options.tiny
+    chosen = parts.TINY_PARTS if tiny else parts.PAPER_PARTS
+    if options.parts:
+        chosen = parts.named(options.parts, chosen)
+    measured = Measured(chosen)
+
+    def write():
+        report.build_page(measured, figures, here, options.timeout).write(folder, "paper")
+        text = json.dumps(report.as_json(measured, here, options.timeout), indent=1)
+        (folder / "paper.json").write_text(text + "\n", encoding="utf-8")
+
+    measured.growth = growths.measure(options.lamella, work, parts_folder, options.timeout, small=tiny, tell=tell_growth)
+    laboratory = Laboratory(options.lamella, work, parts_folder, options.timeout)
+    sheets = {order: parts.sheet(4 if tiny else 100, order, 32 if tiny else None) for order in ("wall", "split", "shuffle")}
+    measured.order_parts = {order: part.name for order, part in sheets.items()}
+    for part in sheets.values():
+        measured.order_cells += Laboratory(options.lamella, work, parts_folder, options.timeout).cells(part, ENGINES, tell)
+    for part in chosen:
+        measured.cells += laboratory.cells(part, ENGINES, tell)
+        write()  # so that a long run that is stopped has left what it found
+    measure_rivals(measured, figures, folder, options)
+    write()
+    print(f"The report is in {folder}/paper.html")
+    wrong = [cell for cell in measured.cells + measured.order_cells if cell.ended not in ("ok", "timeout")]
+    return 1 if wrong else 0
+
+
+def measure_rivals(measured, figures, folder, options):
+    present = [] if options.without_rivals else [rival for rival in RIVALS if rival.version() is not None]
+    measured.rival_titles = {rival.name: rival.title for rival in present}
+    comparison = Comparison(options.lamella, folder, options.rival_timeout, len(os.sched_getaffinity(0)))
+    for part in measured.parts:
+        if present and part.name in figures["table6_seconds"]:
+            measured.rival_cells += comparison.run(part, present, tell_rival)
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="python3 -m bench.paper", description=__doc__.splitlines()[0])
+    parser.add_argument("--lamella", type=Path, default="build/lamella", help="the program (default: %(default)s)")
+    parser.add_argument("--out", default="out/paper", help="folder of the report (default: %(default)s)")
+    parser.add_argument("--timeout", type=float, default=60, help="seconds for one run (default: %(default)s)")
+    parser.add_argument("--rival-timeout", type=float, default=300, help="the same for Table 6 (default: %(default)s)")
+    parser.add_argument("--parts", nargs="+", metavar="PART", help="which parts (default: all)")
+    parser.add_argument("--without-rivals", action="store_true", help="leave Table 6 out")
+    parser.add_argument("--tiny", action="store_true", help="tiny parts, to try the report itself")
+    return parser.parse_args(arguments)
+
+
+def tell(cell):
+    taken = f" {cell.seconds:.4f} s" if cell.ok else (f", estimated {cell.estimate:.0f} s" if cell.estimate else "")
+    print(f"{cell.part}: {cell.engine}: {cell.ended}{taken}", flush=True)
+
+
+def tell_growth(sample):
+    print(f"growth: {sample.engine}, {sample.order}, k {sample.k:.0f}, m {sample.m}: {sample.searches} searches, "
+          f"{sample.comparisons} comparisons", flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

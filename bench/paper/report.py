@@ -1,0 +1,168 @@
+"""The page that holds all tables."""
+
+import dataclasses
+
+from bench.harness import chart
+from bench.harness.page import Chart, Page, Table, brief
+from bench.paper import fit, growth, tables
+from bench.paper.cell import ENGINES
+from bench.paper.tables import ENGINE_TITLES
+
+
+def build_page(measured, figures, machine, timeout):
+    """`measured`: parts, cells, order_parts, order_cells, rival_cells, rival_titles, growth."""
+    titles = {part.name: part.title for part in measured.parts}
+    page = Page("The EECC paper, measured again")
+    page.say(f"{figures['source']}. Beside each figure of the paper stands ours and the ratio paper / ours.",
+             "The paper does not say what its machine was, so a ratio of seconds mixes machine, implementation and the "
+             "part. Counts (Tables 2, 3, 4 and 7) do not depend on a machine; ratios between engines hardly do.",
+             f"{machine['processor']}, {machine['threads']} threads (the paper's engines use one); {machine['memory']}; "
+             f"{machine['system']}; {machine['compiler']}; {machine['program']}; {machine['date']}.",
+             f"Each measurement is a process of its own; seconds are from opening the file to the last layer in memory, "
+             f"medians where a run is short. Limit for a run: {timeout:g} s. **≈** marks what was not measured in "
+             "full but estimated from a part of the planes (a lower bound: lists of few planes fit the cache, those of all may not, which can be ten times slower) or "
+             "from the next smaller sheet. A time counts when the layers "
+             "are those of the sweep engine: see *correctness* below.".replace("*correctness*", "**Correctness**"))
+    page.heading("Table 5: time")
+    page.show(tables.times(measured.cells, titles, figures["table5_seconds"], ENGINES, figures["stopped_after_seconds"]))
+    page.show(Chart("times", "Seconds of each engine", time_chart(measured.cells, titles)))
+    page.say(*estimates(measured.cells, titles))
+    page.heading("Table 1: conventional and ECC")
+    first = {name: titles[name] for name in figures["table1_seconds"] if name in titles}
+    page.show(tables.times(measured.cells, first, figures["table1_seconds"], ["conventional", "ecc"],
+                           figures["stopped_after_seconds"]))
+    page.heading("Table 2: searches")
+    page.show(tables.searches(measured.cells, titles, figures["table2_searches"]))
+    page.heading("Table 3: cases under edge matching")
+    page.show(tables.cases(measured.cells, titles, figures["table3_cases"]))
+    page.say("Sheets are rebuilt to the triangle; the other parts are of the same kind and size, so their counts can only "
+             "be alike. What the paper counts as put in front of or behind a list depends on the order of the triangles in "
+             "its files, which it does not give.")
+    page.heading("Table 4: how often each case occurs")
+    shares, count = tables.case_shares(measured.cells, figures["table4_percent"])
+    page.show(shares)
+    page.say(f"The paper's mean is over 50 parts that it does not publish, ours over {count}.")
+    page.heading("Table 6: other slicers")
+    if measured.rival_cells:
+        page.show(tables.against_rivals(measured.rival_cells, measured.cells, titles, measured.rival_titles,
+                                        figures["table6_seconds"]))
+        page.say("Theirs are whole processes, from the STL file to G-code with one wall and no infill (Slic3r: its slices "
+                 "as SVG); `make rivals` has the full comparison. The paper had timers put into their sources, of "
+                 "versions that it does not name.")
+    else:
+        page.say("Not measured in this run.")
+    page.heading("Table 7: growth")
+    page.say("The paper's formulas, with k lists on a plane and m intersections on a triangle, and n triangles: ECC checks "
+             "O(m n) at best, O(k m n) at worst; EECC O(2 n) and O(2 k n). Here both are counted on sheets in which k and m "
+             "are set alone. k is half the triangles that cross a plane, which the split order reaches.")
+    page.show(tables.exponents(measured.growth, figures["table7_checks"]))
+    for block in growth_charts(measured.growth):
+        page.show(block)
+    page.heading("Section 4.1: bytes per intersection")
+    page.show(tables.memory(measured.growth, figures["section41_bytes"]))
+    page.say("The node is what the paper counts. Ours keeps coordinates in double precision, 8 bytes more. The other columns "
+             "are slopes over the number of intersections: of what nodes, lists and edges allocate, and of the peak memory "
+             "of the whole process. The sweep engine keeps no node per intersection: what grows is its output.")
+    page.heading("The order of the triangles")
+    page.say("The same sheet with its triangles in three orders: wall by wall, split (all lower triangles of the walls, then "
+             "all upper ones, as the paper's counts suggest; the sheets of all tables above), and shuffled. The order decides "
+             "how many lists are open at a time.")
+    page.show(tables.orders(measured.order_cells, measured.order_parts))
+    page.heading("Correctness")
+    page.show(correctness(measured.cells + measured.order_cells))
+    page.heading("What could not be reproduced")
+    page.say(*not_reproduced(measured.cells, titles, figures))
+    return page
+
+
+def time_chart(cells, titles):
+    items = []
+    for cell in sorted(cells, key=lambda cell: cell.engine != "sweep"):
+        value = cell.best_known
+        note = cell.ended if value is None else f"{tables.ours(cell)} s"
+        items.append(chart.Bar(titles[cell.part], ENGINE_TITLES[cell.engine], value, None, note))
+    items.sort(key=lambda item: list(titles.values()).index(item.group))
+    return chart.bars(items, "Seconds of each engine (≈: estimated)", "seconds, logarithmic")
+
+
+def estimates(cells, titles):
+    told = [f"{titles[cell.part]}, {ENGINE_TITLES[cell.engine]}: more than the limit; ≈ {brief(cell.estimate)} s from "
+            f"{cell.estimated_from}" for cell in cells if cell.estimate]
+    return ["Estimated: " + "; ".join(told) + "."] if told else []
+
+
+def growth_charts(measured):
+    def series(samples, x, y):
+        # Edge matching alone differs from EECC in what a search looks at, the shuffled order hardly from split.
+        found = []
+        for engine in ("ecc", "eecc"):
+            for order in ("split", "wall"):
+                points = [(x(s), y(s)) for s in samples if s.engine == engine and s.order == order and y(s) > 0]
+                if points:
+                    found.append(chart.Series(f"{ENGINE_TITLES[engine]}, {order}", points, fit.power_law(points)))
+        return found
+
+    per_search = series(measured.against_k, lambda s: s.k, lambda s: s.comparisons / s.searches)
+    per_triangle = series(measured.against_m, lambda s: s.m, lambda s: s.searches / s.triangles)
+    checks = series(measured.against_m, lambda s: s.m, lambda s: s.comparisons / s.triangles)
+    k_axis, m_axis = "k: half the triangles that cross a plane", "m: planes that cross a triangle"
+    drawn = [("growth-k", "Lists looked at in one search", per_search, k_axis, "lists per search"),
+             ("growth-m", "Searches for one triangle", per_triangle, m_axis, "searches per triangle"),
+             ("growth-m-lists", "Lists looked at for one triangle", checks, m_axis, "lists per triangle")]
+    return [Chart(name, title, chart.scatter(points, title, x_axis, y_axis))
+            for name, title, points, x_axis, y_axis in drawn if points]
+
+
+def correctness(cells):
+    table = Table(["engine", "cells measured", "equal hashes in every layer", "equal within tolerance", "wrong", "failed"])
+    for engine in ENGINES:
+        mine = [cell for cell in cells if cell.engine == engine]
+        if mine:
+            table.add(ENGINE_TITLES[engine], sum(cell.ok for cell in mine), sum(cell.check == "hashes" for cell in mine),
+                      sum(cell.ok and cell.check != "hashes" for cell in mine),
+                      sum(cell.ended == "wrong" for cell in mine),
+                      sum(cell.ended not in ("ok", "wrong", "timeout") for cell in mine))
+    return table
+
+
+def not_reproduced(cells, titles, figures):
+    """The largest departures from the paper, and the general reasons."""
+    texts = ["The seconds of the paper as such: its machine, compiler and the order of the triangles in its files are not "
+             "known, and all parts but the sheets had to be built anew."]
+    for engine in ("ecc", "eecc"):
+        ratios = {}
+        for part, theirs in figures["table5_seconds"].items():
+            found = tables.find(cells, part, engine)
+            mine = found and found.best_known
+            if mine and theirs.get(engine):
+                ratios[part] = theirs[engine] / mine
+        if len(ratios) > 1:
+            low, high = min(ratios, key=ratios.get), max(ratios, key=ratios.get)
+            texts.append(
+                f"{ENGINE_TITLES[engine]}: the paper's time is {brief(ratios[low])} times ours on {titles[low]} and "
+                f"{brief(ratios[high])} times on {titles[high]}. Where lists are few, ours does little per intersection; "
+                "where a search looks at tens of thousands of lists, both wait for memory.")
+    alike = [titles[part] for part in titles if not_slower(cells, part, "ecc", "eecc")]
+    if alike:
+        texts.append(f"A gain of EECC over ECC on {', '.join(alike)}: there few lists are open at a time, so a search is "
+                     "over at once in ECC, too, and edge links only cost.")
+    odd = tables.find(cells, "rook", "ecc")
+    if odd and odd.matching:
+        texts.append(f"Table 2 gives the rook {figures['table2_searches']['rook']['ecc']:,} searches by ECC. A rook of that size "
+                     f"has {odd.matching['searches']:,} intersections on these planes, and ECC searches once for each: the "
+                     "paper's figure must belong to another model or layer height. Its Tables 1 and 5 also give two times for "
+                     "the rook (5.573 and 34.81 s, 0.575 and 2.855 s).")
+    return texts
+
+
+def not_slower(cells, part, one, other):
+    mine, its = (tables.find(cells, part, engine) for engine in (one, other))
+    return bool(mine and its and mine.ok and its.ok and mine.seconds <= its.seconds)
+
+
+def as_json(measured, machine, timeout):
+    return {"machine": machine, "timeout_seconds": timeout,
+            "cells": [dataclasses.asdict(cell) for cell in measured.cells],
+            "order_cells": [dataclasses.asdict(cell) for cell in measured.order_cells],
+            "rival_cells": [dataclasses.asdict(cell) for cell in measured.rival_cells],
+            "growth": dataclasses.asdict(measured.growth)}

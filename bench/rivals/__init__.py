@@ -1,0 +1,1 @@
+"""Lamella beside the slicers of today: see ../README.md."""

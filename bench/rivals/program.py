@@ -1,0 +1,14 @@
+"""Versions of programs, as they tell them."""
+
+import re
+import shutil
+import subprocess
+
+
+def version(command, pattern):
+    """The first match of `pattern` in what `command` prints, or None when there is no such program."""
+    if shutil.which(command[0]) is None:
+        return None
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    found = re.search(pattern, done.stdout + done.stderr)
+    return found[1] if found else "of unknown version"

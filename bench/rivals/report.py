@@ -1,0 +1,113 @@
+"""The comparison as a table, a chart and JSON."""
+
+import dataclasses
+
+from bench.harness import chart
+from bench.harness.page import Chart, Page, Table, brief
+
+OURS = ("lamella", "lamella-1")
+
+
+def build_page(cells, parts, rivals, absent, machine, timeout, threads):
+    """`rivals` are those that ran, with their versions: [(rival, version)]; `absent`: {title: why}."""
+    page = Page("Lamella beside other slicers")
+    titles = {"lamella": f"Lamella, {counted(threads)}", "lamella-1": "Lamella, 1 thread",
+              **{rival.name: rival.title for rival, _ in rivals}}
+    part_titles = {part.name: part.title for part in parts}
+    page.say(
+        "The same parts, cut at the same heights (0.1 mm, in the middle of each layer), one process after the other on "
+        "one machine. A rival's time counts when its layers are Lamella's: the column *same layers* says what its "
+        "output shows. A cell that does not count stays visible, in brackets.".replace("*", "**"),
+        f"{machine['processor']}, {machine['threads']} threads, {machine['memory']}; {machine['system']}; "
+        f"{machine['program']}; {machine['date']}. Limit for one run: {timeout:g} s.")
+    page.show(Chart("rivals", "Time of the whole process", time_chart(cells, titles, part_titles)))
+    for part in parts:
+        page.heading(part.title)
+        page.show(part_table([cell for cell in cells if cell.part == part.name], titles))
+    page.heading("What is compared")
+    page.say("**Whole process**: from its start to its end, file to file. Lamella writes a CLI file; what the others "
+             "write is in the table below. Printers' slicers go on to tool paths, with one wall and no infill, as in "
+             "the paper; their time for **cutting alone** is what they report of their first stage, which for some "
+             "includes cleaning up the contours. Lamella's is from the mesh in memory to the layers in memory. Times are "
+             "medians where a run is short. Memory is the peak resident size; what starts the programs weighs some "
+             "7 MB, and nothing shows less.",
+             "**Equal** means: the same number of contours in every layer, and areas and lengths that agree to one in "
+             "100,000. Otherwise the differences are told: layers without a partner at that height, contours in all "
+             "layers, and sums of differences over sums. A cell counts when at most one layer is missing (or 1% of them) "
+             "and contours, areas and lengths agree within 1%. Tool paths run inside the contour and close gaps by design: areas are "
+             "computed back from them.")
+    table = Table(["slicer", "version", "threads", "writes", "compared"], texts=5)
+    table.add("Lamella", machine["program"].split()[-1], "all, or one", "CLI file", "is compared with")
+    for rival, version in rivals:
+        table.add(rival.title, version, "all" if rival.threaded else "one", rival.writes, rival.compared)
+    page.show(table)
+    for title, why in absent.items():
+        page.say(f"**{title}** is missing: {why}.")
+    return page
+
+
+def counted(threads):
+    return f"{threads} thread" + ("s" if threads != 1 else "")
+
+
+def part_table(cells, titles):
+    table = Table(["slicer", "whole process s", "to Lamella's", "cutting alone s", "to Lamella's", "processor s",
+                   "peak MB", "same layers"])
+    ours = cells[0]
+    for cell in cells:
+        if cell.seconds is None or not cell.ok:
+            said = f"{ending(cell)}" + ("" if cell.seconds is None else f" after {seconds(cell.seconds)}")
+            table.add(titles[cell.slicer], said, "", "", "", "", megabytes(cell.peak_rss_bytes),
+                      f"it says: {cell.last_words}" if cell.last_words else "")
+            continue
+        values = [seconds(cell.seconds), ratio(cell.seconds, ours.seconds), seconds(cell.slicing_seconds),
+                  ratio(cell.slicing_seconds, ours.slicing_seconds)]
+        if not cell.counts:
+            values = [f"({value})" if value else "" for value in values]
+        table.add(titles[cell.slicer], *values, seconds(cell.processor_seconds), megabytes(cell.peak_rss_bytes),
+                  cell.agreement.text() if cell.agreement else "-")
+    return table
+
+
+def ending(cell):
+    return {"timeout": "timeout", "skipped": "not tried after a timeout on a smaller one"}.get(cell.ended, cell.ended)
+
+
+def seconds(value):
+    if value is None:
+        return ""
+    return brief(value)
+
+
+def ratio(value, ours):
+    if value is None or not ours:
+        return ""
+    times = value / ours
+    return f"{brief(times)} x"
+
+
+def megabytes(value):
+    return "" if value is None else f"{value / 1e6:,.0f}"
+
+
+def time_chart(cells, titles, part_titles):
+    first = {}
+    items = []
+    for cell in cells:
+        first.setdefault(cell.part, cell)
+        if cell.ok and cell.seconds:
+            note = f"{seconds(cell.seconds)} s"
+            if cell.slicer not in OURS:
+                note += f", {ratio(cell.seconds, first[cell.part].seconds)}" if cell.counts else ", other layers"
+        else:
+            note = ending(cell) + (f" after {seconds(cell.seconds)} s" if cell.ended == "timeout" else "")
+        limit_hit = cell.ended == "timeout"
+        items.append(chart.Bar(part_titles[cell.part], titles[cell.slicer], cell.seconds if cell.ok or limit_hit else None,
+                               cell.slicing_seconds if cell.ok else None, note, hollow=limit_hit))
+    return chart.bars(items, "Time of the whole process", "seconds, logarithmic; x: times Lamella's", "cutting alone")
+
+
+def as_json(cells, rivals, absent, machine, timeout, threads):
+    return {"machine": machine, "timeout_seconds": timeout, "threads": threads, "layer_height_mm": 0.1,
+            "versions": {rival.name: version for rival, version in rivals}, "absent": absent,
+            "cells": [{**dataclasses.asdict(cell), "counts": cell.counts} for cell in cells]}
