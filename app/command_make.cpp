@@ -66,6 +66,8 @@ TriangleSoup sheet(const MakeArguments& arguments) {
     shape.segments = as_unsigned(arguments.segments, shape.segments, "segments");
     shape.size_mm = single_size(arguments, shape.size_mm);
     shape.thickness_mm = arguments.thickness.value_or(shape.thickness_mm);
+    if (arguments.order == "hole")
+        shape.order = TriangleOrder::hole;
     if (arguments.order == "split")
         shape.order = TriangleOrder::split;
     if (arguments.order == "shuffle") {
@@ -168,7 +170,7 @@ OptionGroup shape_options(MakeArguments& target) {
              "order", "HOW",
              "sheet: the triangles of a wall together, all lower ones first (hard for some algorithms), or "
              "in random order (--shuffle gives the seed, else 1)",
-             {"wall", "split", "shuffle"}, target.order)}};
+             {"wall", "hole", "split", "shuffle"}, target.order)}};
 }
 
 int run_make(const MakeArguments& arguments, const Context& context) {

@@ -55,7 +55,7 @@ def main(arguments):
 
     measured.growth = growths.measure(options.lamella, work, parts_folder, options.timeout, small=tiny, tell=tell_growth)
     laboratory = Laboratory(options.lamella, work, parts_folder, options.timeout)
-    sheets = {order: parts.sheet(4 if tiny else 100, order, 32 if tiny else None) for order in ("wall", "split", "shuffle")}
+    sheets = {order: parts.sheet(4 if tiny else 100, order, 32 if tiny else None) for order in ("wall", "hole", "split", "shuffle")}
     measured.order_parts = {order: part.name for order, part in sheets.items()}
     for part in sheets.values():
         measured.order_cells += Laboratory(options.lamella, work, parts_folder, options.timeout).cells(part, ENGINES, tell)

@@ -30,11 +30,17 @@ class Cell:
     check: str = ""  # how the layers were found right
     estimate: Optional[float] = None  # of `seconds`, where that could not be measured
     estimated_from: str = ""
+    lower_bound: bool = False  # the estimate is one: lists of few planes fit the cache, those of all may not
     searches_estimate: Optional[float] = None  # of matching["searches"], likewise
 
     @property
     def ok(self):
         return self.ended == "ok"
+
+    @property
+    def sign(self):
+        """What stands before a figure of this cell."""
+        return "" if self.ok else ("≥ " if self.lower_bound else "≈ ")
 
     @property
     def best_known(self):
@@ -119,11 +125,13 @@ class Laboratory:
             further = (len(planes) - last.planes) / (last.planes - first.planes)
             # Never less than the limit, which it passed: lists of few planes fit the cache, those of all may not.
             cell.estimate = max(self.timeout, last.total + max(0.0, last.seconds - first.seconds) * further)
+            cell.lower_bound = True
             cell.searches_estimate = last.searches + (last.searches - first.searches) * further
             cell.estimated_from = f"{' and '.join(str(one.planes) for one in samples)} of {len(planes)} planes"
         elif smaller is not None and smaller.best_known:
             cell.estimate = smaller.best_known * (cell.triangles / smaller.triangles) ** 2
             cell.estimated_from = f"the square of the triangles, from {smaller.part}"
+            cell.lower_bound = smaller.lower_bound
 
     def some_planes(self, part, mesh, engine, planes):
         """Samples of two numbers of planes, if the limit allows; a None among them is a wrong result."""

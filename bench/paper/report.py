@@ -19,9 +19,10 @@ def build_page(measured, figures, machine, timeout):
              f"{machine['processor']}, {machine['threads']} threads (the paper's engines use one); {machine['memory']}; "
              f"{machine['system']}; {machine['compiler']}; {machine['program']}; {machine['date']}.",
              f"Each measurement is a process of its own; seconds are from opening the file to the last layer in memory, "
-             f"medians where a run is short. Limit for a run: {timeout:g} s. **≈** marks what was not measured in "
-             "full but estimated from a part of the planes (a lower bound: lists of few planes fit the cache, those of all may not, which can be ten times slower) or "
-             "from the next smaller sheet. A time counts when the layers "
+             f"medians where a run is short. Limit for a run: {timeout:g} s. What takes longer "
+             "is estimated from runs on some of the planes, which gives a lower bound (**≥**: lists of few planes fit "
+             "the cache, those of all may not), or from the next smaller sheet (**≈**). "
+             "A time counts when the layers "
              "are those of the sweep engine: see *correctness* below.".replace("*correctness*", "**Correctness**"))
     page.heading("Table 5: time")
     page.show(tables.times(measured.cells, titles, figures["table5_seconds"], ENGINES, figures["stopped_after_seconds"]))
@@ -64,9 +65,10 @@ def build_page(measured, figures, machine, timeout):
              "are slopes over the number of intersections: of what nodes, lists and edges allocate, and of the peak memory "
              "of the whole process. The sweep engine keeps no node per intersection: what grows is its output.")
     page.heading("The order of the triangles")
-    page.say("The same sheet with its triangles in three orders: wall by wall, split (all lower triangles of the walls, then "
-             "all upper ones, as the paper's counts suggest; the sheets of all tables above), and shuffled. The order decides "
-             "how many lists are open at a time.")
+    page.say("The same sheet with its triangles in four orders: wall by wall, hole by hole (the lower triangles of its "
+             "wall, then the upper ones), split (all lower triangles of the walls, then all upper ones; the sheets of all "
+             "tables above), and shuffled. The order decides how many lists are open at a time. The paper's counts fit "
+             "both split orders: in both, half of the intersections begin a list and half link two.")
     page.show(tables.orders(measured.order_cells, measured.order_parts))
     page.heading("Correctness")
     page.show(correctness(measured.cells + measured.order_cells))
@@ -82,11 +84,11 @@ def time_chart(cells, titles):
         note = cell.ended if value is None else f"{tables.ours(cell)} s"
         items.append(chart.Bar(titles[cell.part], ENGINE_TITLES[cell.engine], value, None, note))
     items.sort(key=lambda item: list(titles.values()).index(item.group))
-    return chart.bars(items, "Seconds of each engine (≈: estimated)", "seconds, logarithmic")
+    return chart.bars(items, "Seconds of each engine (≈, ≥: estimated)", "seconds, logarithmic")
 
 
 def estimates(cells, titles):
-    told = [f"{titles[cell.part]}, {ENGINE_TITLES[cell.engine]}: more than the limit; ≈ {brief(cell.estimate)} s from "
+    told = [f"{titles[cell.part]}, {ENGINE_TITLES[cell.engine]}: more than the limit; {cell.sign}{brief(cell.estimate)} s from "
             f"{cell.estimated_from}" for cell in cells if cell.estimate]
     return ["Estimated: " + "; ".join(told) + "."] if told else []
 
@@ -134,7 +136,7 @@ def not_reproduced(cells, titles, figures):
         for part, theirs in figures["table5_seconds"].items():
             found = tables.find(cells, part, engine)
             mine = found and found.best_known
-            if mine and theirs.get(engine):
+            if mine and theirs.get(engine) and not found.lower_bound:
                 ratios[part] = theirs[engine] / mine
         if len(ratios) > 1:
             low, high = min(ratios, key=ratios.get), max(ratios, key=ratios.get)

@@ -38,7 +38,7 @@ def ours(cell):
     if cell.ok:
         return brief(cell.seconds)
     if cell.ended == "timeout" and cell.estimate:
-        return f"≈ {brief(cell.estimate)}"
+        return f"{cell.sign}{brief(cell.estimate)}"
     return cell.ended
 
 
@@ -48,17 +48,17 @@ def compared(paper, cell, stopped_after):
         return ""
     said = "not told" if paper == "" else (f"> {stopped_after:,}" if paper is None else brief(paper))
     mine = cell.best_known
-    if mine is None or paper == "":
+    if mine is None or paper == "" or cell.lower_bound:
         return f"{said} / {ours(cell)}"
     ratio = (stopped_after if paper is None else paper) / mine
     if paper is None and ratio < 1:
         return f"{said} / {ours(cell)}"
-    return f"{said} / {ours(cell)} = {'> ' if paper is None else ''}{'≈ ' if not cell.ok else ''}{brief(ratio)}"
+    return f"{said} / {ours(cell)} = {'> ' if paper is None else ''}{cell.sign}{brief(ratio)}"
 
 
 def to_sweep(eecc, sweep):
     mine, its = (cell and cell.best_known for cell in (eecc, sweep))
-    return f"{'≈ ' if not eecc.ok else ''}{brief(mine / its)} x" if mine and its else ""
+    return f"{eecc.sign}{brief(mine / its)} x" if mine and its else ""
 
 
 def searches(cells, titles, figures):

@@ -56,12 +56,12 @@ class Make(ProgramTest):
             self.succeed("make", "sheet", "--holes", "9", "-o", "sheet.stl", *options)
             return self.bytes_of("sheet.stl")
 
-        wall, split, shuffled = [sheet("--order", order) for order in ["wall", "split", "shuffle"]]
+        wall, hole, split, shuffled = [sheet("--order", order) for order in ["wall", "hole", "split", "shuffle"]]
         self.assertEqual(wall, sheet())
-        self.assertEqual(len({wall, split, shuffled}), 3)
+        self.assertEqual(len({wall, hole, split, shuffled}), 4)
         self.assertEqual(shuffled, sheet("--shuffle", "1"))
         self.assertEqual(sheet("--order", "shuffle", "--shuffle", "7"), sheet("--shuffle", "7"))
-        self.fail_with(2, "--order.*wall.*split.*shuffle", "make", "sheet", "--order", "random")
+        self.fail_with(2, "--order.*wall.*hole.*split.*shuffle", "make", "sheet", "--order", "random")
 
     def test_sizes(self):
         for arguments, size in [(["box", "--size", "1,2,3"], [1, 2, 3]), (["box", "--size", "5"], [5, 5, 5]),

@@ -59,6 +59,8 @@ class Cells(unittest.TestCase):
         estimated = Cell("p", "ecc", "timeout", estimate=40.0)
         self.assertEqual(tables.compared(10.0, measured, 14400), "10.0 / 2.00 = 5.00")
         self.assertEqual(tables.compared(10.0, estimated, 14400), "10.0 / ≈ 40.0 = ≈ 0.250")
+        bound = Cell("p", "ecc", "timeout", estimate=40.0, lower_bound=True)
+        self.assertEqual(tables.compared(10.0, bound, 14400), "10.0 / ≥ 40.0")
         self.assertEqual(tables.compared(None, measured, 14400), "> 14,400 / 2.00 = > 7,200")
         self.assertEqual(tables.compared(10.0, Cell("p", "ecc", "wrong"), 14400), "10.0 / wrong")
         self.assertEqual(tables.compared("", measured, 14400), "not told / 2.00")

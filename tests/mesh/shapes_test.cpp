@@ -103,12 +103,15 @@ TEST(Sheet, HasTheSizeAskedFor) {
 TEST(Sheet, OrdersDifferOnlyInTheOrderOfTriangles) {
     SheetShape shape{.holes = 16, .segments = 20};
     const TriangleSoup wall = make_sheet(shape);
+    shape.order = TriangleOrder::hole;
+    const TriangleSoup hole = make_sheet(shape);
     shape.order = TriangleOrder::split;
     const TriangleSoup split = make_sheet(shape);
     shape.order = TriangleOrder::shuffle;
     const TriangleSoup random = make_sheet(shape);
     shape.seed = 2;
     const TriangleSoup other = make_sheet(shape);
+    EXPECT_EQ(sorted(hole), sorted(wall));
     EXPECT_EQ(sorted(split), sorted(wall));
     EXPECT_EQ(sorted(random), sorted(wall));
     EXPECT_NE(fingerprint(split), fingerprint(wall));
@@ -126,6 +129,21 @@ TEST(Sheet, SplitOrderStartsWithWallTrianglesThatShareNoCutEdge) {
         const Triangle3f u = sheet.stored(walls + i);
         const int high = (u[0].z == 3) + (u[1].z == 3) + (u[2].z == 3);
         EXPECT_EQ(high, 2) << i;
+    }
+}
+
+TEST(Sheet, HoleOrderHasTheLowerTrianglesOfAWallBeforeItsUpperOnes) {
+    const TriangleSoup sheet = make_sheet({.holes = 4, .segments = 20, .order = TriangleOrder::hole});
+    // Four holes of 20 wall quads each, then the four outer walls.
+    std::size_t i = 0;
+    for (const std::size_t quads : {20U, 20U, 20U, 20U, 4U}) {
+        for (const bool upper : {false, true}) {
+            for (std::size_t n = 0; n < quads; ++n, ++i) {
+                const Triangle3f t = sheet.stored(i);
+                const int low = (t[0].z == 0) + (t[1].z == 0) + (t[2].z == 0);
+                EXPECT_EQ(low, upper ? 1 : 2) << i;
+            }
+        }
     }
 }
 

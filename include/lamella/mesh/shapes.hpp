@@ -12,6 +12,7 @@ namespace lamella {
 /// algorithms get; see SheetShape.
 enum class TriangleOrder {
     wall,    ///< around each hole, the two triangles of each wall quad together
+    hole,    ///< the lower triangles of a hole's wall, then its upper ones, hole after hole
     split,   ///< all lower triangles of all walls, then all upper ones: the paper's worst case
     shuffle, ///< random, from a seed
 };

@@ -273,9 +273,13 @@ TriangleSoup make_sheet(const SheetShape& shape) {
         out.insert(out.end(), lower.begin(), lower.end());
         out.insert(out.end(), upper.begin(), upper.end());
     } else {
-        for (std::size_t i = 0; i < lower.size(); ++i) {
-            out.push_back(lower[i]);
-            out.push_back(upper[i]);
+        // So many lower ones, then the upper ones of the same quads; the outer walls make the last stretch.
+        const std::size_t stretch = shape.order == TriangleOrder::hole ? segments : 1;
+        for (std::size_t i = 0; i < lower.size(); i += stretch) {
+            const auto begin = static_cast<std::ptrdiff_t>(i);
+            const auto end = static_cast<std::ptrdiff_t>(std::min(i + stretch, lower.size()));
+            out.insert(out.end(), lower.begin() + begin, lower.begin() + end);
+            out.insert(out.end(), upper.begin() + begin, upper.begin() + end);
         }
     }
     for (const bool top : {false, true})
