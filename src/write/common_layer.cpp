@@ -73,25 +73,37 @@ bool starts_convex(std::span<const Point2> ring) {
     return (p.x - before.x) * (after.y - p.y) >= (p.y - before.y) * (after.x - p.x);
 }
 
-// Calls write(contour, direction, area) for outer rings, then holes, then open chains. The order is found by
-// a glance at each ring, so that its points are fetched from memory once, for area and output together.
+Direction direction_of(double ring_area) {
+    return ring_area >= 0 ? counter_clockwise : clockwise;
+}
+
+// Calls write(contour, closed) for outer rings, then holes, then open chains. The order is found by a glance
+// at each ring, so that its points are fetched from memory once.
 template <class Write>
 void for_each_contour(const Layer& layer, const Write& write) {
-    const auto write_ring = [&](std::span<const Point2> ring) {
-        const double area = ring_area(ring);
-        write(ring, area >= 0 ? counter_clockwise : clockwise, area);
-    };
     std::vector<std::size_t> holes;
     for (std::size_t i = 0; i < layer.rings; ++i) {
         if (starts_convex(layer.contour(i)))
-            write_ring(layer.contour(i));
+            write(layer.contour(i), true);
         else
             holes.push_back(i);
     }
     for (const std::size_t i : holes)
-        write_ring(layer.contour(i));
+        write(layer.contour(i), true);
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
-        write(layer.contour(i), open_line, 0.0);
+        write(layer.contour(i), false);
+}
+
+// The same on a grid: calls put(points, direction) for what the grid leaves of each contour.
+template <class Put>
+void for_each_on_grid(const Grid& grid, const Layer& layer, const Put& put) {
+    std::vector<GridPoint> scratch;
+    for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
+        const double area = closed ? ring_area(contour) : 0;
+        const auto points = grid.snap(contour, closed, area, layer.index, scratch);
+        if (!points.empty())
+            put(points, closed ? direction_of(area) : open_line);
+    });
 }
 
 // Heights are not on the grid of coordinates: a layer may be thinner than its unit.
@@ -114,12 +126,8 @@ class AsciiWriter final : public SequentialWriter {
     }
 
     void format(const Layer& layer, ByteBuffer& out) const override {
-        std::vector<GridPoint> scratch;
-        for_each_contour(layer, [&](std::span<const Point2> contour, Direction direction, double area) {
-            const bool closed = direction != open_line;
-            const auto points = grid_.snap(contour, closed, area, layer.index, scratch);
-            if (!points.empty())
-                put_polyline(points, direction, out);
+        for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
+            put_polyline(points, direction, out);
         });
     }
 
@@ -211,6 +219,34 @@ LAMELLA_VECTOR_CLONES FloatBox to_floats(std::span<const Point2> points, double 
     return box;
 }
 
+FloatPoint load(const char* points, std::size_t i) {
+    FloatPoint p;
+    std::memcpy(&p, points + i * sizeof p, sizeof p);
+    return p;
+}
+
+// The signed area of a ring of such points. As ring_area.
+LAMELLA_VECTOR_CLONES double area_of_floats(const char* points, std::size_t count) {
+    const FloatPoint first = load(points, 0);
+    const Point2 origin{first.x, first.y};
+    const auto twice_area = [&](std::size_t i) {
+        const FloatPoint a = load(points, i - 1);
+        const FloatPoint b = load(points, i);
+        return (a.x - origin.x) * (b.y - origin.y) - (a.y - origin.y) * (b.x - origin.x);
+    };
+    std::array<double, 8> sums{};
+    std::size_t i = 2;
+    for (; i + sums.size() <= count; i += sums.size())
+        for (std::size_t k = 0; k < sums.size(); ++k)
+            sums[k] += twice_area(i + k);
+    double twice = 0;
+    for (; i < count; ++i)
+        twice += twice_area(i);
+    for (const double sum : sums)
+        twice += sum;
+    return 0.5 * twice;
+}
+
 constexpr std::size_t long_head = 14;
 
 char* put_long_head(char* out, Direction direction, std::size_t points, std::uint64_t layer) {
@@ -245,25 +281,30 @@ class LongWriter final : public SequentialWriter {
         // All room at once: most layers lose no point.
         static_cast<void>(out.room(layer.contours() * (long_head + sizeof(FloatPoint)) +
                                    layer.points.size() * sizeof(FloatPoint)));
-        for_each_contour(layer, [&](std::span<const Point2> contour, Direction direction, double area) {
-            put_polyline(contour, direction, area, layer.index, out);
+        for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
+            put_polyline(contour, closed, layer.index, out);
         });
     }
 
-    void put_polyline(std::span<const Point2> contour, Direction direction, double area, std::uint64_t layer,
+    void put_polyline(std::span<const Point2> contour, bool closed, std::uint64_t layer,
                       ByteBuffer& out) const {
-        const bool closed = direction != open_line;
         char* const head = out.room(long_head + (contour.size() + 1) * sizeof(FloatPoint));
         char* const points = head + long_head;
-        const double largest_turn = convert(contour, points, layer);
+        const double moved_area = convert(contour, points, layer);
         const std::size_t count = without_repeats(points, contour.size(), closed);
         if (count < (closed ? 3U : 2U))
             return;
+        Direction direction = open_line;
         if (closed) {
-            // Only of a thin ring can rounding turn the area over.
-            const double units_area = area * per_unit_ * per_unit_;
-            if (!(std::abs(units_area) > largest_turn) && units_area * float_area(points, count) < 0)
-                reverse(points, count);
+            const double written = area_of_floats(points, count);
+            direction = direction_of(written);
+            // Only of a thin ring can rounding have turned the area over.
+            if (!(std::abs(written) > moved_area)) {
+                const double area = ring_area(contour);
+                direction = direction_of(area);
+                if (area * written < 0)
+                    reverse(points, count);
+            }
             std::memcpy(points + count * sizeof(FloatPoint), points, sizeof(FloatPoint));
         }
         const std::size_t listed = count + (closed ? 1 : 0);
@@ -291,12 +332,6 @@ class LongWriter final : public SequentialWriter {
         return 2 * static_cast<double>(contour.size()) * moved * (extent + moved);
     }
 
-    static FloatPoint load(const char* points, std::size_t i) {
-        FloatPoint p;
-        std::memcpy(&p, points + i * sizeof p, sizeof p);
-        return p;
-    }
-
     // Removes points that rounding made equal to the one before; returns how many stay.
     static std::size_t without_repeats(char* points, std::size_t count, bool closed) {
         const auto bits = [&](std::size_t i) {
@@ -319,22 +354,6 @@ class LongWriter final : public SequentialWriter {
         while (closed && kept > 1 && bits(kept - 1) == bits(0))
             --kept;
         return kept;
-    }
-
-    static double float_area(const char* points, std::size_t count) {
-        const FloatPoint origin = load(points, 0);
-        const auto from_origin = [&](std::size_t i) {
-            const FloatPoint p = load(points, i);
-            return Point2{double{p.x} - double{origin.x}, double{p.y} - double{origin.y}};
-        };
-        double twice = 0;
-        Point2 a = from_origin(1);
-        for (std::size_t i = 2; i < count; ++i) {
-            const Point2 b = from_origin(i);
-            twice += a.x * b.y - a.y * b.x;
-            a = b;
-        }
-        return 0.5 * twice;
     }
 
     static void reverse(char* points, std::size_t count) {
@@ -429,12 +448,8 @@ class ShortWriter final : public SequentialWriter {
     }
 
     void format(const Layer& layer, ByteBuffer& out) const override {
-        std::vector<GridPoint> scratch;
-        for_each_contour(layer, [&](std::span<const Point2> contour, Direction direction, double area) {
-            const bool closed = direction != open_line;
-            const auto points = grid_.snap(contour, closed, area, layer.index, scratch);
-            if (!points.empty())
-                put_polyline(points, direction, layer.index, out);
+        for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
+            put_polyline(points, direction, layer.index, out);
         });
     }
 
