@@ -147,9 +147,11 @@ interleave(const typename Vector<width>::Doubles& x, const typename Vector<width
 /// Stores past the cache. `to` is a multiple of the vector's size.
 template <int width>
 [[gnu::always_inline]] inline void stream(const typename Vector<width>::Doubles& v, double* to) {
-#if defined(__x86_64__)
-    auto& place = *reinterpret_cast<typename Vector<width>::AlignedDoubles*>(to);
-    // The compilers have no common builtin for this, and the intrinsics cannot be called from here.
+    [[maybe_unused]] auto& place = *reinterpret_cast<typename Vector<width>::AlignedDoubles*>(to);
+#if defined(__clang__)
+    __builtin_nontemporal_store(v, &place);
+#elif defined(__x86_64__)
+    // GCC has no such builtin, and the intrinsics cannot be called from here.
     if constexpr (width == 2)
         asm("movntpd %1, %0" : "=m"(place) : "x"(v));
     else
