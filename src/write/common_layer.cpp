@@ -225,26 +225,14 @@ FloatPoint load(const char* points, std::size_t i) {
     return p;
 }
 
-// The signed area of a ring of such points. As ring_area.
-LAMELLA_VECTOR_CLONES double area_of_floats(const char* points, std::size_t count) {
-    const FloatPoint first = load(points, 0);
-    const Point2 origin{first.x, first.y};
-    const auto twice_area = [&](std::size_t i) {
-        const FloatPoint a = load(points, i - 1);
-        const FloatPoint b = load(points, i);
-        return (a.x - origin.x) * (b.y - origin.y) - (a.y - origin.y) * (b.x - origin.x);
-    };
-    std::array<double, 8> sums{};
-    std::size_t i = 2;
-    for (; i + sums.size() <= count; i += sums.size())
-        for (std::size_t k = 0; k < sums.size(); ++k)
-            sums[k] += twice_area(i + k);
-    double twice = 0;
-    for (; i < count; ++i)
-        twice += twice_area(i);
-    for (const double sum : sums)
-        twice += sum;
-    return 0.5 * twice;
+// The signed area of a ring of such points.
+double area_of_floats(const char* points, std::size_t count) {
+    std::vector<Point2> ring(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const FloatPoint p = load(points, i);
+        ring[i] = {p.x, p.y};
+    }
+    return ring_area(ring);
 }
 
 constexpr std::size_t long_head = 14;
@@ -296,15 +284,12 @@ class LongWriter final : public SequentialWriter {
             return;
         Direction direction = open_line;
         if (closed) {
-            const double written = area_of_floats(points, count);
-            direction = direction_of(written);
+            const double area = ring_area(contour);
+            direction = direction_of(area);
             // Only of a thin ring can rounding have turned the area over.
-            if (!(std::abs(written) > moved_area)) {
-                const double area = ring_area(contour);
-                direction = direction_of(area);
-                if (area * written < 0)
-                    reverse(points, count);
-            }
+            const bool thin = !(std::abs(area) * per_unit_ * per_unit_ > moved_area);
+            if (thin && area * area_of_floats(points, count) < 0)
+                reverse(points, count);
             std::memcpy(points + count * sizeof(FloatPoint), points, sizeof(FloatPoint));
         }
         const std::size_t listed = count + (closed ? 1 : 0);
