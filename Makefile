@@ -5,6 +5,8 @@ PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 THREADED := core mesh contour read slicing polygon pipeline
+# Long tests in those rooms of what runs on one thread.
+UNTHREADED := Engines|Shapes|Head|Sole|Crossings
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include src tests -name '*.[ch]pp' 2>/dev/null)
 
@@ -50,7 +52,7 @@ test-asan: packages-all
 test-tsan: packages-all
 	cmake --preset tsan
 	cmake --build build-tsan --target $(THREADED:%=lamella_%_test)
-	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$'
+	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$' --exclude-regex '^($(UNTHREADED))\.'
 
 test-fuzz: packages-all
 	cmake --preset fuzz
