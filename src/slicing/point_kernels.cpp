@@ -176,12 +176,16 @@ template <int width>
     return {column[2 * stride] + s * column[3 * stride], column[4 * stride] + s * column[5 * stride]};
 }
 
-template <int width>
+template <int width, bool past_cache>
 [[gnu::always_inline]] inline void cut(const EdgeColumns& edges, std::size_t begin, std::size_t end, double z,
                                        Point2* to) {
     using V = typename Vector<width>::Doubles;
     constexpr auto lanes = std::make_index_sequence<width>{};
+    constexpr std::uintptr_t line = 64; // only whole lines are worth going past the cache
     std::size_t i = begin;
+    if constexpr (past_cache)
+        for (; i < end && reinterpret_cast<std::uintptr_t>(to) % line != 0; ++i, ++to)
+            *to = cut_one(edges, i, z);
     for (; i + width <= end; i += width, to += width) {
         V px;
         V py;
@@ -189,35 +193,18 @@ template <int width>
         V second;
         cut_some<width>(edges, i, z, px, py);
         interleave<width>(px, py, first, second, lanes);
-        store<width>(first, &to->x);
-        store<width>(second, &to->x + width);
+        if constexpr (past_cache) {
+            stream<width>(first, &to->x);
+            stream<width>(second, &to->x + width);
+        } else {
+            store<width>(first, &to->x);
+            store<width>(second, &to->x + width);
+        }
     }
     for (; i < end; ++i, ++to)
         *to = cut_one(edges, i, z);
-}
-
-template <int width>
-[[gnu::always_inline]] inline void cut_past_cache(const EdgeColumns& edges, std::size_t begin,
-                                                  std::size_t end, double z, Point2* to) {
-    using V = typename Vector<width>::Doubles;
-    constexpr auto lanes = std::make_index_sequence<width>{};
-    constexpr std::uintptr_t line = 64; // only whole lines are worth it
-    std::size_t i = begin;
-    for (; i < end && reinterpret_cast<std::uintptr_t>(to) % line != 0; ++i, ++to)
-        *to = cut_one(edges, i, z);
-    for (; i + width <= end; i += width, to += width) {
-        V px;
-        V py;
-        V first;
-        V second;
-        cut_some<width>(edges, i, z, px, py);
-        interleave<width>(px, py, first, second, lanes);
-        stream<width>(first, &to->x);
-        stream<width>(second, &to->x + width);
-    }
-    for (; i < end; ++i, ++to)
-        *to = cut_one(edges, i, z);
-    end_stream();
+    if constexpr (past_cache)
+        end_stream();
 }
 
 template <int width>
@@ -252,11 +239,11 @@ template <int width>
         }                                                                                                    \
         target static void cut(EdgeColumns edges, std::size_t begin, std::size_t end, double z,              \
                                Point2* to) {                                                                 \
-            lamella::cut<width>(edges, begin, end, z, to);                                                   \
+            lamella::cut<width, false>(edges, begin, end, z, to);                                            \
         }                                                                                                    \
         target static void cut_past_cache(EdgeColumns edges, std::size_t begin, std::size_t end, double z,   \
                                           Point2* to) {                                                      \
-            lamella::cut_past_cache<width>(edges, begin, end, z, to);                                        \
+            lamella::cut<width, true>(edges, begin, end, z, to);                                             \
         }                                                                                                    \
         target static std::size_t find_not_above(const double* x, std::size_t from, std::size_t n,           \
                                                  double value) {                                             \
