@@ -14,18 +14,17 @@
 
 // How the graph is built
 //
-// 1. Collect. Workers take chunks of consecutive triangles. An edge is looked up in a small table private to
-// the
-//    worker that stays in its second-level cache: most files have the two triangles of an edge close
-//    together. Found: the node is complete. Not found: a new node, known from one side so far, takes the
-//    slot; whoever sat there is left to step 2. No thread waits for another, and no memory access leaves the
-//    cache but to append.
-// 2. Join. Nodes of equal ends are brought together by their hashes (core/key_groups.hpp). Two halves become
-// one
-//    node.
-// 3. Pair. Where more than two triangles met in an edge, or where hashes collide, the links are dealt out
-// anew
-//    among the nodes that really have equal ends, by geometry (edge_pairing.hpp).
+// Collect. Workers take chunks of consecutive triangles. An edge is looked up in a small table private to the
+// worker that stays in its second-level cache: most files have the two triangles of an edge close together.
+// Found: the node is complete. Not found: a new node, known from one side so far, takes the slot; whoever sat
+// there is left to the next step. No thread waits for another, and no memory access leaves the cache but to
+// append.
+//
+// Join. Nodes of equal ends are brought together by their hashes (core/key_groups.hpp). Two halves become one
+// node.
+//
+// Pair. Where more than two triangles met in an edge, or where hashes collide, the links are dealt out anew
+// among the nodes that really have equal ends, by geometry (edge_pairing.hpp).
 
 namespace lamella {
 

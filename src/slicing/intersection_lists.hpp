@@ -5,9 +5,8 @@
 //
 // IN    intersection node: the intersection of one triangle with one plane. It has the point where the
 //       contour enters the triangle; its neighbour has the one where it leaves.
-// EP    edge pointer of an IN: leads to the vertices of an edge of the triangle that the plane cuts. There
-// are
-//       two of them, and they alone decide what matches.
+// EP    edge pointer of an IN: leads to the vertices of an edge of the triangle that the plane cuts. An IN
+//       has two of them, and they alone decide what matches.
 // ILL   intersection linked list: INs in the order of the contour.
 // CLL   contour linked list: the ILLs of one plane.
 

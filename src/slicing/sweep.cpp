@@ -300,8 +300,7 @@ class SlabSweep {
         pending_.clear();
     }
 
-    // ---------------------------------------------------------------------------------------- run and
-    // measure
+    // -------------------------------------------------------------------------------------- run and measure
 
     void add_run(std::uint32_t plane, std::uint32_t valid_until, bool closed, const std::uint32_t* sequence,
                  std::size_t size) {

@@ -1,5 +1,6 @@
 #include "lamella/mesh/shapes.hpp"
 
+#include "even_planes.hpp"
 #include "expect_error.hpp"
 #include "fixtures/solids.hpp"
 #include "naive_section.hpp"
@@ -19,17 +20,11 @@
 namespace lamella {
 namespace {
 
+using test::even_planes;
 using test::expect_error;
 using test::expect_same;
 using test::slice_with;
 using test::Triangles;
-
-Plan even_planes(int count) {
-    std::vector<double> z;
-    for (int i = 0; i < count; ++i)
-        z.push_back(-10 + 20 * (i + 0.5) / count);
-    return plan_listed(z);
-}
 
 /// z from -10 to 10.
 TriangleSoup body() {

@@ -2,6 +2,7 @@
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "even_planes.hpp"
 #include "expect_error.hpp"
 #include "expect_layers.hpp"
 #include "fixtures/solids.hpp"
@@ -22,15 +23,9 @@
 namespace lamella {
 namespace {
 
+using test::even_planes;
 using test::expect_error;
 using test::expect_same;
-
-Plan even_planes(int count) {
-    std::vector<double> z;
-    for (int i = 0; i < count; ++i)
-        z.push_back(-10 + 20 * (i + 0.5) / count);
-    return plan_listed(z);
-}
 
 /// Enough contours and planes that several slabs are worth while. z from -10 to 10.
 TriangleSoup body() {

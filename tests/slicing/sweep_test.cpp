@@ -3,6 +3,7 @@
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "even_planes.hpp"
 #include "expect_layers.hpp"
 #include "fixtures/random.hpp"
 #include "fixtures/solids.hpp"
@@ -26,6 +27,7 @@
 namespace lamella {
 namespace {
 
+using test::even_planes;
 using test::expect_same;
 using test::expect_sections;
 using test::expect_sound;
@@ -55,13 +57,6 @@ Plan planes_through_vertices(const Triangles& triangles, SliceAt at) {
     for (auto it = heights.begin(); std::next(it) != heights.end(); ++it)
         z.insert((*it + *std::next(it)) / 2);
     return plan_listed({z.begin(), z.end()}, at);
-}
-
-Plan even_planes(double from, double to, int count, SliceAt at = SliceAt::bottom) {
-    std::vector<double> z;
-    for (int i = 0; i < count; ++i)
-        z.push_back(from + (to - from) * (i + 0.5) / count);
-    return plan_listed(z, at);
 }
 
 // ---------------------------------------------------------------------------------------- faces, edges, tips
