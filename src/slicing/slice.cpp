@@ -9,8 +9,8 @@ namespace lamella {
 
 namespace {
 
-// Some 64 MB of points for each thread.
-constexpr std::uint64_t points_in_flight_per_thread = (std::uint64_t{64} << 20) / sizeof(Point2);
+// Some 56 MB of points for each thread.
+constexpr std::uint64_t points_in_flight_per_thread = (std::uint64_t{56} << 20) / sizeof(Point2);
 
 void run(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution,
          std::uint64_t points_in_flight, SliceReport* report, const Engine& with) {

@@ -120,7 +120,7 @@ struct Engine {
                                SliceReport* report = nullptr, const Engine& with = engines().front());
 
 /// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
-/// flight (some 64 MB per thread, or two layers per thread where single layers are larger). Layers that the
+/// flight (some 56 MB per thread, or two layers per thread where single layers are larger). Layers that the
 /// sink has let go of take no memory.
 void slice_to(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution = {},
               SliceReport* report = nullptr, const Engine& with = engines().front());
