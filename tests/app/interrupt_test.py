@@ -2,10 +2,9 @@
 
 import fcntl
 import json
+import os
 import signal
-import struct
 import subprocess
-import termios
 import time
 
 from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main
@@ -39,30 +38,43 @@ class Interrupt(ProgramTest):
     def start_and_get_stuck(self):
         """Slices until the program waits for somebody to read standard error, in the midst of writing."""
         self.succeed("make", "rook")
-        process = self.start("slice", "rook.stl", "-o", "rook.svg", "--layer-height", "0.0001",
-                             "--progress", "json")
-        fcntl.fcntl(process.stderr, fcntl.F_SETPIPE_SZ, 4096)
+        error_read, error_write = os.pipe()
+        fcntl.fcntl(error_write, fcntl.F_SETPIPE_SZ, 4096)
+        process = subprocess.Popen([PROGRAM, "slice", "rook.stl", "-o", "rook.svg", "--layer-height", "0.0001",
+                                    "--progress", "json"], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=error_write)
+        self.addCleanup(process.kill)
+        lines = self.enterContext(os.fdopen(error_read))
         while not any(name.endswith(".tmp") for name in self.listing()):
-            json.loads(process.stderr.readline())
-        waiting = 0
-        for _ in range(20):  # until nothing more comes for a while
+            json.loads(lines.readline())
+        self.fill(error_write)
+        os.close(error_write)
+        before, now = -1, self.processor_ticks(process)
+        while before != now:
             time.sleep(0.5)
-            before, waiting = waiting, self.unread(process.stderr)
-            if before == waiting > 3500:
-                break
-        self.assertGreater(waiting, 3500)
+            before, now = now, self.processor_ticks(process)
+        self.assertIsNone(process.poll())
         return process
 
     @staticmethod
-    def unread(pipe):
-        return struct.unpack("i", fcntl.ioctl(pipe, termios.FIONREAD, bytes(4)))[0]
+    def fill(pipe):
+        """Leaves no room for another byte. The pipe is opened once more, so that it stays blocking for the program."""
+        with open(f"/proc/self/fd/{pipe}", "wb", buffering=0, opener=lambda path, flags: os.open(
+                path, flags & ~(os.O_CREAT | os.O_TRUNC) | os.O_NONBLOCK)) as writer:
+            while writer.write(b"."):
+                pass
+
+    @staticmethod
+    def processor_ticks(process):
+        with open(f"/proc/{process.pid}/stat") as stat:
+            user, system = stat.read().rpartition(")")[2].split()[11:13]
+        return int(user) + int(system)
 
     def test_a_run_that_is_stuck_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
-        process.communicate()
 
     def test_a_second_signal_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
@@ -70,7 +82,6 @@ class Interrupt(ProgramTest):
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
-        process.communicate()
 
     def test_waiting_for_standard_input_can_be_stopped(self):
         process = self.start("slice", "-", "-o", "out.cli")
