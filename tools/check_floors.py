@@ -36,6 +36,7 @@ ROOMS = {
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
     "xxhash.h": "src/contour/normal_form.cpp",
+    "zlib.h": "src/container/deflate.cpp",
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}
 

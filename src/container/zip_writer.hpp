@@ -1,0 +1,73 @@
+#pragma once
+
+// Writing zip archives from front to back.
+
+#include "container/atomic_file.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+
+enum class ZipMethod : std::uint16_t { stored = 0, deflated = 8 };
+
+/// Bytes of an entry that were made ready beforehand, perhaps on another thread.
+struct ZipPiece {
+    std::string_view bytes; ///< as they stand in the archive: of Deflater for deflated entries
+    std::uint64_t size = 0; ///< how many bytes they stand for
+    std::uint32_t crc = 0;  ///< of those (`crc32_of`)
+};
+
+/// A zip archive that appears whole or not at all, as AtomicFile. Nothing is written twice, so that standard
+/// output and pipes will do. Equal contents give equal bytes: all entries have the time 1980-01-01 00:00.
+///
+/// Entries follow one another in the order of the calls; their names are unique, relative and have `/`
+/// between folders, which the caller sees to. Entries whose content is known when they begin have their sizes
+/// in front; what is written piece by piece has them behind it (a data descriptor). The 64-bit forms of sizes
+/// and places (zip64) are used where the 32-bit ones do not suffice, and nowhere else.
+///
+/// For one thread at a time, but for `bytes`. Failures are Error{output}.
+class ZipWriter {
+  public:
+    explicit ZipWriter(std::string path);
+
+    /// One entry, whole. Deflating happens here.
+    void add(std::string_view name, std::string_view content, ZipMethod method = ZipMethod::stored);
+    /// One entry, whole, made ready beforehand. When deflated, `bytes` is a stream with its end.
+    void add_ready(std::string_view name, ZipMethod method, const ZipPiece& content);
+
+    /// Begins an entry that comes piece by piece. One that may hold 4 GiB or more should say so: most readers
+    /// do without the word, but those that read from a pipe look for it.
+    void begin(std::string_view name, ZipMethod method, bool may_be_large = false);
+    void append(const ZipPiece& piece);
+    void append_stored(std::string_view content);
+    void end();
+
+    /// Writes the directory and gives the file its name. To be called once, after the last entry.
+    void finish();
+
+    /// Bytes written so far.
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return file_.bytes(); }
+
+  private:
+    struct Entry {
+        std::string name;
+        ZipMethod method = ZipMethod::stored;
+        bool sizes_behind = false;
+        std::uint32_t crc = 0;
+        std::uint64_t stored_size = 0;
+        std::uint64_t size = 0;
+        std::uint64_t place = 0;
+    };
+
+    void append_directory();
+
+    AtomicFile file_;
+    std::vector<Entry> entries_;
+    bool open_ = false; ///< an entry has begun and not ended
+    bool open_is_large_ = false;
+};
+
+} // namespace lamella
