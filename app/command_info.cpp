@@ -116,7 +116,7 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
               const Execution& execution) {
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
-    const TriangleSoup placed = file.mesh.transformed(arguments.placement.transform());
+    const Mesh placed = file.mesh(execution).transformed(arguments.placement.transform());
     const Inspection found = inspect(weld(placed, execution), execution);
     context.messages.result(arguments.json ? json_text(mesh_json(file, found, arguments.placement.unit))
                                            : mesh_text(file, found));

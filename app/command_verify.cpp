@@ -90,12 +90,12 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         if (at == SliceAt::top)
             options.rule = PlaneRule::section_below;
     }
-    TriangleSoup mesh;
+    Mesh mesh;
     if (!arguments.mesh.empty()) {
         const MeshFile part = read_mesh(arguments.mesh, {}, execution);
         for (const std::string& warning : part.warnings)
             context.messages.warn(warning);
-        mesh = part.mesh.transformed(placement);
+        mesh = part.mesh(execution).transformed(placement);
         options.mesh = mesh;
     }
     const Verification found = verify(file.layers, options, execution);

@@ -22,14 +22,14 @@ namespace lamella::bench {
 namespace {
 
 struct Opened {
-    MeshFile file;
+    Mesh mesh;
     Box3 box;
     Plan plan;
 };
 
 Opened open_part(const Part& part, const Execution& execution) {
-    Opened opened{read_mesh(part.path, {}, execution), {}, {}};
-    opened.box = bounding_box(opened.file.mesh, execution);
+    Opened opened{read_mesh(part.path, {}, execution).mesh(), {}, {}};
+    opened.box = bounding_box(opened.mesh, execution);
     opened.plan = plan_uniform(opened.box.min.z, opened.box.max.z, {.layer_height = part.layer_height});
     return opened;
 }
@@ -38,7 +38,7 @@ double into_memory(const Part& part, unsigned threads) {
     const auto start = Clock::now();
     const Execution execution{.threads = threads};
     const Opened opened = open_part(part, execution);
-    const LayerStack layers = slice(opened.file.mesh, opened.plan, execution);
+    const LayerStack layers = slice(opened.mesh, opened.plan, execution);
     return seconds_since(start);
 }
 
@@ -50,7 +50,7 @@ double into_file(const Part& part, const LayerFormat& format, const std::string&
                                           {.box = opened.box,
                                            .layers = opened.plan.layers.size(),
                                            .bottom = opened.plan.layers.front().bottom});
-    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.file.mesh, opened.plan, execution);
+    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.mesh, opened.plan, execution);
     writer->finish();
     return seconds_since(start);
 }
@@ -82,7 +82,7 @@ double copy_of(const std::string& path) {
 bool right(const Part& part, const std::string& path) {
     const Opened opened = open_part(part, {});
     const LayerFile back = read_layers(path);
-    const std::vector<double> areas = section_areas(opened.file.mesh, opened.plan);
+    const std::vector<double> areas = section_areas(opened.mesh, opened.plan);
     if (back.layers.size() != areas.size())
         return false;
     for (std::size_t i = 0; i < areas.size(); ++i) {

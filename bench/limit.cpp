@@ -78,28 +78,28 @@ Run run_lamella(const Part& part, unsigned threads, bool weld_too) {
     Run run{};
     const Execution execution{.threads = threads};
     auto start = Clock::now();
-    const MeshFile file = read_mesh(part.path, {}, execution);
-    const Box3 box = bounding_box(file.mesh, execution);
+    const Mesh mesh = read_mesh(part.path, {}, execution).mesh();
+    const Box3 box = bounding_box(mesh, execution);
     run.read = seconds_since(start);
     const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
     SliceReport report;
-    const LayerStack layers = slice(file.mesh, plan, execution, &report);
+    const LayerStack layers = slice(mesh, plan, execution, &report);
     run.total = seconds_since(start);
     run.link = report.link_seconds;
     run.slice = report.slice_seconds;
-    run.triangles = file.mesh.size();
+    run.triangles = mesh.size();
     run.points = report.points;
     run.open_chains = report.open_chains;
 
     if (weld_too) {
         start = Clock::now();
-        const IndexedMesh mesh = weld(file.mesh, execution);
+        const IndexedMesh welded = weld(mesh, execution);
         run.weld = seconds_since(start);
-        if (mesh.triangles.size() != file.mesh.size())
+        if (welded.triangles.size() != mesh.size())
             throw std::runtime_error("the weld lost triangles");
     }
 
-    const std::vector<double> areas = section_areas(file.mesh, plan, execution);
+    const std::vector<double> areas = section_areas(mesh, plan, execution);
     double largest = 0;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         run.hash = run.hash * 0x9E3779B97F4A7C15 + content_hash(layers[i]);
@@ -165,10 +165,10 @@ int report(int argc, char** argv) {
             const std::uint64_t peak =
                 measure_in_child<std::uint64_t>([&] {
                     const Execution execution{.threads = count};
-                    const MeshFile file = read_mesh(part.path, {}, execution);
-                    const Box3 box = bounding_box(file.mesh, execution);
+                    const Mesh mesh = read_mesh(part.path, {}, execution).mesh();
+                    const Box3 box = bounding_box(mesh, execution);
                     const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
-                    return std::uint64_t{slice(file.mesh, plan, execution).size()};
+                    return std::uint64_t{slice(mesh, plan, execution).size()};
                 }).peak_bytes;
             const Run& run = runs.front().result;
             table.add({part.name, fmt::format("{}", run.triangles), fmt::format("{}", run.points),

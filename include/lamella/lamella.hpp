@@ -5,9 +5,9 @@
 //     #include <lamella/lamella.hpp>
 //
 //     const lamella::MeshFile part = lamella::read_mesh("part.stl");
-//     const lamella::Box3 box = lamella::bounding_box(part.mesh);
+//     const lamella::Box3 box = lamella::bounding_box(part.mesh());
 //     const lamella::Plan plan = lamella::plan_uniform(box.min.z, box.max.z, {.layer_height = 0.1});
-//     const lamella::LayerStack layers = lamella::slice(part.mesh, plan);
+//     const lamella::LayerStack layers = lamella::slice(part.mesh(), plan);
 //     lamella::write_layers("part.cli", lamella::layer_format("", "part.cli"), layers,
 //                           {.box = box, .layers = layers.size(), .bottom = layers.front().bottom});
 //
@@ -23,6 +23,7 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/inspect.hpp"
+#include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/mesh/triangle_soup.hpp"

@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <bit>
 #include <compare>
 
@@ -123,6 +124,29 @@ void gather(const TriangleSoup& soup, Range<typename Corners::Key>& range,
     range.locals = locals;
 }
 
+/// Numbers those of n things, in order, that are the first of their kind (`first[i] == 0`). Returns how many.
+std::uint32_t number_firsts(Executor& executor, std::span<const std::uint32_t> first,
+                            std::span<std::uint32_t> number) {
+    // Count, prefix sum, fill.
+    std::vector<std::uint32_t> next(first.size() / block + 1, 0);
+    executor.for_chunks(first.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
+        std::uint32_t count = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            count += first[i] == 0 ? 1 : 0;
+        next[begin / block] = count;
+    });
+    std::uint32_t total = 0;
+    for (std::uint32_t& value : next)
+        total = std::exchange(value, total) + total;
+    executor.for_chunks(first.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
+        std::uint32_t kind = next[begin / block];
+        for (std::size_t i = begin; i < end; ++i)
+            if (first[i] == 0)
+                number[i] = kind++;
+    });
+    return total;
+}
+
 template <class Corners>
 IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
     using Key = typename Corners::Key;
@@ -163,29 +187,15 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
             first[other] = representative + 1;
         });
 
-    // Count, prefix sum, fill: vertices in blocks of local vertices.
-    std::vector<std::uint32_t> next(locals / block + 1, 0);
-    executor.for_chunks(locals, block, [&](std::size_t begin, std::size_t end, unsigned) {
-        std::uint32_t count = 0;
-        for (std::size_t i = begin; i < end; ++i)
-            count += first[i] == 0 ? 1 : 0;
-        next[begin / block] = count;
-    });
-    std::uint32_t vertices = 0;
-    for (std::uint32_t& value : next)
-        vertices = std::exchange(value, vertices) + vertices;
-    resize_in_huge_pages(executor, mesh.vertices, vertices);
     const PageArray<std::uint32_t> number(locals);
+    resize_in_huge_pages(executor, mesh.vertices, number_firsts(executor, first.span(), number.span()));
     executor.for_chunks(locals, block, [&](std::size_t begin, std::size_t end, unsigned) {
-        std::uint32_t vertex = next[begin / block];
         std::size_t r = 0;
         for (std::size_t i = begin; i < end; ++i) {
             while (i >= ranges[r].first_local + ranges[r].locals)
                 ++r;
-            if (first[i] != 0)
-                continue;
-            number[i] = vertex;
-            mesh.vertices[vertex++] = point(ranges[r].keys[i - ranges[r].first_local]);
+            if (first[i] == 0)
+                mesh.vertices[number[i]] = point(ranges[r].keys[i - ranges[r].first_local]);
         }
     });
 
@@ -205,6 +215,52 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
 }
 
 } // namespace
+
+IndexedMesh weld(IndexedMesh mesh, const Execution& execution) {
+    Executor executor(execution);
+    const std::size_t vertices = mesh.vertices.size();
+    const auto key_of = [](const Point3& p) {
+        return std::bit_cast<DoubleKey>(Point3{p.x + 0.0, p.y + 0.0, p.z + 0.0});
+    };
+    const PageArray<DoubleKey> keys(vertices);
+    executor.for_chunks(vertices, block, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i)
+            keys[i] = key_of(mesh.vertices[i]);
+    });
+    std::vector<std::span<const DoubleKey>> parts;
+    for (unsigned part = 0; part < executor.workers(); ++part) {
+        const std::size_t begin = vertices * part / executor.workers();
+        const std::size_t end = vertices * (part + 1) / executor.workers();
+        parts.push_back(std::span<const DoubleKey>(keys.span()).subspan(begin, end - begin));
+    }
+    const PageArray<std::uint32_t> first(vertices, Fill::zero);
+    std::atomic<bool> any = false;
+    join_equal_keys<DoubleKey>(
+        executor, parts, [](const DoubleKey& key) { return hash(key); },
+        [&](std::uint32_t representative, std::uint32_t other, unsigned) {
+            first[other] = representative + 1;
+            any.store(true, std::memory_order_relaxed);
+        });
+    executor.check_cancelled();
+    if (!any.load(std::memory_order_relaxed))
+        return mesh;
+
+    const PageArray<std::uint32_t> number(vertices);
+    const std::uint32_t kinds = number_firsts(executor, first.span(), number.span());
+    std::vector<Point3> kept(kinds);
+    executor.for_chunks(vertices, block, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (first[i] == 0)
+                kept[number[i]] = mesh.vertices[i];
+    });
+    mesh.vertices = std::move(kept);
+    executor.for_chunks(mesh.triangles.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::uint32_t& corner : mesh.triangles[i])
+                corner = number[first[corner] != 0 ? first[corner] - 1 : corner];
+    });
+    return mesh;
+}
 
 IndexedMesh weld(const TriangleSoup& soup, const Execution& execution) {
     if (soup.size() > 0xffffffff)

@@ -160,9 +160,8 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
 
     const Stopwatch reading;
     MeshFile file = read_mesh(job.input, {.strict = job.strict}, execution);
-    if (job.placement != Transform{})
-        file.mesh = file.mesh.transformed(job.placement);
-    result.box = bounding_box(file.mesh, execution);
+    const Mesh mesh = file.mesh(execution).transformed(job.placement);
+    result.box = bounding_box(mesh, execution);
     result.seconds.read = reading.seconds();
     result.mesh_format = file.format;
     result.triangles = file.stored_triangles;
@@ -172,15 +171,15 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     result.bottom = plan.layers.front().bottom;
     result.top = plan.layers.back().top;
     if (job.layer_statistics)
-        result.mesh_volume_mm3 = volume(file.mesh, execution);
+        result.mesh_volume_mm3 = volume(mesh, execution);
 
     std::optional<IndexedMesh> welded; // for engines that would weld it once more
     if (job.inspect || job.strict) {
         const Stopwatch welding;
-        IndexedMesh mesh = weld(file.mesh, execution);
-        result.inspection = inspect(mesh, execution);
+        IndexedMesh indexed = weld(mesh, execution);
+        result.inspection = inspect(indexed, execution);
         if (with.welds)
-            welded = std::move(mesh);
+            welded = std::move(indexed);
         result.seconds.weld = welding.seconds();
         if (job.strict && !result.inspection->sound())
             throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects: {}", job.input,
@@ -205,8 +204,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
             result.seconds.write += writing.seconds();
         };
     };
-    const MeshRef mesh = welded ? MeshRef(*welded) : MeshRef(file.mesh);
-    slice_to(sink, mesh, plan, execution, &result.report, with);
+    slice_to(sink, welded ? MeshRef(*welded) : MeshRef(mesh), plan, execution, &result.report, with);
     gatherer.finish(plan, result);
     if (job.strict && result.report.open_chains > 0)
         throw Error(ErrorKind::defect,

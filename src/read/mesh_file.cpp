@@ -11,8 +11,29 @@ const char* format_name(MeshFormat format) noexcept {
         return "stl-binary";
     case MeshFormat::stl_ascii:
         return "stl-ascii";
+    case MeshFormat::three_mf:
+        return "3mf";
+    case MeshFormat::amf:
+        return "amf";
+    case MeshFormat::obj:
+        return "obj";
+    case MeshFormat::ply:
+        return "ply";
+    case MeshFormat::off:
+        return "off";
     }
     return "unknown";
+}
+
+Mesh MeshFile::placed(std::size_t i) const {
+    return objects[instances[i].object].mesh.transformed(instances[i].placement);
+}
+
+Mesh MeshFile::mesh(const Execution& execution) const {
+    std::vector<Mesh> all;
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        all.push_back(placed(i));
+    return joined(all, execution);
 }
 
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {

@@ -534,7 +534,8 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
     words.skip_word(); // "solid"
     constexpr std::size_t longest_name = 1000;
     file.name = printable(take_name(words), longest_name);
-    file.mesh = join(pieces, execution);
+    file.objects.push_back({file.name, Mesh(join(pieces, execution))});
+    file.instances.push_back({});
     file.stored_triangles = sum.stored;
     file.nonfinite_triangles = sum.nonfinite;
     file.warnings = remarks.take();

@@ -199,12 +199,13 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     const NonFinite nonfinite = find_nonfinite(corners, stored, executor, progress);
 
     MeshFile file;
+    TriangleSoup mesh;
     file.format = MeshFormat::stl_binary;
     file.name = header_text(source.bytes);
     file.stored_triangles = stored;
     file.nonfinite_triangles = nonfinite.total;
     if (nonfinite.total == 0) {
-        file.mesh = TriangleSoup(source.owner, corners, stl_record_bytes, stored, nonfinite.box);
+        mesh = TriangleSoup(source.owner, corners, stl_record_bytes, stored, nonfinite.box);
     } else {
         const std::string first = fmt::format("the first is triangle {} at byte {}", nonfinite.first + 1,
                                               stl_head_bytes + stl_record_bytes * nonfinite.first);
@@ -217,8 +218,10 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
         remarks.add(
             fmt::format("left out {} of {} triangles, which have a corner that is NaN or infinite ({})",
                         nonfinite.total, stored, first));
-        file.mesh = copy_finite(corners, stored, nonfinite, executor);
+        mesh = copy_finite(corners, stored, nonfinite, executor);
     }
+    file.objects.push_back({file.name, Mesh(std::move(mesh))});
+    file.instances.push_back({});
     file.warnings = remarks.take();
     progress.finish();
     return file;

@@ -26,7 +26,7 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(EverySharedMesh);
 /// The mesh, or nothing where the file is refused, which is right for files without a triangle only.
 std::optional<TriangleSoup> read(const test::SharedMesh& shared) {
     try {
-        return read_mesh(shared.path).mesh;
+        return *read_mesh(shared.path).mesh().soup();
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
         EXPECT_NE(std::string(error.what()).find(shared.file), std::string::npos) << error.what();

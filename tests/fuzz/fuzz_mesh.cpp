@@ -13,7 +13,7 @@ void require(bool promise) {
         std::abort();
 }
 
-void slice_and_check(const lamella::TriangleSoup& mesh) {
+void slice_and_check(const lamella::Mesh& mesh) {
     using namespace lamella;
     const Box3 box = bounding_box(mesh);
     if (!(box.min.z < box.max.z))
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         const auto file =
             lamella::read_mesh(std::as_bytes(std::span(data, size)), "fuzz", {}, {.threads = 1});
-        slice_and_check(file.mesh);
+        slice_and_check(file.mesh());
     } catch (const lamella::Error& error) {
         require(error.kind() == lamella::ErrorKind::input || error.kind() == lamella::ErrorKind::usage);
     }

@@ -29,6 +29,23 @@ TEST(Weld, EqualsTheNaiveWeldForAnyNumberOfThreads) {
     }
 }
 
+TEST(Weld, JoinsTheVerticesOfAMeshThatSharesNone) {
+    for (const TriangleSoup& soup : {make_box(1, 2, 3), shuffled(make_rook(), 1)}) {
+        IndexedMesh apart;
+        for (std::size_t i = 0; i < soup.size(); ++i) {
+            const auto first = static_cast<std::uint32_t>(apart.vertices.size());
+            for (const Point3& p : soup.placed(i))
+                apart.vertices.push_back({p.x == 0 ? -0.0 : p.x, p.y, p.z});
+            apart.triangles.push_back({first, first + 1, first + 2});
+        }
+        for (const unsigned threads : {1U, 2U, 7U}) {
+            const IndexedMesh welded = weld(apart, {.threads = threads});
+            EXPECT_TRUE(same(welded, weld(soup))) << threads;
+            EXPECT_TRUE(same(weld(welded, {.threads = threads}), welded)) << "nothing is left to join";
+        }
+    }
+}
+
 TEST(Weld, NumbersVerticesInTheOrderOfTheirFirstOccurrence) {
     const IndexedMesh mesh = weld(shuffled(make_rook(), 3));
     std::uint32_t next = 0;
@@ -67,7 +84,7 @@ TEST(Weld, ComparesCornersAfterThePlacement) {
 }
 
 TEST(Weld, KeepsDegenerateAndEmptyInput) {
-    EXPECT_TRUE(weld({}).triangles.empty());
+    EXPECT_TRUE(weld(TriangleSoup{}).triangles.empty());
     const TriangleSoup point(std::vector<Triangle3f>{{Point3f{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}});
     EXPECT_EQ(weld(point).vertices.size(), 1U);
     EXPECT_EQ(weld(point).triangles.size(), 1U);

@@ -99,7 +99,7 @@ TEST(StlAscii, DoesNotCareForNormals) {
 
 TEST(StlAscii, ReadsNumbersInEveryWriting) {
     const auto value = [](std::string_view text) {
-        return read(with_coordinate(text)).mesh.stored(0)[0].x;
+        return soup_of(read(with_coordinate(text))).stored(0)[0].x;
     };
     EXPECT_EQ(value("1"), 1.0F);
     EXPECT_EQ(value("1."), 1.0F);
@@ -119,7 +119,7 @@ TEST(StlAscii, ReadsNumbersInEveryWriting) {
 
 TEST(StlAscii, TakesNumbersTooSmallForAFloatForTheNearest) {
     const auto value = [](std::string_view text) {
-        return read(with_coordinate(text)).mesh.stored(0)[0].x;
+        return soup_of(read(with_coordinate(text))).stored(0)[0].x;
     };
     EXPECT_EQ(value("1e-45"), std::numeric_limits<float>::denorm_min());
     EXPECT_EQ(value("1e-40"), 1e-40F);

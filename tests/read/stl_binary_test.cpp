@@ -169,10 +169,10 @@ TEST(StlBinary, KnowsTheBoxWhereverItsBoundsStand) {
                 (corner % 3 == 0 ? p.x : corner % 3 == 1 ? p.y : p.z) = bound;
                 const std::string bytes = binary(triangles);
                 const MeshFile file = read_mesh(std::as_bytes(std::span(bytes)), "box.stl");
-                ASSERT_TRUE(file.mesh.stored_box().has_value());
-                EXPECT_EQ(*file.mesh.stored_box(), bounding_box(TriangleSoup(triangles)))
+                ASSERT_TRUE(soup_of(file).stored_box().has_value());
+                EXPECT_EQ(*soup_of(file).stored_box(), bounding_box(TriangleSoup(triangles)))
                     << count << ", " << corner;
-                EXPECT_FALSE(bound == 0 && std::signbit(file.mesh.stored_box()->min.z));
+                EXPECT_FALSE(bound == 0 && std::signbit(soup_of(file).stored_box()->min.z));
             }
         }
     }
@@ -187,7 +187,7 @@ TEST(StlBinary, HasNoBoxOfCornersThatItDropped) {
     Triangles kept = many;
     kept.erase(kept.begin() + 5);
     kept.erase(kept.begin() + 3);
-    EXPECT_EQ(bounding_box(file.mesh), bounding_box(TriangleSoup(kept)));
+    EXPECT_EQ(bounding_box(soup_of(file)), bounding_box(TriangleSoup(kept)));
 }
 
 } // namespace

@@ -18,14 +18,14 @@ std::optional<std::size_t> survive(std::string_view bytes, unsigned threads = 1)
     std::memcpy(exact.get(), bytes.data(), bytes.size());
     try {
         const MeshFile file = read_mesh({exact.get(), bytes.size()}, "part.stl", {}, {.threads = threads});
-        EXPECT_EQ(file.mesh.size() + file.nonfinite_triangles, file.stored_triangles);
-        EXPECT_FALSE(file.mesh.empty());
-        for (std::size_t i = 0; i < file.mesh.size(); ++i)
-            for (const Point3f& p : file.mesh.stored(i))
+        EXPECT_EQ(soup_of(file).size() + file.nonfinite_triangles, file.stored_triangles);
+        EXPECT_FALSE(soup_of(file).empty());
+        for (std::size_t i = 0; i < soup_of(file).size(); ++i)
+            for (const Point3f& p : soup_of(file).stored(i))
                 EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
         for (const std::string& warning : file.warnings)
             EXPECT_EQ(warning.find('\n'), std::string::npos);
-        return file.mesh.size();
+        return soup_of(file).size();
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
         EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos) << error.what();

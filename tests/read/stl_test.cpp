@@ -135,14 +135,15 @@ TEST_F(StlOnDisk, ViewsABinaryFileWithoutCopyingIt) {
     write(binary(many));
     const MeshFile file = read_mesh(path());
     EXPECT_EQ(file.path, path());
-    EXPECT_EQ(file.mesh.stride(), 50U);
-    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(file.mesh.data()) % 4096, 96U) << "84 + 12 bytes into a page";
+    EXPECT_EQ(soup_of(file).stride(), 50U);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(soup_of(file).data()) % 4096, 96U)
+        << "84 + 12 bytes into a page";
     EXPECT_EQ(triangles_of(file), many);
 }
 
 TEST_F(StlOnDisk, KeepsTheTrianglesOfADeletedFile) {
     write(binary(many));
-    const TriangleSoup mesh = read_mesh(path()).mesh;
+    const TriangleSoup mesh = *read_mesh(path()).mesh().soup();
     unlink(path().c_str());
     EXPECT_EQ(mesh.stored(23), many[23]);
 }

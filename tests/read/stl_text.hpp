@@ -90,10 +90,15 @@ inline MeshFile read(std::string_view bytes, const MeshReadOptions& options = {}
     return read_mesh(std::as_bytes(std::span(bytes)), "part.stl", options, {.threads = threads});
 }
 
+/// What an STL file holds.
+inline TriangleSoup soup_of(const MeshFile& file) {
+    return *file.mesh().soup();
+}
+
 inline Triangles triangles_of(const MeshFile& file) {
     Triangles triangles;
-    for (std::size_t i = 0; i < file.mesh.size(); ++i)
-        triangles.push_back(file.mesh.stored(i));
+    for (std::size_t i = 0; i < soup_of(file).size(); ++i)
+        triangles.push_back(soup_of(file).stored(i));
     return triangles;
 }
 
@@ -102,7 +107,7 @@ inline std::string error_of(std::string_view bytes, const MeshReadOptions& optio
                             ErrorKind kind = ErrorKind::input) {
     try {
         const MeshFile file = read(bytes, options);
-        ADD_FAILURE() << "no error, but " << file.mesh.size() << " triangles";
+        ADD_FAILURE() << "no error, but " << soup_of(file).size() << " triangles";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), kind) << error.what();
         EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos) << error.what();

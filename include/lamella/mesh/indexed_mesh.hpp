@@ -28,6 +28,11 @@ struct IndexedMesh {
 /// more than 2^32 - 1 corners differ from those shortly before them in the file.
 [[nodiscard]] IndexedMesh weld(const TriangleSoup& soup, const Execution& execution = {});
 
+/// Joins the equal vertices of a mesh, as files have them where neighbouring faces do not share theirs: each
+/// becomes the first one equal to it, with -0 equal to +0. Order is kept, and so are triangles and vertices
+/// without one. Expected O(n); hostile input costs O(n log n). The same for any number of threads.
+[[nodiscard]] IndexedMesh weld(IndexedMesh mesh, const Execution& execution = {});
+
 /// Throws Error{input} naming the first triangle whose index is out of range or the first vertex that is not
 /// finite. Everything else in this library takes a mesh that passes.
 void check(const IndexedMesh& mesh);

@@ -3,25 +3,44 @@
 // Reading meshes: what the file says, nothing welded, nothing repaired.
 
 #include "lamella/core/execution.hpp"
-#include "lamella/mesh/triangle_soup.hpp"
+#include "lamella/mesh/mesh.hpp"
+#include "lamella/mesh/transform.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace lamella {
 
-enum class MeshFormat { stl_binary, stl_ascii };
+enum class MeshFormat { stl_binary, stl_ascii, three_mf, amf, obj, ply, off };
 
-/// "stl-binary", "stl-ascii".
+/// "stl-binary", "stl-ascii", "3mf", "amf", "obj", "ply", "off".
 [[nodiscard]] const char* format_name(MeshFormat format) noexcept;
 
 struct MeshReadOptions {
     /// Makes Error{defect} of what is otherwise a warning: wrong counts, truncation, corners that are not
     /// finite.
     bool strict = false;
+    /// More triangles than this, over all instances, are Error{limit}; 0: as many as can be held.
+    std::uint64_t max_triangles = 0;
+    /// So are more bytes than this, of what a compressed file unpacks to and of the meshes; 0: any number.
+    std::uint64_t max_memory = 0;
+};
+
+/// A mesh of a file, as it stands there: in the file's unit, placed nowhere.
+struct MeshObject {
+    std::string name;
+    Mesh mesh;
+};
+
+/// An object put somewhere. The placement gives millimetres: the file's unit is in it.
+struct MeshInstance {
+    std::size_t object = 0; ///< index into MeshFile::objects
+    Transform placement = {};
+    std::string name = {};
 };
 
 struct MeshFile {
@@ -30,10 +49,20 @@ struct MeshFile {
     /// The first solid's name or the header's text, where there is one: valid UTF-8 of one line and some 1000
     /// bytes at most; other bytes are written as \xNN.
     std::string name;
-    TriangleSoup mesh;                     ///< finite corners only
+    /// Meshes with finite corners only, and where they stand. STL, OBJ, PLY and OFF files have one of each;
+    /// 3MF and AMF files may have many instances, also several of one object.
+    std::vector<MeshObject> objects;
+    std::vector<MeshInstance> instances;
+    /// Millimetres per unit of the file, where it states one.
+    std::optional<double> unit_mm;
     std::uint64_t stored_triangles = 0;    ///< including those that were dropped
     std::uint64_t nonfinite_triangles = 0; ///< dropped, because a corner was NaN or infinite
     std::vector<std::string> warnings;     ///< one line each: what was odd and what was made of it
+
+    /// Instance i, placed.
+    [[nodiscard]] Mesh placed(std::size_t i) const;
+    /// All instances, placed, as one mesh (see `joined`). O(1) for a file with one instance of a soup.
+    [[nodiscard]] Mesh mesh(const Execution& execution = {}) const;
 };
 
 /// Reads an STL file, binary or ASCII by its content. "-" reads standard input. Parallel; O(bytes); the same

@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/slicing/plan.hpp"
 
@@ -21,6 +22,8 @@ class MeshRef {
   public:
     MeshRef(const TriangleSoup& soup) : soup_(&soup) {} // NOLINT(google-explicit-constructor)
     MeshRef(const IndexedMesh& mesh) : mesh_(&mesh) {}  // NOLINT(google-explicit-constructor)
+    MeshRef(const Mesh& mesh)                           // NOLINT(google-explicit-constructor)
+        : soup_(mesh.soup()), mesh_(mesh.indexed()) {}
 
     [[nodiscard]] const TriangleSoup* soup() const noexcept { return soup_; }
     [[nodiscard]] const IndexedMesh* mesh() const noexcept { return mesh_; }
