@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -29,6 +30,15 @@ Box3 box_of(const LayerStack& layers) {
     for (const Layer& layer : layers)
         for (const Point2& p : layer.points)
             box.add(Point3{p.x, p.y, layer.z});
+    return box;
+}
+
+/// Of the whole file: never empty, and from the bottom of its first layer to the top of its last.
+Box3 box_of(const LayerFile& file) {
+    Box3 box;
+    for (const LayerPart& part : file.parts)
+        box.add(box_of(part.layers));
+    const LayerStack& layers = file.parts.front().layers;
     if (box.empty())
         box.add(Point3{});
     box.min.z = layers.front().bottom;
@@ -43,19 +53,27 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const LayerFile file = read_layers(arguments.input, arguments.run.execution(context));
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
-    if (file.layers.empty())
+    const LayerStack& layers = file.parts.front().layers;
+    if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
+    if (!arguments.writing.label.empty() && file.parts.size() > 1)
+        throw Error(ErrorKind::usage,
+                    fmt::format("--label names one part, and {} holds {}", file.path, file.parts.size()));
     LayerFileInfo info{
-        .box = box_of(file.layers), .layers = file.layers.size(), .bottom = file.layers.front().bottom};
-    if (!arguments.writing.label.empty())
-        info.label = arguments.writing.label;
-    else if (!file.label.empty())
-        info.label = file.label;
-    write_layers(arguments.output, format, file.layers, info, options);
+        .box = box_of(file), .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}};
+    std::vector<LayerStack> stacks;
+    for (const LayerPart& part : file.parts) {
+        std::string label = arguments.writing.label.empty() ? part.label : arguments.writing.label;
+        if (label.empty())
+            label = PartInfo{}.label;
+        info.parts.push_back({std::move(label), box_of(part.layers)});
+        stacks.push_back(part.layers);
+    }
+    write_layers(arguments.output, format, stacks, info, options);
 
     const std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(arguments.output),
-                    counted(file.layers.size(), "layer"), one_line(file.path), file.format, format.name);
+                    counted(layers.size(), "layer"), one_line(file.path), file.format, format.name);
     if (arguments.output == "-")
         context.messages.note(text);
     else

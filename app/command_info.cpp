@@ -132,26 +132,40 @@ struct LayerTotals {
     double volume_mm3 = 0;
 };
 
-LayerTotals totals_of(const LayerStack& layers) {
+LayerTotals totals_of(const LayerFile& file) {
     LayerTotals totals;
-    for (const Layer& layer : layers) {
-        const LayerMeasure measured = measure(layer);
-        totals.contours += measured.contours;
-        totals.open_chains += measured.open_chains;
-        totals.points += measured.points;
-        totals.volume_mm3 += measured.area_mm2 * layer.thickness();
-    }
+    for (const LayerPart& part : file.parts)
+        for (const Layer& layer : part.layers) {
+            const LayerMeasure measured = measure(layer);
+            totals.contours += measured.contours;
+            totals.open_chains += measured.open_chains;
+            totals.points += measured.points;
+            totals.volume_mm3 += measured.area_mm2 * layer.thickness();
+        }
     return totals;
+}
+
+std::vector<std::string> labels_of(const LayerFile& file) {
+    std::vector<std::string> labels;
+    for (const LayerPart& part : file.parts)
+        labels.push_back(part.label);
+    return labels;
 }
 
 std::string layers_text(const LayerFile& file, const LayerTotals& totals) {
     std::string text = fmt::format("{}: slice file, {}\n", one_line(file.path), file.format);
-    if (!file.label.empty())
-        text += line("label", one_line(file.label));
-    text += line("layers", grouped(file.layers.size()));
-    if (!file.layers.empty())
-        text += line("from", fmt::format("z = {} to {} mm", brief(file.layers.front().bottom),
-                                         brief(file.layers.back().top)));
+    std::string_view name = file.parts.size() == 1 ? "label" : "parts";
+    for (const std::string& label : labels_of(file)) {
+        if (file.parts.size() == 1 && label.empty())
+            continue;
+        text += line(name, label.empty() ? "(without a label)" : one_line(label));
+        name = "";
+    }
+    const LayerStack& layers = file.parts.front().layers;
+    text += line("layers", grouped(layers.size()));
+    if (!layers.empty())
+        text += line("from",
+                     fmt::format("z = {} to {} mm", brief(layers.front().bottom), brief(layers.back().top)));
     text += line("contours", grouped(totals.contours));
     text += line("open chains", totals.open_chains == 0 ? "none" : grouped(totals.open_chains));
     text += line("points", grouped(totals.points));
@@ -160,13 +174,14 @@ std::string layers_text(const LayerFile& file, const LayerTotals& totals) {
 }
 
 Json layers_json(const LayerFile& file, const LayerTotals& totals) {
-    const bool empty = file.layers.empty();
+    const LayerStack& layers = file.parts.front().layers;
     return {{"path", file.path},
             {"format", file.format},
-            {"label", file.label},
+            {"label", file.parts.front().label},
+            {"parts", labels_of(file)},
             {"units_mm", file.units_mm},
-            {"layers", file.layers.size()},
-            {"z_range", empty ? Json() : Json{file.layers.front().bottom, file.layers.back().top}},
+            {"layers", layers.size()},
+            {"z_range", layers.empty() ? Json() : Json{layers.front().bottom, layers.back().top}},
             {"contours", totals.contours},
             {"open_chains", totals.open_chains},
             {"points", totals.points},
@@ -179,7 +194,7 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
     if (arguments.placement.given())
         throw Error(ErrorKind::usage,
                     fmt::format("{}: --unit is for meshes; a slice file knows its unit", file.path));
-    const LayerTotals totals = totals_of(file.layers);
+    const LayerTotals totals = totals_of(file);
     context.messages.result(arguments.json ? json_text(layers_json(file, totals))
                                            : layers_text(file, totals));
     if (arguments.strict && totals.open_chains > 0)

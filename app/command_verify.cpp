@@ -86,7 +86,8 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     VerifyOptions options{.mesh = {}, .quantum_mm = file.units_mm / 2};
     if (!arguments.slice_at.empty()) {
         const SliceAt at = slice_at_of(arguments.slice_at);
-        place_cuts(file.layers, at);
+        for (LayerPart& part : file.parts)
+            place_cuts(part.layers, at);
         if (at == SliceAt::top)
             options.rule = PlaneRule::section_below;
     }
@@ -98,7 +99,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         mesh = part.mesh(execution).transformed(placement);
         options.mesh = mesh;
     }
-    const Verification found = verify(file.layers, options, execution);
+    const Verification found = verify(file.merged(), options, execution);
     context.messages.result(arguments.json ? json_text(verification_json(file.path, found))
                                            : verification_text(file.path, arguments.mesh, found));
     if (!found.ok())

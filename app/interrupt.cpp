@@ -37,19 +37,18 @@ int wait_for(std::span<pollfd> awaited, int milliseconds) {
 }
 
 /// For when destructors cannot be waited for.
-[[noreturn]] void leave_at_once() {
+[[noreturn]] void leave_at_once(std::string_view last_words) {
     remove_unfinished();
     // What is stuck may be a write to standard error: nobody reads it, or not soon enough.
     std::array<pollfd, 1> error_output{pollfd{STDERR_FILENO, POLLOUT, 0}};
-    constexpr std::string_view text = "\nlamella: error: cancelled\n";
     if (wait_for(error_output, 0) > 0)
-        static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
+        static_cast<void>(!write(STDERR_FILENO, last_words.data(), last_words.size()));
     _exit(cancelled_exit_code);
 }
 
 } // namespace
 
-Interrupt::Interrupt() {
+Interrupt::Interrupt(const Messages& messages) : messages_(messages) {
     sigset_t set;
     sigemptyset(&set);
     sigaddset(&set, SIGINT);
@@ -79,7 +78,7 @@ void Interrupt::watch() {
     static_cast<void>(!read(signals_, &first, sizeof first)); // so that a second one shows
     wait_for(awaited, patience_ms);
     if (awaited[1].revents == 0)
-        leave_at_once();
+        leave_at_once(messages_.last_words());
 }
 
 } // namespace lamella::app

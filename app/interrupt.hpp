@@ -2,6 +2,8 @@
 
 // Ctrl-C and the terminate signal.
 
+#include "messages.hpp"
+
 #include <stop_token>
 #include <thread>
 
@@ -13,7 +15,7 @@ namespace lamella::app {
 /// removed for it and it is ended at once with exit code 130.
 class Interrupt {
   public:
-    Interrupt();
+    explicit Interrupt(const Messages& messages);
     ~Interrupt();
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
@@ -23,6 +25,7 @@ class Interrupt {
   private:
     void watch();
 
+    const Messages& messages_;
     std::stop_source source_;
     int signals_ = -1; ///< becomes readable when a signal arrives
     int ending_ = -1;  ///< becomes readable when the watcher is no longer needed

@@ -81,7 +81,7 @@ int run(const std::vector<std::string>& words, Messages& messages) {
     case Wish::run:
         break;
     }
-    const Interrupt interrupt;
+    const Interrupt interrupt(messages);
     return command->run({*command, messages, interrupt.token()});
 }
 

@@ -87,6 +87,11 @@ void Messages::note(const std::string& text) {
         put(text);
 }
 
+std::string_view Messages::last_words() const noexcept {
+    return style_ == ProgressStyle::json ? "\n{\"error\":\"cancelled\",\"exit_code\":130}\n"
+                                         : "\nlamella: error: cancelled\n";
+}
+
 void Messages::draw_bar(const Progress& progress, double seconds) {
     // A run that is over in the blink of an eye needs no bar.
     constexpr double patience = 0.3;

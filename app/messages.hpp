@@ -5,6 +5,7 @@
 
 #include "lamella/core/execution.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <string>
 #include <string_view>
@@ -37,12 +38,14 @@ class Messages {
     void error(const std::string& text, int exit_code);
     /// What is no result here because standard output carries data. Programs are spared it.
     void note(const std::string& text);
+    /// The error of a run that is ended at once, in whatever state it is; whoever writes it may hold no lock.
+    [[nodiscard]] std::string_view last_words() const noexcept;
 
   private:
     void draw_bar(const Progress& progress, double seconds);
     void clear_bar();
 
-    ProgressStyle style_ = ProgressStyle::none;
+    std::atomic<ProgressStyle> style_ = ProgressStyle::none;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     bool bar_drawn_ = false;
 };

@@ -81,7 +81,7 @@ double copy_of(const std::string& path) {
 /// resolution.
 bool right(const Part& part, const std::string& path) {
     const Opened opened = open_part(part, {});
-    const LayerFile back = read_layers(path);
+    const LayerStack back = read_layers(path).merged();
     const std::vector<double> areas = section_areas(opened.mesh, opened.plan);
     if (back.layers.size() != areas.size())
         return false;

@@ -188,8 +188,10 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
 
     std::unique_ptr<LayerWriter> writer;
     if (format != nullptr) {
-        const LayerFileInfo info{
-            .box = result.box, .layers = plan.layers.size(), .bottom = result.bottom, .label = job.label};
+        const LayerFileInfo info{.box = result.box,
+                                 .layers = plan.layers.size(),
+                                 .bottom = result.bottom,
+                                 .parts = {{job.label, result.box}}};
         writer = open_layer_writer(job.output, *format, info, job.write);
         result.format = format->name;
     }

@@ -584,7 +584,8 @@ void make_layers(std::vector<RawLayer>& raw, const Header& header, LayerFile& fi
                         "are taken for the bottoms of layers",
                         raw.front().z));
     const std::size_t begin = has_zero_layer ? 1 : 0;
-    file.layers.reserve(n - begin);
+    LayerStack& layers = file.parts.front().layers;
+    layers.reserve(n - begin);
     for (std::size_t i = begin; i < n; ++i) {
         double bottom = 0;
         double top = 0;
@@ -599,7 +600,7 @@ void make_layers(std::vector<RawLayer>& raw, const Header& header, LayerFile& fi
         RawLayer contours;
         contours.points = std::move(raw[i].points);
         contours.ends = std::move(raw[i].ends);
-        file.layers.push_back(make_layer(contours, i - begin, bottom + (top - bottom) / 2, bottom, top));
+        layers.push_back(make_layer(contours, i - begin, bottom + (top - bottom) / 2, bottom, top));
     }
 }
 
@@ -615,7 +616,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, con
     LayerFile file;
     file.path = name;
     file.format = header.binary ? "cli" : "cli-ascii";
-    file.label = header.label;
+    file.parts.push_back({header.label, {}});
     file.units_mm = header.units_mm;
 
     Collector collector(header, name);

@@ -284,10 +284,11 @@ class SvgReader {
         // Layers are listed by their cuts, which need not lie as their tops do.
         std::stable_sort(places.begin(), places.end(),
                          [](const Place& a, const Place& b) { return a.z < b.z; });
-        file_.layers.reserve(n);
+        LayerStack& layers = file_.parts.emplace_back().layers;
+        layers.reserve(n);
         for (std::size_t i = 0; i < n; ++i)
-            file_.layers.push_back(make_layer(groups_[places[i].group].contours, i, places[i].z,
-                                              places[i].bottom, places[i].top));
+            layers.push_back(make_layer(groups_[places[i].group].contours, i, places[i].z, places[i].bottom,
+                                        places[i].top));
     }
 
     const std::string& name_;

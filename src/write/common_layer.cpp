@@ -28,7 +28,7 @@ enum Direction : std::uint8_t { clockwise = 0, counter_clockwise = 1, open_line 
 
 constexpr double least_units = 1e-9;
 constexpr double most_units = 1e3;
-constexpr int part_id = 1;
+constexpr int first_part = 1;
 
 void check_units(double units) {
     if (!(units >= least_units && units <= most_units))
@@ -53,7 +53,8 @@ std::string header(std::string_view coding, const LayerFileInfo& info, double un
     text += fmt::format("$${}\n", coding);
     text += fmt::format("$$UNITS/{}\n", exact_decimal_text(units));
     text += "$$VERSION/200\n";
-    text += fmt::format("$$LABEL/{},\"{}\"\n", part_id, label_text(info.label));
+    for (std::size_t i = 0; i < info.parts.size(); ++i)
+        text += fmt::format("$$LABEL/{},\"{}\"\n", first_part + i, label_text(info.parts[i].label));
     text += "$$DIMENSION/";
     const Box3& box = info.box;
     for (const double v : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
@@ -94,6 +95,13 @@ void for_each_contour(const Layer& layer, const Write& write) {
         write(layer.contour(i), false);
 }
 
+// Calls format(part, id) for each part.
+template <class Format>
+void for_each_part(std::span<const Layer> parts, const Format& format) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        format(parts[i], first_part + static_cast<int>(i));
+}
+
 // The same on a grid: calls put(points, direction) for what the grid leaves of each contour.
 template <class Put>
 void for_each_on_grid(const Grid& grid, const Layer& layer, const Put& put) {
@@ -125,20 +133,23 @@ class AsciiWriter final : public SequentialWriter {
         return fmt::format("$$LAYER/{}\n", height_text(place.top, units_));
     }
 
-    void format(const Layer& layer, ByteBuffer& out) const override {
-        for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
-            put_polyline(points, direction, out);
+    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
+        for_each_part(parts, [&](const Layer& layer, int part) {
+            for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
+                put_polyline(part, points, direction, out);
+            });
         });
     }
 
-    static void put_polyline(std::span<const GridPoint> points, Direction direction, ByteBuffer& out) {
+    static void put_polyline(int part, std::span<const GridPoint> points, Direction direction,
+                             ByteBuffer& out) {
         const bool closed = direction != open_line;
         constexpr std::string_view command = "$$POLYLINE/";
         // A comma or the end, sign, digits and ".0".
         constexpr std::size_t per_number = most_integer_digits + 4;
         char* at = out.room(command.size() + (points.size() + 3) * 2 * per_number);
         at = std::copy(command.begin(), command.end(), at);
-        at = put_integer(at, std::uint64_t{part_id});
+        at = put_integer(at, static_cast<std::uint64_t>(part));
         *at++ = ',';
         *at++ = static_cast<char>('0' + direction);
         *at++ = ',';
@@ -237,13 +248,13 @@ double area_of_floats(const char* points, std::size_t count) {
 
 constexpr std::size_t long_head = 14;
 
-char* put_long_head(char* out, Direction direction, std::size_t points, std::uint64_t layer) {
+char* put_long_head(char* out, int part, Direction direction, std::size_t points, std::uint64_t layer) {
     if (points > std::size_t{std::numeric_limits<std::int32_t>::max()})
         throw Error(
             ErrorKind::limit,
             fmt::format("layer {} has a contour of {} points; the format ends at 2^31 - 1", layer, points));
     out = put(out, Command::polyline_long);
-    out = put(out, std::int32_t{part_id});
+    out = put(out, std::int32_t{part});
     out = put(out, std::int32_t{direction});
     return put(out, static_cast<std::int32_t>(points));
 }
@@ -265,16 +276,18 @@ class LongWriter final : public SequentialWriter {
 
     std::string layer_head(const Place& place) override { return layer_start(place.top, units_); }
 
-    void format(const Layer& layer, ByteBuffer& out) const override {
-        // All room at once: most layers lose no point.
-        static_cast<void>(out.room(layer.contours() * (long_head + sizeof(FloatPoint)) +
-                                   layer.points.size() * sizeof(FloatPoint)));
-        for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
-            put_polyline(contour, closed, layer.index, out);
+    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
+        for_each_part(parts, [&](const Layer& layer, int part) {
+            // All room at once: most layers lose no point.
+            static_cast<void>(out.room(layer.contours() * (long_head + sizeof(FloatPoint)) +
+                                       layer.points.size() * sizeof(FloatPoint)));
+            for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
+                put_polyline(part, contour, closed, layer.index, out);
+            });
         });
     }
 
-    void put_polyline(std::span<const Point2> contour, bool closed, std::uint64_t layer,
+    void put_polyline(int part, std::span<const Point2> contour, bool closed, std::uint64_t layer,
                       ByteBuffer& out) const {
         char* const head = out.room(long_head + (contour.size() + 1) * sizeof(FloatPoint));
         char* const points = head + long_head;
@@ -293,7 +306,7 @@ class LongWriter final : public SequentialWriter {
             std::memcpy(points + count * sizeof(FloatPoint), points, sizeof(FloatPoint));
         }
         const std::size_t listed = count + (closed ? 1 : 0);
-        put_long_head(head, direction, listed, layer);
+        put_long_head(head, part, direction, listed, layer);
         out.end_at(points + listed * sizeof(FloatPoint));
     }
 
@@ -432,13 +445,15 @@ class ShortWriter final : public SequentialWriter {
         return layer_start(height);
     }
 
-    void format(const Layer& layer, ByteBuffer& out) const override {
-        for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
-            put_polyline(points, direction, layer.index, out);
+    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
+        for_each_part(parts, [&](const Layer& layer, int part) {
+            for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
+                put_polyline(part, points, direction, layer.index, out);
+            });
         });
     }
 
-    void put_polyline(std::span<const GridPoint> points, Direction direction, std::uint64_t layer,
+    void put_polyline(int part, std::span<const GridPoint> points, Direction direction, std::uint64_t layer,
                       ByteBuffer& out) const {
         for (const GridPoint& p : points) {
             if (((p.x | p.y) & ~most_short) != 0) {
@@ -449,15 +464,17 @@ class ShortWriter final : public SequentialWriter {
         }
         const std::size_t listed = points.size() + (direction != open_line ? 1 : 0);
         char* at = out.room(long_head + listed * sizeof(FloatPoint));
-        // A contour of more points than 16 bits count is written as a long one; a file may hold both.
-        const bool counted = listed <= std::numeric_limits<std::uint16_t>::max();
+        // A contour of more points or a part of a larger number than 16 bits count is written in the long
+        // form; a file may hold both.
+        constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
+        const bool counted = listed <= most && static_cast<std::size_t>(part) <= most;
         if (counted) {
             at = put(at, Command::polyline_short);
-            at = put(at, std::uint16_t{part_id});
+            at = put(at, static_cast<std::uint16_t>(part));
             at = put(at, std::uint16_t{direction});
             at = put(at, static_cast<std::uint16_t>(listed));
         } else {
-            at = put_long_head(at, direction, listed, layer);
+            at = put_long_head(at, part, direction, listed, layer);
         }
         for (std::size_t i = 0; i < listed; ++i) {
             const GridPoint& p = points[i < points.size() ? i : 0];

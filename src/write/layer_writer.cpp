@@ -44,6 +44,8 @@ std::string lower_case(std::string text) {
 void check_info(const LayerFileInfo& info) {
     const Box3& box = info.box;
     const std::array values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z, info.bottom};
+    if (info.parts.empty())
+        throw Error(ErrorKind::usage, "a slice file needs a part");
     const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     if (box.empty() || !finite)
         throw Error(ErrorKind::usage,
@@ -95,6 +97,22 @@ void write_layers(const std::string& path, const LayerFormat& format, std::span<
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
     for (const Layer& layer : layers)
         writer->prepare(layer)();
+    writer->finish();
+}
+
+void write_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
+                  const LayerFileInfo& info, const LayerWriteOptions& options) {
+    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
+    const std::size_t planes = parts.empty() ? 0 : parts.front().size();
+    if (std::any_of(parts.begin(), parts.end(),
+                    [&](const LayerStack& part) { return part.size() != planes; }))
+        throw Error(ErrorKind::usage, "parts of one file must have the same planes");
+    std::vector<Layer> plane(parts.size());
+    for (std::size_t i = 0; i < planes; ++i) {
+        for (std::size_t part = 0; part < parts.size(); ++part)
+            plane[part] = parts[part][i];
+        writer->prepare(plane)();
+    }
     writer->finish();
 }
 

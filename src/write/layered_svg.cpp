@@ -87,7 +87,13 @@ class LayeredSvgWriter final : public SequentialWriter {
             height_text(place.top - place.bottom));
     }
 
-    void format(const Layer& layer, ByteBuffer& out) const override {
+    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
+        for (const Layer& layer : parts)
+            format_part(layer, out);
+        out.append("  </g>\n");
+    }
+
+    void format_part(const Layer& layer, ByteBuffer& out) const {
         // Painted one after the other, each ring must come after those around it, which are larger.
         std::vector<MeasuredRing> rings = measured_rings(layer);
         std::stable_sort(rings.begin(), rings.end(), [](const MeasuredRing& a, const MeasuredRing& b) {
@@ -117,7 +123,6 @@ class LayeredSvgWriter final : public SequentialWriter {
             put_points(points, origin_, out);
             out.append("\" style=\"fill: none\" />\n");
         }
-        out.append("  </g>\n");
     }
 
     GridPoint origin_;
@@ -145,12 +150,14 @@ bool is_our_picture(const fs::path& path) {
 class SvgLayersWriter final : public LayerWriter {
   public:
     SvgLayersWriter(const std::string& path, const LayerFileInfo& info)
-        : directory_(path, is_our_picture), order_(info.layers), head_(head(info)) {}
+        : directory_(path, is_our_picture), order_(info), head_(head(info)) {}
 
     // Each layer has a file of its own, so it is written here and not in order.
-    std::function<void()> prepare(const Layer& layer) override {
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
         const std::shared_ptr<ByteBuffer> buffer = buffers_->take();
-        format(layer, *buffer);
+        format(parts, *buffer);
+        const Layer& layer = parts.front();
         const fs::path path = directory_.working_path() / fmt::format("layer_{:05}.svg", layer.index);
         if (fs::exists(path))
             throw Error(ErrorKind::usage, fmt::format("two layers have the index {}", layer.index));
@@ -187,10 +194,17 @@ class SvgLayersWriter final : public LayerWriter {
                            mm(-box.max.y - margin));
     }
 
-    void format(const Layer& layer, ByteBuffer& out) const {
+    void format(std::span<const Layer> parts, ByteBuffer& out) const {
         out.append(head_);
-        out.append(fmt::format("<title>Layer {}, z = {} mm</title>\n", layer.index, height_text(layer.z)));
+        out.append(fmt::format("<title>Layer {}, z = {} mm</title>\n", parts.front().index,
+                               height_text(parts.front().z)));
         out.append("<g transform=\"scale(1,-1)\" stroke-width=\"1\" stroke-linejoin=\"round\">\n");
+        for (const Layer& layer : parts)
+            format_part(layer, out);
+        out.append("</g>\n</svg>\n");
+    }
+
+    void format_part(const Layer& layer, ByteBuffer& out) const {
         std::vector<GridPoint> scratch;
         const auto put_path = [&](std::size_t begin, std::size_t end, std::string_view style) {
             bool empty = true;
@@ -211,7 +225,6 @@ class SvgLayersWriter final : public LayerWriter {
         };
         put_path(0, layer.rings, R"(fill="#8fb3cc" fill-rule="evenodd" stroke="#1d4e6b")");
         put_path(layer.rings, layer.contours(), R"(fill="none" stroke="#d62728")");
-        out.append("</g>\n</svg>\n");
     }
 
     AtomicDirectory directory_;

@@ -7,6 +7,12 @@
 
 namespace lamella {
 
+void LayerOrder::check_parts(std::size_t parts) const {
+    if (parts != parts_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} parts were announced and a plane has layers of {}", parts_, parts));
+}
+
 void LayerOrder::next(double z) {
     if (count_ > 0 && !(z > last_z_))
         throw Error(ErrorKind::usage,
@@ -30,13 +36,15 @@ std::vector<MeasuredRing> measured_rings(const Layer& layer) {
 
 SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
                                    std::string_view tail)
-    : file_(path), order_(info.layers), tail_(tail) {
+    : file_(path), order_(info), tail_(tail) {
     file_.append(head);
 }
 
-std::function<void()> SequentialWriter::prepare(const Layer& layer) {
+std::function<void()> SequentialWriter::prepare(std::span<const Layer> parts) {
+    order_.check_parts(parts.size());
     const std::shared_ptr<ByteBuffer> buffer = buffers_->take();
-    format(layer, *buffer);
+    format(parts, *buffer);
+    const Layer& layer = parts.front();
     return [this, buffer, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
         order_.next(z);
         file_.append(layer_head({order_.count() - 1, index, z, bottom, top}));

@@ -11,16 +11,20 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace lamella {
 
-/// The order of layers, checked as they are written: ascending z, and as many as were announced.
+/// The order of layers, checked as they are written: ascending z, and as many layers and parts as were
+/// announced.
 class LayerOrder {
   public:
-    explicit LayerOrder(std::uint64_t announced) : announced_(announced) {}
+    explicit LayerOrder(const LayerFileInfo& info) : announced_(info.layers), parts_(info.parts.size()) {}
 
+    /// Throws Error{usage} when there is not one layer for each part.
+    void check_parts(std::size_t parts) const;
     /// Throws Error{usage} when this layer does not lie above the one before.
     void next(double z);
     /// Throws Error{usage} when there were more or fewer layers than announced.
@@ -30,6 +34,7 @@ class LayerOrder {
 
   private:
     std::uint64_t announced_;
+    std::size_t parts_;
     std::uint64_t count_ = 0;
     double last_z_ = 0;
 };
@@ -46,7 +51,7 @@ struct MeasuredRing {
 
 class SequentialWriter : public LayerWriter {
   public:
-    [[nodiscard]] std::function<void()> prepare(const Layer& layer) final;
+    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
     void finish() final;
     [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_.bytes(); }
 
@@ -66,8 +71,8 @@ class SequentialWriter : public LayerWriter {
 
     /// What stands before the contours of a layer. Called in order.
     [[nodiscard]] virtual std::string layer_head(const Place& place) = 0;
-    /// Appends the contours of a layer and what stands after them. Called from any threads.
-    virtual void format(const Layer& layer, ByteBuffer& out) const = 0;
+    /// Appends the contours of a layer, part by part, and what stands after them. Called from any threads.
+    virtual void format(std::span<const Layer> parts, ByteBuffer& out) const = 0;
 
   private:
     AtomicFile file_;

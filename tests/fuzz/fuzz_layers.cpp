@@ -20,16 +20,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace lamella;
     try {
         const LayerFile file = read_layers(std::as_bytes(std::span(data, size)), "fuzz", {.threads = 1});
-        require(!file.layers.empty());
-        for (std::size_t i = 0; i < file.layers.size(); ++i) {
-            const Layer& layer = file.layers[i];
+        require(!file.parts.empty());
+        const LayerStack layers = file.merged();
+        require(!layers.empty());
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const Layer& layer = layers[i];
             require(in_normal_form(layer));
             require(layer.bottom <= layer.top);
-            require(i == 0 || file.layers[i - 1].z <= layer.z);
+            require(i == 0 || layers[i - 1].z <= layer.z);
             for (const Point2& p : layer.points)
                 require(std::isfinite(p.x) && std::isfinite(p.y));
         }
-        static_cast<void>(verify(file.layers, {}, {.threads = 1}));
+        static_cast<void>(verify(layers, {}, {.threads = 1}));
     } catch (const Error& error) {
         require(error.kind() == ErrorKind::input);
     }

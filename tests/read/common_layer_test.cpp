@@ -72,8 +72,8 @@ const std::string long_ring = u16(127) + bits(0.0F) + u16(127) + bits(50.0F) + l
 const std::string short_ring = u16(128, 0, 128, 50, 129, 1, 1, 5, 0, 0, 1000, 0, 1000, 1000, 0, 1000, 0, 0);
 
 void expect_ring(const LayerFile& file, double area) {
-    ASSERT_EQ(file.layers.size(), 1U);
-    const Layer& layer = file.layers.front();
+    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
+    const Layer& layer = file.parts.at(0).layers.front();
     EXPECT_DOUBLE_EQ(measure(layer).area_mm2, area);
     EXPECT_DOUBLE_EQ(layer.bottom, 0);
     EXPECT_DOUBLE_EQ(layer.z, 0.25);
@@ -87,7 +87,7 @@ TEST(ReadCommonLayer, AsciiTellsHeightsAndContours) {
     const LayerFile file = read(ascii(ring));
     expect_ring(file, 96);
     EXPECT_EQ(file.format, "cli-ascii");
-    EXPECT_EQ(file.layers.front().rings, 2U);
+    EXPECT_EQ(file.parts.at(0).layers.front().rings, 2U);
     EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
 }
 
@@ -97,7 +97,7 @@ TEST(ReadCommonLayer, BinaryLongAndShortFormsAgree) {
     expect_ring(by_long, 100);
     expect_ring(by_short, 100);
     EXPECT_EQ(by_long.format, "cli");
-    EXPECT_TRUE(same_contours(by_long.layers.front(), by_short.layers.front()));
+    EXPECT_TRUE(same_contours(by_long.parts.at(0).layers.front(), by_short.parts.at(0).layers.front()));
 }
 
 TEST(ReadCommonLayer, IntegersLeadingZerosCommentsAndUnknownCommandsAreFine) {
@@ -107,7 +107,7 @@ TEST(ReadCommonLayer, IntegersLeadingZerosCommentsAndUnknownCommandsAreFine) {
         "$$LAYER/0\r\n$$LAYER/50 // top //\r\n$$POWER/100.0\r\n$$POLYLINE/1,1,5,0,0,1000,0,\r\n"
         "1000,1000,0,+1000,.0,0.\r\n$$GEOMETRYEND\r\nanything");
     expect_ring(file, 100);
-    EXPECT_EQ(file.label, "a part");
+    EXPECT_EQ(file.parts.at(0).label, "a part");
     EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
 }
 
@@ -118,7 +118,7 @@ TEST(ReadCommonLayer, UserDataMayHoldCommands) {
 
 TEST(ReadCommonLayer, StatedDirectionHoldsAgainstTheOrderOfPoints) {
     const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,0,4,0,0,10,0,10,10,0,0\n"));
-    EXPECT_LT(measure(file.layers.front()).area_mm2, 0);
+    EXPECT_LT(measure(file.parts.at(0).layers.front()).area_mm2, 0);
     ASSERT_EQ(file.warnings.size(), 1U);
     EXPECT_NE(file.warnings.front().find("turned round"), std::string::npos);
 }
@@ -126,37 +126,37 @@ TEST(ReadCommonLayer, StatedDirectionHoldsAgainstTheOrderOfPoints) {
 TEST(ReadCommonLayer, UnclosedRingsAreClosedAndSlightOnesDropped) {
     const LayerFile file =
         read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,1,3,0,0,10,0,10,10\n$$POLYLINE/1,1,3,0,0,1,1,0,0\n"));
-    EXPECT_EQ(file.layers.front().rings, 1U);
+    EXPECT_EQ(file.parts.at(0).layers.front().rings, 1U);
     EXPECT_EQ(file.warnings.size(), 2U);
 }
 
 TEST(ReadCommonLayer, OpenLinesStayOpen) {
     const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,2,3,0,0,10,0,10,10\n"));
-    EXPECT_EQ(file.layers.front().open_chains(), 1U);
+    EXPECT_EQ(file.parts.at(0).layers.front().open_chains(), 1U);
 }
 
 TEST(ReadCommonLayer, WithoutAZeroLayerTheFirstLayerIsAsThickAsTheNext) {
     const LayerFile file = read(ascii("$$LAYER/30\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"
                                       "$$LAYER/50\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"));
-    ASSERT_EQ(file.layers.size(), 2U);
-    EXPECT_NEAR(file.layers[0].bottom, 0.1, 1e-12);
-    EXPECT_NEAR(file.layers[1].bottom, 0.3, 1e-12);
+    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(file.parts.at(0).layers[0].bottom, 0.1, 1e-12);
+    EXPECT_NEAR(file.parts.at(0).layers[1].bottom, 0.3, 1e-12);
 }
 
 TEST(ReadCommonLayer, ContoursOnTheBottomMakeHeightsBottoms) {
     const LayerFile file = read(ascii("$$LAYER/0\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"
                                       "$$LAYER/20\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"));
-    ASSERT_EQ(file.layers.size(), 2U);
-    EXPECT_NEAR(file.layers[1].bottom, 0.2, 1e-12);
-    EXPECT_NEAR(file.layers[1].top, 0.4, 1e-12);
+    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(file.parts.at(0).layers[1].bottom, 0.2, 1e-12);
+    EXPECT_NEAR(file.parts.at(0).layers[1].top, 0.4, 1e-12);
     EXPECT_EQ(file.warnings.size(), 1U);
 }
 
 TEST(ReadCommonLayer, ASingleLayerBelowTheBottomOfThePartHasNoThickness) {
     const LayerFile file = read(ascii("$$LAYER/-10\n$$POLYLINE/1,1,4,0,0,9,0,9,9,0,0\n"));
-    ASSERT_EQ(file.layers.size(), 1U);
-    EXPECT_DOUBLE_EQ(file.layers[0].z, -0.1);
-    EXPECT_EQ(file.layers[0].bottom, file.layers[0].top);
+    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
+    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].z, -0.1);
+    EXPECT_EQ(file.parts.at(0).layers[0].bottom, file.parts.at(0).layers[0].top);
 }
 
 TEST(ReadCommonLayer, NumbersThatOverflowInMillimetresAreRefused) {
@@ -172,8 +172,8 @@ TEST(ReadCommonLayer, LayersOutOfOrderAreSortedAndEqualOnesJoined) {
     const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
     const LayerFile file = read(
         ascii("$$LAYER/0\n$$LAYER/50\n" + triangle + "$$LAYER/20\n" + triangle + "$$LAYER/50\n" + triangle));
-    ASSERT_EQ(file.layers.size(), 2U);
-    EXPECT_EQ(file.layers[1].rings, 2U);
+    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
+    EXPECT_EQ(file.parts.at(0).layers[1].rings, 2U);
     EXPECT_EQ(file.warnings.size(), 2U);
 }
 
@@ -243,7 +243,7 @@ TEST(ReadCommonLayer, EveryTruncatedFileIsAnErrorOrFewerContours) {
     for (const std::string& whole : {ascii(ring), binary(long_ring), binary(short_ring)}) {
         for (std::size_t n = 1; n < whole.size(); ++n) {
             try {
-                EXPECT_LE(read(whole.substr(0, n)).layers.size(), 2U);
+                EXPECT_LE(read(whole.substr(0, n)).parts.at(0).layers.size(), 2U);
             } catch (const Error& error) {
                 EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
             }
@@ -274,8 +274,8 @@ TEST(ReadCommonLayer, PublishedSamplesHaveTheirArea) {
         GTEST_SKIP() << "no samples at " << folder;
     for (const char* name : {"ring_ascii.cli", "ring_long.cli", "ring_short.cli", "ring_short_align.cli"}) {
         const LayerFile file = read_layers((folder / name).string());
-        ASSERT_EQ(file.layers.size(), 2U) << name;
-        for (const Layer& layer : file.layers)
+        ASSERT_EQ(file.parts.at(0).layers.size(), 2U) << name;
+        for (const Layer& layer : file.parts.at(0).layers)
             EXPECT_NEAR(measure(layer).area_mm2, 96, 1e-9) << name;
     }
 }

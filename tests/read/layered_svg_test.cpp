@@ -45,35 +45,35 @@ TEST(ReadLayeredSvg, HeightsAndPolygonsOfTheNewerForm) {
     const LayerFile file = read(svg("<g id=\"layer0\" slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\" "
                                     "slic3r:layer-height=\"0.5\">" +
                                     square + hole + "</g>\n"));
-    ASSERT_EQ(file.layers.size(), 1U);
-    EXPECT_DOUBLE_EQ(measure(file.layers[0]).area_mm2, 96);
-    EXPECT_DOUBLE_EQ(file.layers[0].z, 0.25);
-    EXPECT_DOUBLE_EQ(file.layers[0].bottom, 0);
-    EXPECT_DOUBLE_EQ(file.layers[0].top, 0.5);
+    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
+    EXPECT_DOUBLE_EQ(measure(file.parts.at(0).layers[0]).area_mm2, 96);
+    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].z, 0.25);
+    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].bottom, 0);
+    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].top, 0.5);
 }
 
 TEST(ReadLayeredSvg, HeightsOfTheOlderFormAreMillionths) {
     const LayerFile file = read(svg("<g id=\"layer0\" slic3r:z=\"2.5e-07\">" + square +
                                     "</g><g id=\"layer1\" slic3r:z=\"7.5e-07\">" + square + "</g>"));
-    ASSERT_EQ(file.layers.size(), 2U);
-    EXPECT_NEAR(file.layers[0].z, 0.25, 1e-12);
-    EXPECT_NEAR(file.layers[1].bottom, 0.5, 1e-12);
-    EXPECT_NEAR(file.layers[1].top, 1.0, 1e-12);
+    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(file.parts.at(0).layers[0].z, 0.25, 1e-12);
+    EXPECT_NEAR(file.parts.at(0).layers[1].bottom, 0.5, 1e-12);
+    EXPECT_NEAR(file.parts.at(0).layers[1].top, 1.0, 1e-12);
 }
 
 TEST(ReadLayeredSvg, LayersAreListedByTheirCuts) {
     const LayerFile file = read(svg("<g slic3r:z=\"1\" slic3r:slice-z=\"0.9\">" + square +
                                     "</g><g slic3r:z=\"1.5\" slic3r:slice-z=\"0.2\"/>"));
-    ASSERT_EQ(file.layers.size(), 2U);
-    EXPECT_DOUBLE_EQ(file.layers[0].z, 0.2);
-    EXPECT_DOUBLE_EQ(file.layers[1].z, 0.9);
-    EXPECT_EQ(file.layers[1].rings, 1U);
-    EXPECT_EQ(file.layers[1].index, 1U);
+    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
+    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].z, 0.2);
+    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[1].z, 0.9);
+    EXPECT_EQ(file.parts.at(0).layers[1].rings, 1U);
+    EXPECT_EQ(file.parts.at(0).layers[1].index, 1U);
 }
 
 TEST(ReadLayeredSvg, NoSlabIsUpsideDown) {
     const LayerFile file = read(svg("<g slic3r:z=\"-1\">" + square + "</g>"));
-    EXPECT_EQ(file.layers.at(0).bottom, file.layers.at(0).top);
+    EXPECT_EQ(file.parts.at(0).layers.at(0).bottom, file.parts.at(0).layers.at(0).top);
     expect_error(svg("<g slic3r:z=\"1\" slic3r:layer-height=\"-0.5\"/>"), "must not be below 0");
 }
 
@@ -85,14 +85,14 @@ TEST(ReadLayeredSvg, NumbersThatCouldOverflowAreRefused) {
 TEST(ReadLayeredSvg, PathsAreTurnedBackUpright) {
     const LayerFile file = read(svg("<g slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\" slic3r:layer-height=\"0.5\">"
                                     "<path d=\"M 0 10 10 10 10 0 0 0 z M 2 6 L 2 8 h 2 V 6 Z\"/></g>"));
-    ASSERT_EQ(file.layers[0].rings, 2U);
-    EXPECT_GT(ring_area(file.layers[0].contour(0)), 0);
-    EXPECT_DOUBLE_EQ(std::abs(ring_area(file.layers[0].contour(1))), 4);
+    ASSERT_EQ(file.parts.at(0).layers[0].rings, 2U);
+    EXPECT_GT(ring_area(file.parts.at(0).layers[0].contour(0)), 0);
+    EXPECT_DOUBLE_EQ(std::abs(ring_area(file.parts.at(0).layers[0].contour(1))), 4);
 }
 
 TEST(ReadLayeredSvg, PolylinesAreOpenChains) {
     const LayerFile file = read(svg("<g slic3r:z=\"0.5\">" + square + "<polyline points=\"1,1 2,2\"/></g>"));
-    EXPECT_EQ(file.layers[0].open_chains(), 1U);
+    EXPECT_EQ(file.parts.at(0).layers[0].open_chains(), 1U);
     EXPECT_EQ(file.warnings.size(), 1U);
 }
 
@@ -138,8 +138,8 @@ TEST(ReadLayeredSvg, APublishedSampleHasItsArea) {
     if (!std::filesystem::exists(path))
         GTEST_SKIP() << "no sample at " << path;
     const LayerFile file = read_layers(path.string());
-    ASSERT_EQ(file.layers.size(), 2U);
-    for (const Layer& layer : file.layers)
+    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
+    for (const Layer& layer : file.parts.at(0).layers)
         EXPECT_NEAR(measure(layer).area_mm2, 96, 1e-9);
 }
 

@@ -127,7 +127,7 @@ TEST(CommonLayer, WritesHeightsFinerThanItsUnits) {
 TEST(CommonLayer, MakesTheLabelHarmless) {
     const LayerStack layers = square_with_hole();
     LayerFileInfo info = info_of(layers);
-    info.label = "a \"b\"\n$$BINARY, \xC3\xA4//";
+    info.parts.front().label = "a \"b\"\n$$BINARY, \xC3\xA4//";
     for (const char* format : {"cli", "cli-ascii"})
         EXPECT_TRUE(contains(written(format, layers, info), "$$LABEL/1,\"a _b____BINARY_ ____\"\n"));
 }

@@ -12,13 +12,21 @@
 
 namespace lamella {
 
+/// One of the parts that a file holds.
+struct LayerPart {
+    std::string label; ///< "" where the file has none
+    LayerStack layers;
+};
+
 struct LayerFile {
     std::string path;
     std::string format;  ///< "cli", "cli-ascii" or "svg"
-    std::string label;   ///< the part's name, where the file has one
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
-    LayerStack layers;
+    std::vector<LayerPart> parts;      ///< at least one; all have the same planes
     std::vector<std::string> warnings; ///< one line each: what was odd and what was made of it
+
+    /// All parts as one: the layers of the only part, or for each plane the contours of all. O(points).
+    [[nodiscard]] LayerStack merged() const;
 };
 
 /// Reads a slice file: Common Layer Interface (binary or ASCII) or layered SVG, by its content. "-" reads

@@ -11,15 +11,22 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lamella {
 
+/// One of the parts whose layers a file holds.
+struct PartInfo {
+    std::string label = "part";
+    Box3 box = {}; ///< mm; empty where nothing is known
+};
+
 /// What the head of a slice file says, known before the first layer is.
 struct LayerFileInfo {
-    Box3 box = {};            ///< of the part, mm; never empty
-    std::uint64_t layers = 0; ///< how many will follow
-    double bottom = 0;        ///< of the first layer
-    std::string label = "part";
+    Box3 box = {};                   ///< of all parts, mm; never empty
+    std::uint64_t layers = 0;        ///< how many planes will follow
+    double bottom = 0;               ///< of the first layer
+    std::vector<PartInfo> parts{{}}; ///< at least one
 };
 
 struct LayerWriteOptions {
@@ -55,10 +62,15 @@ class LayerWriter {
     LayerWriter& operator=(const LayerWriter&) = delete;
     virtual ~LayerWriter() = default;
 
-    /// Formats a layer. May be called for several layers at once, from any threads, in any order. The
-    /// function it returns writes the result; those must be called one at a time in ascending z (see
-    /// LayerSink).
-    [[nodiscard]] virtual std::function<void()> prepare(const Layer& layer) = 0;
+    /// Formats what one plane yields: one layer for each part, in the order of LayerFileInfo::parts, all with
+    /// the same index, z, bottom and top, and empty where the plane misses the part. Formats that cannot keep
+    /// parts apart put them together. May be called for several planes at once, from any threads, in any
+    /// order. The function it returns writes the result; those must be called one at a time in ascending z
+    /// (see LayerSink).
+    [[nodiscard]] virtual std::function<void()> prepare(std::span<const Layer> parts) = 0;
+
+    /// The same for the only part.
+    [[nodiscard]] std::function<void()> prepare(const Layer& layer) { return prepare(std::span(&layer, 1)); }
 
     /// Ends the file and gives it its name. Throws Error{output} when anything could not be written, and
     /// leaves nothing behind. To be called once, after the last layer.
@@ -74,9 +86,13 @@ class LayerWriter {
                                                              const LayerFileInfo& info,
                                                              const LayerWriteOptions& options = {});
 
-/// Writes a whole stack. Formats on one thread; slicing to a file in parallel is `slice_to` with
+/// Writes the stack of a single part. Formats on one thread; slicing to a file in parallel is `slice_to` with
 /// LayerWriter::prepare as the sink.
 void write_layers(const std::string& path, const LayerFormat& format, std::span<const Layer> layers,
+                  const LayerFileInfo& info, const LayerWriteOptions& options = {});
+
+/// The same for several parts, whose stacks have the same planes.
+void write_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
                   const LayerFileInfo& info, const LayerWriteOptions& options = {});
 
 } // namespace lamella
