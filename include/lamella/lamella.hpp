@@ -24,6 +24,7 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/mesh/mesh.hpp"
+#include "lamella/mesh/self_intersections.hpp"
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/mesh/triangle_soup.hpp"

@@ -1,0 +1,88 @@
+#include "core/orientation.hpp"
+
+#include "core/exact_sum.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace lamella {
+
+namespace {
+
+__extension__ using SignedWide = __int128;
+
+/// The determinant of three differences in whole numbers: where these are exact multiples of one power of two
+/// and have at most 40 bits, as differences of single precision coordinates of one part mostly are. False
+/// where they are not.
+bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& others, int& sign) noexcept {
+    std::array<double, 9> gaps; // NOLINT: filled below
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::array from{a.x, a.y, a.z};
+        const std::array to{others[k]->x, others[k]->y, others[k]->z};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double gap = to[i] - from[i];
+            // What rounding took off a difference, after Knuth; exact where nothing overflows.
+            const double back = gap - to[i];
+            const double lost = (to[i] - (gap - back)) - (from[i] + back);
+            if (lost != 0)
+                return false;
+            gaps[3 * k + i] = gap;
+            largest = std::max(largest, std::abs(gap));
+        }
+    }
+    if (!(largest > 0x1p-900 && largest < 0x1p900))
+        return false;
+    const int shift = 39 - std::ilogb(largest);
+    std::array<std::int64_t, 9> whole; // NOLINT: filled below
+    for (std::size_t i = 0; i < 9; ++i) {
+        const double scaled = std::ldexp(gaps[i], shift);
+        whole[i] = static_cast<std::int64_t>(scaled);
+        if (static_cast<double>(whole[i]) != scaled)
+            return false;
+    }
+    const auto minor = [&](std::size_t i, std::size_t j) {
+        return SignedWide{whole[i]} * whole[3 + j] - SignedWide{whole[j]} * whole[3 + i];
+    };
+    // Minors have 81 bits, products with 40 more 121, their sum 123.
+    const SignedWide det = minor(1, 2) * whole[6] + minor(2, 0) * whole[7] + minor(0, 1) * whole[8];
+    sign = (det > 0) - (det < 0);
+    return true;
+}
+
+} // namespace
+
+int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
+    // D multiplied out; the two c.x c.y cancel.
+    return sign_of_sum(std::array<SignedProduct<2>, 6>{{{{a.x, b.y}, false},
+                                                        {{a.x, c.y}, true},
+                                                        {{b.x, c.y}, false},
+                                                        {{b.x, a.y}, true},
+                                                        {{c.x, a.y}, false},
+                                                        {{c.x, b.y}, true}}});
+}
+
+int exact_orientation(const Point3& a, const Point3& b, const Point3& c, const Point3& d) noexcept {
+    int sign = 0;
+    if (integer_orientation(a, {&b, &c, &d}, sign))
+        return sign;
+    // D multiplied out: [b, c, d] - [a, c, d] + [a, b, d] - [a, b, c] with [p, q, r] = p x q . r.
+    std::array<SignedProduct<3>, 24> products;
+    std::size_t n = 0;
+    const auto add = [&](const Point3& p, const Point3& q, const Point3& r, bool minus) {
+        products[n++] = {{p.x, q.y, r.z}, minus};
+        products[n++] = {{p.y, q.z, r.x}, minus};
+        products[n++] = {{p.z, q.x, r.y}, minus};
+        products[n++] = {{p.z, q.y, r.x}, !minus};
+        products[n++] = {{p.x, q.z, r.y}, !minus};
+        products[n++] = {{p.y, q.x, r.z}, !minus};
+    };
+    add(b, c, d, false);
+    add(a, c, d, true);
+    add(a, b, d, false);
+    add(a, b, c, true);
+    return sign_of_sum(products);
+}
+
+} // namespace lamella

@@ -1,0 +1,103 @@
+#pragma once
+
+// On which side of a line or of a plane a point lies: decided exactly.
+
+#include "lamella/core/point.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lamella {
+
+/// The exact answers by integer arithmetic; slow, for the rare cases that `orientation` cannot decide.
+[[nodiscard]] int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept;
+[[nodiscard]] int exact_orientation(const Point3& a, const Point3& b, const Point3& c,
+                                    const Point3& d) noexcept;
+
+/// +1 when c lies to the left of the line from a to b, -1 to the right, 0 on it: the sign of
+///     D = (a.x - c.x) (b.y - c.y) - (a.y - c.y) (b.x - c.x) = L - R.
+/// Exact for all finite coordinates, denormal and huge ones included.
+///
+/// The filter. With u = 2^-53 a difference carries one rounding and a product another one, so the computed
+/// products l and r are off by |L - l| <= (3u + 7u^2) |l|, and likewise for r. The rounded difference of l
+/// and r has the sign of the exact one and at most 1 + u times its size. Hence the computed det has the sign
+/// of D when |det| > (1 + u) (3u + 7u^2) (|l| + |r|); the coefficient 3u + 16u^2 also covers the two
+/// roundings of the bound itself. A product that underflows is off by 2^-1075 more: with |l| + |r| > 1e-280
+/// the slack of the coefficient, more than u^2 (|l| + |r|) / 2, is far above that. Overflow makes a bound of
+/// infinity or NaN, and nothing is above those.
+[[nodiscard]] inline int orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
+    constexpr double u = 0x1p-53;
+    const double ax = a.x - c.x;
+    const double ay = a.y - c.y;
+    const double bx = b.x - c.x;
+    const double by = b.y - c.y;
+    const double l = ax * by;
+    const double r = ay * bx;
+    const double det = l - r;
+    const double size = std::abs(l) + std::abs(r);
+    if (size > 1e-280 && std::abs(det) > (3 + 16 * u) * u * size)
+        return det > 0 ? 1 : -1;
+    // The signs of the differences are exact, so are those of L and R; often they decide.
+    const auto sign = [](double x) {
+        return (x > 0) - (x < 0);
+    };
+    const int sign_l = sign(ax) * sign(by);
+    const int sign_r = sign(ay) * sign(bx);
+    if (sign_l != sign_r)
+        return sign_l > sign_r ? 1 : -1;
+    return sign_l == 0 ? 0 : exact_orientation(a, b, c);
+}
+
+/// The plane through three points, prepared for many questions: on which side of it does a point lie?
+///
+/// The filter of `likely_side`. Each of the six products of three differences carries three roundings of
+/// differences and two of products, and at most three of the sums that it goes through: the relative error is
+/// below (1 + u)^8 - 1 < 8u + 29u^2 of the sum of sizes `size`, which itself may come out too small by 5
+/// roundings; the coefficient 8u + 128u^2 covers both and the rounding of the bound. An underflow of an inner
+/// product is off by 2^-1075 times the third factor: below 1e60 that is far less than the slack u^2 size when
+/// size is above 1e-200, and so is that of the outer product.
+class Plane {
+  public:
+    Plane(const Point3& a, const Point3& b, const Point3& c) noexcept : origin_(a) {
+        const Point3 p{b.x - a.x, b.y - a.y, b.z - a.z};
+        const Point3 q{c.x - a.x, c.y - a.y, c.z - a.z};
+        normal_ = {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+        sizes_ = {std::abs(p.y * q.z) + std::abs(p.z * q.y), std::abs(p.z * q.x) + std::abs(p.x * q.z),
+                  std::abs(p.x * q.y) + std::abs(p.y * q.x)};
+    }
+
+    /// +1 or -1 where that is certain, as `orientation` of the three points and d; else 0.
+    [[nodiscard]] int likely_side(const Point3& d) const noexcept {
+        constexpr double u = 0x1p-53;
+        const Point3 r{d.x - origin_.x, d.y - origin_.y, d.z - origin_.z};
+        const double det = normal_.x * r.x + normal_.y * r.y + normal_.z * r.z;
+        const double size = sizes_.x * std::abs(r.x) + sizes_.y * std::abs(r.y) + sizes_.z * std::abs(r.z);
+        const double factor = std::max({std::abs(r.x), std::abs(r.y), std::abs(r.z)});
+        if (size > 1e-200 && factor < 1e60 && std::abs(det) > (8 + 128 * u) * u * size)
+            return det > 0 ? 1 : -1;
+        return 0;
+    }
+
+  private:
+    Point3 origin_;
+    Point3 normal_;
+    Point3 sizes_; ///< what `normal_` would be if nothing cancelled
+};
+
+/// +1 when d lies on the side of the plane through a, b and c from which they are seen counter-clockwise, -1
+/// on the other, 0 in it: the sign of
+///     D = (b - a) x (c - a) . (d - a).
+/// Exact for all finite coordinates.
+[[nodiscard]] inline int orientation(const Point3& a, const Point3& b, const Point3& c,
+                                     const Point3& d) noexcept {
+    const int likely = Plane(a, b, c).likely_side(d);
+    if (likely != 0)
+        return likely;
+    // Flat in a coordinate plane: the usual way to be coplanar.
+    const auto level = [&](double Point3::*k) {
+        return a.*k == b.*k && a.*k == c.*k && a.*k == d.*k;
+    };
+    return level(&Point3::x) || level(&Point3::y) || level(&Point3::z) ? 0 : exact_orientation(a, b, c, d);
+}
+
+} // namespace lamella

@@ -1,0 +1,174 @@
+#pragma once
+
+// Which triangles of a mesh come close to one another? A tree of boxes over the triangles in the order of a
+// space-filling curve.
+//
+// Boxes are kept in single precision, in the frame of the whole mesh. The way there (subtract, multiply,
+// round) never swaps two numbers, so boxes that overlap still do: a box may only seem to overlap a little
+// more.
+
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include "core/executor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+class BoxTree {
+  public:
+    /// Of the triangles that use(i) says; triangles name vertices that exist.
+    template <class Use>
+    BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, const Use& use);
+
+    /// Leaves have the triangles of `leaf_size` places each.
+    [[nodiscard]] std::size_t leaves() const noexcept { return levels_.empty() ? 0 : levels_[0].size(); }
+    /// The triangle at a place.
+    [[nodiscard]] std::uint32_t triangle(std::size_t place) const noexcept { return order_[place]; }
+
+    /// The places of a leaf, from the first one to before the last one.
+    [[nodiscard]] std::pair<std::size_t, std::size_t> places(std::size_t leaf) const noexcept {
+        return {leaf * leaf_size, std::min((leaf + 1) * leaf_size, order_.size())};
+    }
+    /// visit(place_a, place_b) with place_a < place_b and place_a in the leaf, for boxes that overlap.
+    template <class Visit>
+    void close_to_leaf(std::size_t leaf, const Visit& visit) const;
+
+  private:
+    struct Bounds {
+        std::array<float, 3> min{2, 2, 2};
+        std::array<float, 3> max{-1, -1, -1};
+
+        void add(const Bounds& other) noexcept {
+            for (std::size_t k = 0; k < 3; ++k) {
+                min[k] = std::min(min[k], other.min[k]);
+                max[k] = std::max(max[k], other.max[k]);
+            }
+        }
+        [[nodiscard]] bool overlaps(const Bounds& other) const noexcept {
+            // Without branches: which of the six decides is a toss-up.
+            return ((min[0] <= other.max[0]) & (other.min[0] <= max[0]) & (min[1] <= other.max[1]) &
+                    (other.min[1] <= max[1]) & (min[2] <= other.max[2]) & (other.min[2] <= max[2])) != 0;
+        }
+    };
+    static constexpr std::size_t leaf_size = 4;
+    static constexpr std::size_t children = 4;
+    static constexpr std::size_t chunk = std::size_t{1} << 14;
+
+    /// The coordinate's place in the whole box, from 0 to 1.
+    struct Frame {
+        std::array<double, 3> low{};
+        double scale = 0;
+
+        explicit Frame(const Box3& box) : low{box.min.x / 4, box.min.y / 4, box.min.z / 4} {
+            const double extent =
+                std::max({box.max.x / 4 - low[0], box.max.y / 4 - low[1], box.max.z / 4 - low[2]});
+            scale = extent > 1e-300 ? 1 / extent : 0;
+        }
+        [[nodiscard]] float place(double x, std::size_t axis) const noexcept {
+            return static_cast<float>((x / 4 - low[axis]) * scale);
+        }
+    };
+
+    /// Bits of three numbers of 21 bits, in turns.
+    static std::uint64_t curve_place(const Bounds& bounds) noexcept {
+        std::uint64_t code = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float middle = (bounds.min[k] + bounds.max[k]) / 2;
+            auto v = static_cast<std::uint64_t>(std::clamp(middle, 0.0F, 1.0F) * 0x1fffff);
+            v = (v | v << 32) & 0x1f00000000ffff;
+            v = (v | v << 16) & 0x1f0000ff0000ff;
+            v = (v | v << 8) & 0x100f00f00f00f00f;
+            v = (v | v << 4) & 0x10c30c30c30c30c3;
+            v = (v | v << 2) & 0x1249249249249249;
+            code |= v << k;
+        }
+        return code;
+    }
+
+    std::vector<std::uint32_t> order_;
+    std::vector<Bounds> boxes_;               ///< by place
+    std::vector<std::vector<Bounds>> levels_; ///< leaves first; the last one has one box
+};
+
+template <class Use>
+BoxTree::BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, const Use& use) {
+    const Frame frame(box);
+    const auto bounds_of = [&](std::uint32_t i) {
+        Bounds bounds;
+        for (const std::uint32_t v : mesh.triangles[i]) {
+            const Point3& p = mesh.vertices[v];
+            const std::array at{frame.place(p.x, 0), frame.place(p.y, 1), frame.place(p.z, 2)};
+            bounds.add({at, at});
+        }
+        return bounds;
+    };
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+        if (use(i))
+            sorted.emplace_back(0, i);
+    executor.for_chunks(sorted.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i)
+            sorted[i].first = curve_place(bounds_of(sorted[i].second));
+    });
+    std::sort(sorted.begin(), sorted.end());
+    order_.resize(sorted.size());
+    boxes_.resize(sorted.size());
+    executor.for_chunks(sorted.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+            order_[i] = sorted[i].second;
+            boxes_[i] = bounds_of(sorted[i].second);
+        }
+    });
+    const auto grouped = [](const std::vector<Bounds>& below, std::size_t size) {
+        std::vector<Bounds> level((below.size() + size - 1) / size);
+        for (std::size_t i = 0; i < below.size(); ++i)
+            level[i / size].add(below[i]);
+        return level;
+    };
+    if (boxes_.empty())
+        return;
+    levels_.push_back(grouped(boxes_, leaf_size));
+    while (levels_.back().size() > 1)
+        levels_.push_back(grouped(levels_.back(), children));
+}
+
+template <class Visit>
+void BoxTree::close_to_leaf(std::size_t leaf, const Visit& visit) const {
+    const Bounds& mine = levels_[0][leaf];
+    const auto [begin, end] = places(leaf);
+    const auto compare_with = [&](std::size_t other) {
+        const auto [from, to] = places(other);
+        for (std::size_t a = begin; a < end; ++a) {
+            if (other != leaf && !boxes_[a].overlaps(levels_[0][other]))
+                continue;
+            for (std::size_t b = std::max(a + 1, from); b < to; ++b)
+                if (boxes_[a].overlaps(boxes_[b]))
+                    visit(a, b);
+        }
+    };
+    // A node is (level, number); only leaves from `leaf` on are of interest.
+    std::array<std::pair<std::uint32_t, std::size_t>, children * 24> stack; // 4^24 leaves at most
+    std::size_t size = 0;
+    stack[size++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
+    while (size > 0) {
+        const auto [level, number] = stack[--size];
+        if (level == 0) {
+            compare_with(number);
+            continue;
+        }
+        const std::vector<Bounds>& below = levels_[level - 1];
+        const std::size_t first_wanted = leaf >> (2 * (level - 1));
+        const std::size_t last = std::min((number + 1) * children, below.size());
+        for (std::size_t child = std::max(number * children, first_wanted); child < last; ++child)
+            if (mine.overlaps(below[child]))
+                stack[size++] = {level - 1, child};
+    }
+}
+
+} // namespace lamella

@@ -1,0 +1,245 @@
+#include "mesh/triangle_contact.hpp"
+
+#include "core/orientation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+using Signs = std::array<int, 3>;
+using Flat = std::array<Point2, 3>;
+
+/// Without the coordinate `axis`.
+Point2 projected(const Point3& p, int axis) noexcept {
+    return axis == 0 ? Point2{p.y, p.z} : axis == 1 ? Point2{p.z, p.x} : Point2{p.x, p.y};
+}
+
+Flat projected(const Triangle3& t, int axis) noexcept {
+    return {projected(t[0], axis), projected(t[1], axis), projected(t[2], axis)};
+}
+
+bool same(const Signs& s, int value) noexcept {
+    return s[0] == value && s[1] == value && s[2] == value;
+}
+
+bool both_sides(const Signs& s) noexcept {
+    const auto [least, most] = std::minmax({s[0], s[1], s[2]});
+    return least < 0 && most > 0;
+}
+
+/// Turns both so that corner 0 of `t` is alone on the side of the other's plane to which that plane's corners
+/// are seen counter-clockwise, or in the plane: t by rotation, the other by reversal. Each comes with the
+/// signs of its corners by the plane of the other.
+void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, Signs& other_signs) noexcept {
+    const auto lone = [&]() -> std::pair<std::size_t, bool> {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int a = signs[k];
+            const int b = signs[(k + 1) % 3];
+            const int c = signs[(k + 2) % 3];
+            if (a > 0 && b <= 0 && c <= 0)
+                return {k, false};
+            if (a < 0 && b >= 0 && c >= 0)
+                return {k, true};
+        }
+        for (std::size_t k = 0; k < 3; ++k) // a corner in the plane, the others on one side
+            if (signs[k] == 0)
+                return {k, signs[(k + 1) % 3] > 0};
+        return {0, false};
+    }();
+    std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(lone.first), t.end());
+    if (lone.second) {
+        std::swap(other[1], other[2]);
+        std::swap(other_signs[1], other_signs[2]);
+    }
+}
+
+/// One corner in the other's plane and the others on one side: nothing in common but that point.
+bool in_a_point(const Signs& s) noexcept {
+    return std::ranges::count(s, 0) == 1 && !both_sides(s);
+}
+
+/// For triangles in different planes that are no neighbours over an edge. `p_signs`: of p's corners by the
+/// plane of q.
+Contact contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_signs, Signs q_signs,
+                          bool share_a_corner) noexcept {
+    put_lone_corner_first(p, p_signs, q, q_signs);
+    put_lone_corner_first(q, q_signs, p, p_signs);
+    const int first = orientation(p[0], p[1], q[0], q[1]);
+    const int second = orientation(p[0], p[2], q[2], q[0]);
+    if (first > 0 || second > 0)
+        return Contact::none;
+    const bool segment = first < 0 && second < 0 && !in_a_point(p_signs) && !in_a_point(q_signs);
+    if (!segment)
+        return share_a_corner ? Contact::none : Contact::touching;
+    return both_sides(p_signs) && both_sides(q_signs) ? Contact::crossing : Contact::touching;
+}
+
+bool all_outside(const Flat& edges_of, const Flat& corners, bool strictly) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto outside = [&](const Point2& p) {
+            const int side = orientation(edges_of[k], edges_of[(k + 1) % 3], p);
+            return strictly ? side < 0 : side <= 0;
+        };
+        if (std::ranges::all_of(corners, outside))
+            return true;
+    }
+    return false;
+}
+
+/// Of a corner that both have: whether an edge of each leads from it in the same direction.
+bool edges_together(const Flat& p, std::size_t at_p, const Flat& q, std::size_t at_q) noexcept {
+    const Point2& o = p[at_p];
+    for (std::size_t i = 1; i < 3; ++i)
+        for (std::size_t j = 1; j < 3; ++j) {
+            const Point2& a = p[(at_p + i) % 3];
+            const Point2& b = q[(at_q + j) % 3];
+            const bool same_way =
+                a.x != o.x ? (a.x > o.x) == (b.x > o.x) && b.x != o.x : (a.y > o.y) == (b.y > o.y);
+            if (same_way && orientation(o, a, b) == 0)
+                return true;
+        }
+    return false;
+}
+
+struct Shared {
+    int count = 0;
+    std::size_t at_p = 0; ///< the place of the last one found
+    std::size_t at_q = 0;
+};
+
+Shared shared_corners(const NamedTriangle& p, const NamedTriangle& q) noexcept {
+    Shared shared;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            if (p.names[i] == q.names[j])
+                shared = {shared.count + 1, i, j};
+    return shared;
+}
+
+Contact contact_in_a_plane(const Triangle3& p, const Triangle3& q, const Shared& shared) noexcept {
+    // Any projection in which p keeps an area will do; the largest part of its normal is the safest one.
+    const Point3 u{p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
+    const Point3 v{p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
+    const std::array<double, 3> normal{std::abs(u.y * v.z - u.z * v.y), std::abs(u.z * v.x - u.x * v.z),
+                                       std::abs(u.x * v.y - u.y * v.x)};
+    int axis = static_cast<int>(std::ranges::max_element(normal) - normal.begin());
+    const auto area_sign = [&](const Triangle3& t) {
+        const Flat f = projected(t, axis);
+        return orientation(f[0], f[1], f[2]);
+    };
+    for (int tries = 0; tries < 2 && area_sign(p) == 0; ++tries)
+        axis = (axis + 1) % 3;
+    Flat fp = projected(p, axis);
+    Flat fq = projected(q, axis);
+    std::size_t at_p = shared.at_p;
+    std::size_t at_q = shared.at_q;
+    const auto turn = [](Flat& f, std::size_t& at) {
+        std::swap(f[1], f[2]);
+        at = at == 0 ? 0 : 3 - at;
+    };
+    if (area_sign(p) < 0)
+        turn(fp, at_p);
+    if (area_sign(q) < 0)
+        turn(fq, at_q);
+    if (!all_outside(fp, fq, false) && !all_outside(fq, fp, false))
+        return Contact::overlapping;
+    if (shared.count == 0)
+        return all_outside(fp, fq, true) || all_outside(fq, fp, true) ? Contact::none : Contact::touching;
+    // Apart but for the line between them. Where it holds a common corner, it holds more when edges run along
+    // each other from there.
+    return shared.count == 1 && edges_together(fp, at_p, fq, at_q) ? Contact::touching : Contact::none;
+}
+
+} // namespace
+
+bool flat(const Triangle3& t) noexcept {
+    for (int axis = 0; axis < 3; ++axis) {
+        const Flat f = projected(t, axis);
+        if (orientation(f[0], f[1], f[2]) != 0)
+            return false;
+    }
+    return true;
+}
+
+Contact contact(const NamedTriangle& p, const NamedTriangle& q) noexcept {
+    const Shared shared = shared_corners(p, q);
+    if (shared.count >= 3)
+        return Contact::overlapping;
+    const auto signs_by = [](const NamedTriangle& plane, const NamedTriangle& of) {
+        Signs signs{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t name = of.names[k];
+            const bool shared_corner =
+                name == plane.names[0] || name == plane.names[1] || name == plane.names[2];
+            const Triangle3& t = plane.corners;
+            signs[k] = shared_corner ? 0 : orientation(t[0], t[1], t[2], of.corners[k]);
+        }
+        return signs;
+    };
+    const Signs q_signs = signs_by(p, q);
+    if (same(q_signs, 1) || same(q_signs, -1))
+        return Contact::none;
+    if (same(q_signs, 0))
+        return contact_in_a_plane(p.corners, q.corners, shared);
+    const bool share_a_corner = shared.count == 1;
+    if (shared.count == 2 || (share_a_corner && in_a_point(q_signs)))
+        return Contact::none;
+    const Signs p_signs = signs_by(q, p);
+    if (same(p_signs, 1) || same(p_signs, -1) || (share_a_corner && in_a_point(p_signs)))
+        return Contact::none;
+    return contact_in_a_line(p.corners, q.corners, p_signs, q_signs, share_a_corner);
+}
+
+Point3 contact_place(const Triangle3& p, const Triangle3& q, Contact contact) noexcept {
+    if (contact == Contact::crossing) {
+        // Where edges of one pass through the plane of the other: four points on a line, of which the middle
+        // two are the ends of what is common.
+        std::array<Point3, 4> ends;
+        std::size_t n = 0;
+        const auto add_ends = [&](const Triangle3& t, const Triangle3& plane) {
+            const auto height = [&](const Point3& x) {
+                const Point3 u{plane[1].x - plane[0].x, plane[1].y - plane[0].y, plane[1].z - plane[0].z};
+                const Point3 v{plane[2].x - plane[0].x, plane[2].y - plane[0].y, plane[2].z - plane[0].z};
+                const Point3 w{x.x - plane[0].x, x.y - plane[0].y, x.z - plane[0].z};
+                return (u.y * v.z - u.z * v.y) * w.x + (u.z * v.x - u.x * v.z) * w.y +
+                       (u.x * v.y - u.y * v.x) * w.z;
+            };
+            for (std::size_t k = 0; k < 3 && n < 4; ++k) {
+                const Point3& a = t[k];
+                const Point3& b = t[(k + 1) % 3];
+                const double from = height(a);
+                const double to = height(b);
+                if ((from > 0) == (to > 0))
+                    continue;
+                const double s = from / (from - to);
+                ends[n++] = {a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), a.z + s * (b.z - a.z)};
+            }
+        };
+        add_ends(p, q);
+        if (n == 2)
+            add_ends(q, p);
+        if (n == 4) {
+            std::ranges::sort(ends);
+            return {(ends[1].x + ends[2].x) / 2, (ends[1].y + ends[2].y) / 2, (ends[1].z + ends[2].z) / 2};
+        }
+    }
+    Box3 box_p;
+    Box3 box_q;
+    for (std::size_t k = 0; k < 3; ++k) {
+        box_p.add(p[k]);
+        box_q.add(q[k]);
+    }
+    const auto middle = [](double low_a, double high_a, double low_b, double high_b) {
+        return std::max(low_a, low_b) / 2 + std::min(high_a, high_b) / 2;
+    };
+    return {middle(box_p.min.x, box_p.max.x, box_q.min.x, box_q.max.x),
+            middle(box_p.min.y, box_p.max.y, box_q.min.y, box_q.max.y),
+            middle(box_p.min.z, box_p.max.z, box_q.min.z, box_q.max.z)};
+}
+
+} // namespace lamella
