@@ -48,6 +48,7 @@ struct Operand {
     std::string help;
     std::vector<std::string> choices = {}; ///< empty: the name of a file
     bool required = true;
+    bool repeated = false; ///< may be given any number of times; the last one only
     std::function<void(const std::string& text)> set;
 };
 

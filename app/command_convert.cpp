@@ -22,6 +22,7 @@ struct ConvertArguments {
     std::string input;
     std::string output;
     LayerOutputOptions writing;
+    std::string label;
     RunOptions run;
 };
 
@@ -46,6 +47,13 @@ Box3 box_of(const LayerFile& file) {
     return box;
 }
 
+OptionGroup output_options(ConvertArguments& target) {
+    OptionGroup group{"What is written", layer_output_options(target.writing)};
+    group.options.push_back(
+        text("label", "TEXT", "name of the only part inside the slice file", target.label));
+    return group;
+}
+
 int run_convert(const ConvertArguments& arguments, const Context& context) {
     check_distinct(arguments.input, arguments.output);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
@@ -56,14 +64,14 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const LayerStack& layers = file.parts.front().layers;
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
-    if (!arguments.writing.label.empty() && file.parts.size() > 1)
+    if (!arguments.label.empty() && file.parts.size() > 1)
         throw Error(ErrorKind::usage,
                     fmt::format("--label names one part, and {} holds {}", file.path, file.parts.size()));
     LayerFileInfo info{
         .box = box_of(file), .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}};
     std::vector<LayerStack> stacks;
     for (const LayerPart& part : file.parts) {
-        std::string label = arguments.writing.label.empty() ? part.label : arguments.writing.label;
+        std::string label = arguments.label.empty() ? part.label : arguments.label;
         if (label.empty())
             label = PartInfo{}.label;
         info.parts.push_back({std::move(label), box_of(part.layers)});
@@ -103,9 +111,7 @@ Command convert_command() {
                           [arguments](const std::string& text) {
                               arguments->output = text;
                           }}},
-        .groups = {{"What is written", layer_output_options(arguments->writing)},
-                   run_options(arguments->run),
-                   common_options(true)},
+        .groups = {output_options(*arguments), run_options(arguments->run), common_options(true)},
         .examples = {{"lamella convert part.cli part.svg", "to look at it"},
                      {"lamella convert part.svg part.cli --units-mm 0.005", "for a machine with 5 um steps"}},
         .run = [arguments](const Context& context) {

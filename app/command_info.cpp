@@ -71,9 +71,24 @@ std::string shells_text(const Inspection& found) {
                        found.cavities == 1 ? "a cavity" : "cavities");
 }
 
-std::string mesh_text(const MeshFile& file, const Inspection& found) {
+/// "3 of 2 meshes: gear, gear 2, axle".
+std::string parts_text(const MeshFile& file, const Plate& plate) {
+    constexpr std::size_t most = 8;
+    std::string text = fmt::format(
+        "{} of {}: ", grouped(plate.parts.size()),
+        file.objects.size() == 1 ? "one mesh" : fmt::format("{} meshes", grouped(file.objects.size())));
+    for (std::size_t i = 0; i < std::min(most, plate.parts.size()); ++i)
+        text.append(i == 0 ? "" : ", ").append(one_line(plate.parts[i].label));
+    return plate.parts.size() > most ? text + ", ..." : text;
+}
+
+std::string mesh_text(const MeshFile& file, const Inspection& found, const Plate& plate) {
     const Box3& box = found.box;
     std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), format_name(file.format));
+    if (file.unit_mm)
+        text += line("unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm)));
+    if (plate.parts.size() > 1)
+        text += line("parts", parts_text(file, plate));
     text += line("triangles", grouped(file.stored_triangles));
     text += line("vertices", grouped(found.vertices));
     text += line("size", fmt::format("{} x {} x {} mm", brief(box.max.x - box.min.x),
@@ -97,29 +112,42 @@ std::string mesh_text(const MeshFile& file, const Inspection& found) {
     return text;
 }
 
-Json mesh_json(const MeshFile& file, const Inspection& found, const std::string& unit) {
-    return {{"path", file.path},
-            {"format", format_name(file.format)},
-            {"unit", unit},
-            {"triangles", file.stored_triangles},
-            {"vertices", found.vertices},
-            {"bbox", box_json(found.box)},
-            {"volume_mm3", found.volume_mm3},
-            {"area_mm2", found.area_mm2},
-            {"closed", found.closed()},
-            {"shells", found.shells},
-            {"cavities", found.cavities},
-            {"defects", defects_json(found)}};
+Json parts_json(const Plate& plate) {
+    Json parts = Json::array();
+    for (const PlatePart& part : plate.parts)
+        parts.push_back({{"label", part.label},
+                         {"triangles", plate.shapes[part.shape].mesh.size()},
+                         {"bbox", box_json(part.box)}});
+    return parts;
+}
+
+Json mesh_json(const MeshFile& file, const Inspection& found, const Plate& plate) {
+    Json json = {{"path", file.path},
+                 {"format", format_name(file.format)},
+                 {"unit", unit_name(plate.files.front().unit_mm)},
+                 {"triangles", file.stored_triangles},
+                 {"vertices", found.vertices},
+                 {"bbox", box_json(found.box)},
+                 {"volume_mm3", found.volume_mm3},
+                 {"area_mm2", found.area_mm2},
+                 {"closed", found.closed()},
+                 {"shells", found.shells},
+                 {"cavities", found.cavities},
+                 {"defects", defects_json(found)}};
+    if (plate.parts.size() > 1)
+        json["parts"] = parts_json(plate);
+    return json;
 }
 
 int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
               const Execution& execution) {
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
-    const Mesh placed = file.mesh(execution).transformed(arguments.placement.transform());
-    const Inspection found = inspect(weld(placed, execution), execution);
-    context.messages.result(arguments.json ? json_text(mesh_json(file, found, arguments.placement.unit))
-                                           : mesh_text(file, found));
+    const Plate plate =
+        load_plate({.path = file.path, .unit_mm = arguments.placement.unit_mm()}, file, execution);
+    const Inspection found = inspect(weld(joined(plate, execution), execution), execution);
+    context.messages.result(arguments.json ? json_text(mesh_json(file, found, plate))
+                                           : mesh_text(file, found, plate));
     if (arguments.strict && !found.sound())
         throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects", file.path));
     return 0;

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -23,20 +24,20 @@ constexpr std::string_view help = "help";
     throw Error(ErrorKind::usage, text);
 }
 
-/// A command line taken apart, nothing applied yet: a file's options come first.
+/// A command line taken apart, in its order, nothing applied yet: a file's options come first.
 struct Words {
-    struct Setting {
-        Option* option;
+    struct Word {
+        Option* option;       ///< null for an operand
         std::string as_typed; ///< "--layer-height" or "-o"
         std::string text;
     };
-    std::vector<Setting> settings;
-    std::vector<std::string> operands;
+    std::vector<Word> words;
 
-    [[nodiscard]] const Setting* last(std::string_view name) const {
-        const auto found = std::find_if(settings.rbegin(), settings.rend(),
-                                        [&](const Setting& s) { return s.option->name == name; });
-        return found == settings.rend() ? nullptr : &*found;
+    [[nodiscard]] const Word* last(std::string_view name) const {
+        const auto found = std::find_if(words.rbegin(), words.rend(), [&](const Word& word) {
+            return word.option != nullptr && word.option->name == name;
+        });
+        return found == words.rend() ? nullptr : &*found;
     }
 };
 
@@ -49,7 +50,7 @@ class Splitter {
         while (next_ < words_.size()) {
             const std::string& word = words_[next_++];
             if (options_end || word.size() < 2 || word[0] != '-')
-                out_.operands.push_back(word);
+                out_.words.push_back({nullptr, {}, word});
             else if (word == "--")
                 options_end = true;
             else if (word[1] == '-')
@@ -69,7 +70,7 @@ class Splitter {
             refuse(fmt::format("lamella {} has no option {}{}", command_.name, typed,
                                option_suggestion(command_, typed.substr(2), "--")));
         if (equals != std::string::npos)
-            out_.settings.push_back({option, typed, word.substr(equals + 1)});
+            out_.words.push_back({option, typed, word.substr(equals + 1)});
         else
             take_value(*option, typed);
     }
@@ -85,17 +86,17 @@ class Splitter {
         else if (option->kind == ValueKind::flag)
             refuse(fmt::format("{} takes no value, but \"{}\" follows it", typed, word.substr(2)));
         else
-            out_.settings.push_back({option, typed, word.substr(word[2] == '=' ? 3 : 2)});
+            out_.words.push_back({option, typed, word.substr(word[2] == '=' ? 3 : 2)});
     }
 
     void take_value(Option& option, const std::string& typed) {
         if (option.kind == ValueKind::flag) {
-            out_.settings.push_back({&option, typed, "true"});
+            out_.words.push_back({&option, typed, "true"});
             return;
         }
         if (next_ == words_.size() || is_option(words_[next_]))
             refuse(fmt::format("{} needs a value: {} {}", typed, typed, option.placeholder));
-        out_.settings.push_back({&option, typed, words_[next_++]});
+        out_.words.push_back({&option, typed, words_[next_++]});
     }
 
     /// Negative numbers and "-" are values; a value that looks like an option can be given with "=".
@@ -125,34 +126,44 @@ void check_choice(const std::vector<std::string>& choices, const std::string& te
                        meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
 }
 
-void set_operands(Command& command, const std::vector<std::string>& given) {
-    const std::vector<Operand>& operands = command.operands;
-    for (std::size_t i = 0; i < operands.size(); ++i) {
-        const Operand& operand = operands[i];
-        if (i >= given.size()) {
-            if (!operand.required)
-                return;
-            refuse(fmt::format("lamella {} needs {}: {}{}; see lamella {} --help", command.name,
-                               operand.placeholder, operand.help,
-                               operand.choices.empty()
-                                   ? std::string()
-                                   : fmt::format(" ({})", fmt::join(operand.choices, ", ")),
-                               command.name));
-        }
+/// Takes the operands one after the other.
+class Operands {
+  public:
+    explicit Operands(const Command& command) : command_(command) {}
+
+    void take(const std::string& text) {
+        const std::vector<Operand>& operands = command_.operands;
+        if (taken_ >= operands.size() && (operands.empty() || !operands.back().repeated))
+            refuse(fmt::format("lamella {} takes {}, so what is \"{}\"? See lamella {} --help", command_.name,
+                               operands.empty()       ? "no arguments"
+                               : operands.size() == 1 ? "one argument"
+                                                      : fmt::format("{} arguments", operands.size()),
+                               text, command_.name));
+        const Operand& operand = operands[std::min(taken_, operands.size() - 1)];
+        ++taken_;
         try {
-            check_choice(operand.choices, given[i]);
-            operand.set(given[i]);
+            check_choice(operand.choices, text);
+            operand.set(text);
         } catch (const Error& error) {
             throw Error(error.kind(), fmt::format("{}: {}", operand.placeholder, error.what()));
         }
     }
-    if (given.size() > operands.size())
-        refuse(fmt::format("lamella {} takes {}, so what is \"{}\"? See lamella {} --help", command.name,
-                           operands.empty()       ? "no arguments"
-                           : operands.size() == 1 ? "one argument"
-                                                  : fmt::format("{} arguments", operands.size()),
-                           given[operands.size()], command.name));
-}
+
+    void end() const {
+        if (taken_ >= command_.operands.size() || !command_.operands[taken_].required)
+            return;
+        const Operand& operand = command_.operands[taken_];
+        refuse(fmt::format("lamella {} needs {}: {}{}; see lamella {} --help", command_.name,
+                           operand.placeholder, operand.help,
+                           operand.choices.empty() ? std::string()
+                                                   : fmt::format(" ({})", fmt::join(operand.choices, ", ")),
+                           command_.name));
+    }
+
+  private:
+    const Command& command_;
+    std::size_t taken_ = 0;
+};
 
 } // namespace
 
@@ -216,14 +227,19 @@ Wish parse(Command& command, std::span<const std::string> words) {
     const Words split = Splitter(command, words).split();
     if (split.last(help) != nullptr)
         return Wish::help;
-    if (const Words::Setting* file = split.last(config))
+    if (const Words::Word* file = split.last(config))
         read_config(file->text, command);
-    for (const Words::Setting& setting : split.settings)
-        set_option(*setting.option, setting.as_typed, setting.text);
-    const Words::Setting* dump = split.last(dump_config);
+    Operands operands(command);
+    for (const Words::Word& word : split.words) {
+        if (word.option != nullptr)
+            set_option(*word.option, word.as_typed, word.text);
+        else
+            operands.take(word.text);
+    }
+    const Words::Word* dump = split.last(dump_config);
     if (dump != nullptr && dump->text == "true")
         return Wish::dump_config;
-    set_operands(command, split.operands);
+    operands.end();
     return Wish::run;
 }
 

@@ -176,7 +176,7 @@ OptionGroup shape_options(MakeArguments& target) {
 int run_make(const MakeArguments& arguments, const Context& context) {
     const Body& body = *std::ranges::find(bodies, std::string_view(arguments.body), &Body::name);
     check_options(body, context.command);
-    const Transform pose = arguments.pose.transform();
+    const Transform pose = arguments.pose.pose();
     const std::string output = arguments.output.empty() ? arguments.body + ".stl" : arguments.output;
 
     TriangleSoup soup = body.make(arguments);

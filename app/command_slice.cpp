@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -17,6 +18,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,10 +30,24 @@
 namespace lamella::app {
 namespace {
 
+/// Where one file's parts stand.
+struct InputOptions {
+    PlacementOptions placement;
+    std::optional<std::uint64_t> copies;
+    std::optional<double> spacing;
+    std::string label;
+};
+
 struct SliceArguments {
-    std::string input;
+    std::vector<PlateInput> inputs;
+    /// Of the file named last; before the first one, of all files.
+    InputOptions of_input;
+    InputOptions of_all;
+    std::optional<std::array<double, 3>> build_volume;
+    ReadLimits limits;
+
     std::string output;
-    LayerOutputOptions writing{.label = FileJob{}.label};
+    LayerOutputOptions writing;
 
     std::optional<double> layer_height;
     std::optional<double> first_layer_height;
@@ -39,7 +56,6 @@ struct SliceArguments {
     std::optional<std::pair<std::uint64_t, std::uint64_t>> layers;
     std::string z_list;
 
-    PlacementOptions placement;
     std::string engine;
     bool inspect = false;
     bool strict = false;
@@ -58,6 +74,49 @@ OptionGroup output_options(SliceArguments& target) {
         group.options.push_back(std::move(option));
     group.options.push_back(file(
         "stats", "write figures of the run and of every layer as JSON; - is standard output", target.stats));
+    return group;
+}
+
+/// What has been said of the file named last is complete.
+void finish_input(SliceArguments& target) {
+    PlateInput& input = target.inputs.back();
+    const InputOptions& options = target.of_input;
+    input.unit_mm = options.placement.unit_mm();
+    input.placement = options.placement.pose();
+    input.copies = options.copies.value_or(input.copies);
+    input.spacing_mm = options.spacing.value_or(input.spacing_mm);
+    input.label = options.label;
+}
+
+void add_input(SliceArguments& target, const std::string& path) {
+    if (target.inputs.empty())
+        target.of_all = target.of_input;
+    else
+        finish_input(target);
+    target.of_input = target.of_all;
+    target.inputs.push_back({.path = path});
+}
+
+OptionGroup input_options(SliceArguments& target) {
+    OptionGroup group = placement_options(target.of_input.placement);
+    group.title = "Where parts stand (after a file, of that one; before the first, of all)";
+    group.options.push_back(row("copies", ValueKind::count, "N", "so many of it, side by side in rows",
+                                [&target](const std::string& text) {
+                                    target.of_input.copies = parse_count(text);
+                                    if (*target.of_input.copies == 0)
+                                        throw Error(ErrorKind::usage, "there must be one at least");
+                                }));
+    Option spacing =
+        row("spacing", ValueKind::number, "MM", "the gap between copies",
+            [&target](const std::string& text) { target.of_input.spacing = parse_number(text); });
+    spacing.preset = exact(PlateInput{}.spacing_mm);
+    group.options.push_back(std::move(spacing));
+    group.options.push_back(text("label", "TEXT",
+                                 "its name in the slice file, instead of that of the file or its objects",
+                                 target.of_input.label));
+    group.options.push_back(triple("build-volume", "X,Y,Z",
+                                   "make an error of any part that reaches out of the box from 0,0,0 to here",
+                                   target.build_volume));
     return group;
 }
 
@@ -95,6 +154,8 @@ OptionGroup checking_options(SliceArguments& target) {
 
 OptionGroup timed_run_options(SliceArguments& target) {
     OptionGroup group = run_options(target.run);
+    for (Option& option : read_limit_options(target.limits))
+        group.options.push_back(std::move(option));
     group.options.push_back(
         row("timeout", ValueKind::number, "SECONDS",
             "stop after so long, say how far it came (exit code 5), and leave no output",
@@ -118,14 +179,23 @@ FileJob make_job(const SliceArguments& arguments) {
                    "--z-list and --layer-height", "the list says where to cut");
     check_conflict(!arguments.z_list.empty(), arguments.first_layer_height.has_value(),
                    "--z-list and --first-layer-height", "the list says where to cut");
-    check_distinct(arguments.input, arguments.output);
-    check_distinct(arguments.input, arguments.stats);
+    for (const PlateInput& input : arguments.inputs) {
+        check_distinct(input.path, arguments.output);
+        check_distinct(input.path, arguments.stats);
+    }
+    check_conflict(std::ranges::count(arguments.inputs, std::string("-"), &PlateInput::path) > 1, true,
+                   "- and -", "standard input holds one file only");
     check_conflict(!arguments.output.empty() && arguments.output != "-", arguments.output == arguments.stats,
                    "--output and --stats", "both would go to the same file");
 
     FileJob job;
-    job.input = arguments.input;
-    job.placement = arguments.placement.transform();
+    job.inputs = arguments.inputs;
+    if (arguments.build_volume) {
+        const auto& [x, y, z] = *arguments.build_volume;
+        job.build_volume = Point3{x, y, z};
+    }
+    job.max_triangles = arguments.limits.max_triangles.value_or(0);
+    job.max_memory = arguments.limits.max_memory.value_or(0);
     job.layers = {.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height),
                   .first_layer_height = arguments.first_layer_height,
                   .slice_at = slice_at_of(arguments.slice_at),
@@ -139,17 +209,30 @@ FileJob make_job(const SliceArguments& arguments) {
     job.layer_statistics = !arguments.stats.empty();
     job.output = arguments.output;
     job.format = arguments.writing.format;
-    job.label = arguments.writing.label;
     if (!job.output.empty())
         job.write = arguments.writing.write_options(layer_format(job.format, job.output));
     return job;
 }
 
+/// "rook, rook 2, axle".
+std::string labels(const FileResult& result) {
+    constexpr std::size_t most = 6;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, result.parts.size()); ++i)
+        text.append(i == 0 ? "" : ", ").append(one_line(result.parts[i].label));
+    return result.parts.size() > most ? text + ", ..." : text;
+}
+
 std::string summary(const FileJob& job, const FileResult& result) {
     const Box3& box = result.box;
-    std::string text = fmt::format("read     {}: {}, {} x {} x {} mm\n", one_line(job.input),
-                                   counted(result.triangles, "triangle"), brief(box.max.x - box.min.x),
-                                   brief(box.max.y - box.min.y), brief(box.max.z - box.min.z));
+    const std::size_t parts = result.parts.size();
+    std::string text = fmt::format(
+        "read     {}{}: {}, {} x {} x {} mm\n", one_line(job.inputs.front().path),
+        job.inputs.size() == 1 ? "" : fmt::format(" and {} more", counted(job.inputs.size() - 1, "file")),
+        counted(result.triangles, "triangle"), brief(box.max.x - box.min.x), brief(box.max.y - box.min.y),
+        brief(box.max.z - box.min.z));
+    if (parts > 1)
+        text += fmt::format("plate    {}: {}\n", counted(parts, "part"), labels(result));
     text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}\n", counted(result.report.layers, "layer"),
                         brief(result.bottom), brief(result.top), counted(result.report.contours, "contour"),
                         counted(result.report.points, "point"));
@@ -157,7 +240,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += fmt::format("mesh     {}\n", result.inspection->sound()
                                                  ? "closed, consistently oriented, no defects"
                                                  : fmt::format("has defects; lamella info {} lists them",
-                                                               one_line(job.input)));
+                                                               one_line(job.inputs.front().path)));
     const FileResult::Seconds& s = result.seconds;
     text += fmt::format("took     {:.3f} s on {} (read {:.3f}, ", s.total, counted(result.threads, "thread"),
                         s.read);
@@ -177,17 +260,18 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
         return fmt::format("in {} of {}, first at z = {} mm", grouped(affected.layers),
                            counted(result.report.layers, "layer"), brief(affected.first_z));
     };
+    const std::string& name = job.inputs.front().path;
     std::vector<std::string> warnings;
     if (result.report.open_chains > 0)
         warnings.push_back(fmt::format("{}: {} {}: contours do not close where the mesh has holes or flipped "
                                        "triangles; see lamella info {}",
-                                       job.input, counted(result.report.open_chains, "open chain"),
-                                       where(result.open), job.input));
+                                       name, counted(result.report.open_chains, "open chain"),
+                                       where(result.open), name));
     if (result.inside_out.layers > 0)
         warnings.push_back(
             fmt::format("{}: inside out {}: outer contours run clockwise, as around holes, because "
                         "triangles face inwards; see lamella info {}",
-                        job.input, where(result.inside_out), job.input));
+                        name, where(result.inside_out), name));
     return warnings;
 }
 
@@ -195,7 +279,7 @@ FileResult slice_in_time(const FileJob& job, const Execution& execution,
                          const std::optional<double>& timeout) {
     if (!timeout)
         return slice_file(job, execution);
-    Deadline deadline(*timeout, one_line(job.input), execution);
+    Deadline deadline(*timeout, one_line(job.inputs.front().path), execution);
     try {
         return slice_file(job, deadline.execution());
     } catch (const Error& error) {
@@ -205,16 +289,17 @@ FileResult slice_in_time(const FileJob& job, const Execution& execution,
     }
 }
 
-int run_slice(const SliceArguments& arguments, const Context& context) {
+int run_slice(SliceArguments& arguments, const Context& context) {
+    finish_input(arguments);
     const FileJob job = make_job(arguments);
     const FileResult result = slice_in_time(job, arguments.run.execution(context), arguments.timeout);
-    for (const std::string& warning : result.warnings)
-        context.messages.warn(warning);
+    for (const PlateFile& file : result.files)
+        for (const std::string& warning : file.warnings)
+            context.messages.warn(warning);
     for (const std::string& warning : layer_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
-        const std::string text =
-            json_text(stats_json(context.command, job, result, arguments.placement.unit));
+        const std::string text = json_text(stats_json(context.command, result));
         if (arguments.stats == "-")
             context.messages.result(text);
         else
@@ -235,24 +320,28 @@ Command slice_command() {
         .name = "slice",
         .summary = "cut a mesh into layers and write a slice file",
         .description =
-            "Cuts the mesh of an STL file into layers and writes their contours: outer rings "
-            "counter-clockwise, "
-            "holes clockwise. The mesh is taken as it is, never repaired: where it has a hole, contours stay "
+            "Cuts meshes into layers and writes their contours: outer rings counter-clockwise, holes "
+            "clockwise. Several files, and all that a 3MF or AMF file places, make up a build plate: they "
+            "are cut "
+            "on common planes, and stay apart in formats that can tell parts. A mesh is taken as it is, "
+            "never repaired: where it has a hole, contours stay "
             "open, are marked as such in the file, and a warning says so. The result does not depend on the "
             "number of threads nor on the order of the triangles.",
         .operands = {{.placeholder = "FILE",
-                      .help = "the mesh, an STL file (binary or ASCII); - is standard input",
+                      .help = "a mesh: STL, 3MF, AMF, OBJ, PLY or OFF; - is standard input",
+                      .repeated = true,
                       .set =
                           [arguments](const std::string& text) {
-                              arguments->input = text;
+                              add_input(*arguments, text);
                           }}},
-        .groups = {output_options(*arguments), plan_options(*arguments),
-                   placement_options(arguments->placement), checking_options(*arguments),
-                   timed_run_options(*arguments), common_options(true)},
+        .groups = {output_options(*arguments), plan_options(*arguments), input_options(*arguments),
+                   checking_options(*arguments), timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},
                      {"lamella slice part.stl -o part.svg --unit inch --rotate-x 90",
                       "a part drawn in inches, stood up, as SVG"},
+                     {"lamella slice a.stl --copies 4 b.stl --translate 60,0,0 -o plate.cli",
+                      "a plate of four and one"},
                      {"lamella slice part.stl --stats - --layers 100:110", "only figures, of ten layers"},
                      {"lamella slice part.stl -o part.cli --config machine.toml",
                       "with options kept in a file"}},

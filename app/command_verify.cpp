@@ -77,7 +77,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                     "unit, pose and direction are those of a mesh: name it with --mesh part.stl");
     if (arguments.input == "-" && arguments.mesh == "-")
         throw Error(ErrorKind::usage, "standard input holds one file only: name the slice file or the mesh");
-    const Transform placement = arguments.placement.transform();
+    const Transform pose = arguments.placement.pose();
     const Execution execution = arguments.run.execution(context);
 
     LayerFile file = read_layers(arguments.input, execution);
@@ -93,10 +93,14 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     }
     Mesh mesh;
     if (!arguments.mesh.empty()) {
-        const MeshFile part = read_mesh(arguments.mesh, {}, execution);
-        for (const std::string& warning : part.warnings)
+        const std::array inputs{
+            PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
+        const Plate plate = load_plate(inputs, {}, execution);
+        for (const std::string& warning : plate.files.front().warnings)
             context.messages.warn(warning);
-        mesh = part.mesh(execution).transformed(placement);
+        mesh = joined(plate, execution);
+        if (mesh.indexed() != nullptr)
+            mesh = Mesh(weld(*mesh.indexed(), execution));
         options.mesh = mesh;
     }
     const Verification found = verify(file.merged(), options, execution);

@@ -92,7 +92,8 @@ std::string zsh_case(const Command& command) {
         text += " \\\n            " + zsh_option(*option);
     for (std::size_t i = 0; i < command.operands.size(); ++i) {
         const Operand& operand = command.operands[i];
-        text += fmt::format(" \\\n            '{}:{}:{}'", i + 1, operand.placeholder,
+        text += fmt::format(" \\\n            '{}:{}:{}'", operand.repeated ? "*" : std::to_string(i + 1),
+                            operand.placeholder,
                             operand.choices.empty() ? "_files"
                                                     : fmt::format("({})", fmt::join(operand.choices, " ")));
     }

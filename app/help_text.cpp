@@ -46,8 +46,8 @@ std::string entry(std::string_view head, std::string_view body, std::size_t inde
 std::string synopsis(const Command& command) {
     std::string text;
     for (const Operand& operand : command.operands)
-        text += operand.required ? fmt::format("{} ", operand.placeholder)
-                                 : fmt::format("[{}] ", operand.placeholder);
+        text += fmt::format("{}{}{}{} ", operand.required ? "" : "[", operand.placeholder,
+                            operand.repeated ? "..." : "", operand.required ? "" : "]");
     return text + "[options]";
 }
 

@@ -70,6 +70,32 @@ std::uint64_t parse_count(std::string_view text) {
     return value;
 }
 
+std::uint64_t parse_byte_size(std::string_view text) {
+    const auto refuse = [&] {
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" is no amount of memory; expected such as 2G, 500M or 1GiB", text));
+    };
+    const std::size_t digits = text.find_first_not_of("0123456789.");
+    std::string_view unit = digits == std::string_view::npos ? "" : text.substr(digits);
+    if (unit.size() > 1 && (unit.back() == 'B' || unit.back() == 'b'))
+        unit.remove_suffix(1);
+    const bool binary = unit.size() == 2 && unit[1] == 'i';
+    constexpr std::string_view prefixes = "kmgt";
+    std::size_t power = 0;
+    if (!unit.empty()) {
+        const char letter =
+            unit[0] >= 'A' && unit[0] <= 'Z' ? static_cast<char>(unit[0] - 'A' + 'a') : unit[0];
+        power = prefixes.find(letter) + 1;
+        if (power == 0 || (unit.size() != 1 && !binary))
+            refuse();
+    }
+    const double bytes = parse_positive(text.substr(0, digits)) *
+                         std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(power));
+    if (!(bytes >= 1 && bytes < 1e18))
+        refuse();
+    return static_cast<std::uint64_t>(bytes);
+}
+
 std::vector<double> parse_numbers(std::string_view text) {
     std::vector<double> numbers;
     std::string_view rest = trimmed(text);

@@ -107,12 +107,14 @@ Option file(std::string name, std::string help, std::string& target) {
 }
 
 Option unit_option(std::string& target) {
-    return choice("unit", "UNIT", "what a unit of the file is, for STL files do not say", names_of(units),
-                  target);
+    Option option = choice("unit", "UNIT", "what a unit of the file is, where the file does not say",
+                           names_of(units), target);
+    option.preset = "mm";
+    return option;
 }
 
 OptionGroup pose_options(PlacementOptions& target) {
-    OptionGroup group{"Where the part stands (in this order)", {}};
+    OptionGroup group{"Where a part stands (in this order)", {}};
     group.options.push_back(scale_option(target.scale));
     group.options.push_back(
         triple("rotate", "X,Y,Z", "turn it by degrees about the x axis, then y, then z", target.rotate));
@@ -137,13 +139,23 @@ OptionGroup placement_options(PlacementOptions& target) {
 }
 
 bool PlacementOptions::given() const {
-    return unit != "mm" || scale || rotate || rotate_axis[0] || rotate_axis[1] || rotate_axis[2] ||
+    return !unit.empty() || scale || rotate || rotate_axis[0] || rotate_axis[1] || rotate_axis[2] ||
            translate || direction;
 }
 
-Transform PlacementOptions::transform() const {
-    const auto found = std::ranges::find(units, std::string_view(unit), &Unit::name);
-    Transform map = scaling(found->mm, found->mm, found->mm);
+std::string unit_name(double mm) {
+    const auto found = std::ranges::find(units, mm, &Unit::mm);
+    return found != units.end() ? std::string(found->name) : fmt::format("{} mm", exact(mm));
+}
+
+std::optional<double> PlacementOptions::unit_mm() const {
+    if (unit.empty())
+        return std::nullopt;
+    return std::ranges::find(units, std::string_view(unit), &Unit::name)->mm;
+}
+
+Transform PlacementOptions::pose() const {
+    Transform map;
     const auto then = [&map](const Transform& next) {
         map = compose(next, map);
     };
@@ -190,17 +202,22 @@ Execution RunOptions::execution(const Context& context) const {
             .cancel = context.cancel};
 }
 
+std::vector<Option> read_limit_options(ReadLimits& target) {
+    return {count("max-triangles", "N", "stop at a file of more triangles than this (exit code 5)",
+                  target.max_triangles),
+            row("max-memory", ValueKind::text, "SIZE",
+                "stop at a file that unpacks to more than this, such as 500M or 2G (exit code 5)",
+                [&target](const std::string& text) { target.max_memory = parse_byte_size(text); })};
+}
+
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
-    std::vector<Option> options{
-        choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
-               names_of(layer_formats()), target.format),
-        text("label", "TEXT", "name of the part inside the slice file", target.label),
-        length("units-mm",
-               "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded",
-               target.units_mm),
-        flag("short", "cli: 16-bit coordinates, half the size", target.short_form)};
-    options[2].preset = exact(LayerWriteOptions{}.units_mm);
-    return options;
+    Option units = length(
+        "units-mm", "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded",
+        target.units_mm);
+    units.preset = exact(LayerWriteOptions{}.units_mm);
+    return {choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
+                   names_of(layer_formats()), target.format),
+            std::move(units), flag("short", "cli: 16-bit coordinates, half the size", target.short_form)};
 }
 
 LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) const {

@@ -38,17 +38,21 @@ namespace lamella::app {
 
 /// Where the part stands: unit, scale, rotation, translation, then the slicing direction.
 struct PlacementOptions {
-    std::string unit = "mm";
+    std::string unit = {}; ///< "" where none is given
     std::optional<std::vector<double>> scale;
     std::optional<std::array<double, 3>> rotate;
     std::array<std::optional<double>, 3> rotate_axis;
     std::optional<std::array<double, 3>> translate;
     std::optional<std::array<double, 3>> direction;
 
-    /// Throws Error{usage}.
-    [[nodiscard]] Transform transform() const;
+    /// Millimetres per unit, where one is given.
+    [[nodiscard]] std::optional<double> unit_mm() const;
+    /// Everything but the unit. Throws Error{usage}.
+    [[nodiscard]] Transform pose() const;
     [[nodiscard]] bool given() const;
 };
+/// "mm", "inch"; the millimetres of a unit without a name.
+[[nodiscard]] std::string unit_name(double mm);
 [[nodiscard]] Option unit_option(std::string& target);
 [[nodiscard]] OptionGroup placement_options(PlacementOptions& target);
 /// The same without unit and direction: for bodies that are made.
@@ -64,10 +68,17 @@ struct RunOptions {
 };
 [[nodiscard]] OptionGroup run_options(RunOptions& target);
 
+/// What a file may not exceed.
+struct ReadLimits {
+    std::optional<std::uint64_t> max_triangles;
+    std::optional<std::uint64_t> max_memory; ///< bytes
+};
+/// To be appended to a group.
+[[nodiscard]] std::vector<Option> read_limit_options(ReadLimits& target);
+
 /// What is written and how.
 struct LayerOutputOptions {
     std::string format = {};
-    std::string label = {};
     std::optional<double> units_mm = {};
     bool short_form = false;
 

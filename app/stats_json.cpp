@@ -1,6 +1,7 @@
 #include "stats_json.hpp"
 
 #include "config_file.hpp"
+#include "options.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -64,6 +65,29 @@ Json layers_json(const FileResult& result) {
     return layers;
 }
 
+Json inputs_json(const FileResult& result) {
+    Json inputs = Json::array();
+    for (const PlateFile& file : result.files)
+        inputs.push_back({{"path", file.path},
+                          {"format", format_name(file.format)},
+                          {"triangles", file.stored_triangles},
+                          {"unit", unit_name(file.unit_mm)},
+                          {"matrix", matrix_json(file.matrix)}});
+    return inputs;
+}
+
+Json parts_json(const FileResult& result) {
+    Json parts = Json::array();
+    for (const PartResult& part : result.parts)
+        parts.push_back({{"label", part.label},
+                         {"triangles", part.triangles},
+                         {"bbox", box_json(part.box)},
+                         {"contours", part.contours},
+                         {"open_chains", part.open_chains},
+                         {"points", part.points}});
+    return parts;
+}
+
 /// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
 void append_json(std::string& text, const Json& value, std::size_t depth) {
     if (std::ranges::none_of(value, [](const Json& item) { return item.is_structured(); })) {
@@ -99,20 +123,20 @@ Json box_json(const Box3& box) {
     return {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}};
 }
 
-Json stats_json(const Command& command, const FileJob& job, const FileResult& result,
-                const std::string& unit) {
+Json stats_json(const Command& command, const FileResult& result) {
+    const PlateFile& first = result.files.front();
     Json options = options_in_effect(command);
-    options["matrix"] = matrix_json(job.placement);
+    options["matrix"] = matrix_json(first.matrix);
     const bool inspected = result.inspection.has_value();
     const FileResult::Seconds& seconds = result.seconds;
     Json stats = {{"lamella", LAMELLA_VERSION},
                   {"options", std::move(options)},
                   {"input",
-                   {{"path", job.input},
-                    {"triangles", result.triangles},
+                   {{"path", first.path},
+                    {"triangles", result.files.size() == 1 ? first.stored_triangles : result.triangles},
                     {"vertices", inspected ? Json(result.inspection->vertices) : Json()},
                     {"bbox", box_json(result.box)},
-                    {"unit", unit},
+                    {"unit", unit_name(first.unit_mm)},
                     {"volume_mm3", result.mesh_volume_mm3},
                     {"defects", inspected ? defects_json(*result.inspection) : Json()}}},
                   {"engine", result.engine},
@@ -132,6 +156,10 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
                   {"volume_mm3", result.volume_mm3}};
     if (result.report.matching)
         stats["matching"] = matching_json(*result.report.matching);
+    if (result.parts.size() > 1) {
+        stats["inputs"] = inputs_json(result);
+        stats["parts"] = parts_json(result);
+    }
     stats["layers"] = layers_json(result);
     return stats;
 }

@@ -21,8 +21,7 @@ namespace lamella::app {
 [[nodiscard]] nlohmann::ordered_json box_json(const Box3& box);
 
 /// What `lamella slice --stats` writes.
-[[nodiscard]] nlohmann::ordered_json stats_json(const Command& command, const FileJob& job,
-                                                const FileResult& result, const std::string& unit);
+[[nodiscard]] nlohmann::ordered_json stats_json(const Command& command, const FileResult& result);
 
 /// As text with a line end; names that are not UTF-8 get replacement characters.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& object);

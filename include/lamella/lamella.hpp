@@ -28,6 +28,7 @@
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
+#include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/crossings.hpp"

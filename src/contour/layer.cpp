@@ -53,4 +53,21 @@ Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double 
     return normal_form(std::move(layer));
 }
 
+Layer merged(std::span<const Layer> layers) {
+    LayerBuilder builder;
+    std::vector<Point2> hatches;
+    for (const Layer& layer : layers) {
+        for (std::size_t i = 0; i < layer.contours(); ++i) {
+            for (const Point2& p : layer.contour(i))
+                builder.add_point(p);
+            builder.end_contour(layer.closed(i));
+        }
+        hatches.insert(hatches.end(), layer.hatches.begin(), layer.hatches.end());
+    }
+    const Layer& first = layers.front();
+    Layer all = builder.finish(first.index, first.z, first.bottom, first.top);
+    all.hatches = PointArray(std::move(hatches));
+    return all;
+}
+
 } // namespace lamella

@@ -47,6 +47,15 @@ double contour_length(std::span<const Point2> contour, bool closed) noexcept {
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
+void LayerMeasure::add(const LayerMeasure& other) noexcept {
+    contours += other.contours;
+    holes += other.holes;
+    open_chains += other.open_chains;
+    points += other.points;
+    area_mm2 += other.area_mm2;
+    perimeter_mm += other.perimeter_mm;
+}
+
 LayerMeasure measure(const Layer& layer) noexcept {
     LayerMeasure result{
         .contours = layer.contours(), .open_chains = layer.open_chains(), .points = layer.points.size()};

@@ -3,19 +3,21 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/mesh/triangle_soup.hpp"
+#include "lamella/mesh/mesh.hpp"
 
 #include "core/executor.hpp"
+#include "pipeline/plate_slicing.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -55,19 +57,19 @@ std::string describe_defects(const Inspection& found) {
     return text;
 }
 
-void check_box(const Box3& box, const std::string& path) {
-    for (const double bound : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
-        if (!std::isfinite(bound))
+/// Parts are called by the name of their file.
+const std::string& path_of(const Plate& plate, const PlatePart& part) {
+    return plate.files[plate.shapes[part.shape].input].path;
+}
+
+void check_heights(const Plate& plate) {
+    for (const PlatePart& part : plate.parts)
+        if (part.box.min.z == part.box.max.z)
             throw Error(
-                ErrorKind::usage,
-                fmt::format("{}: unit, scale and translation move the mesh beyond the largest number; "
-                            "choose smaller ones",
-                            path));
-    if (box.min.z == box.max.z)
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing to "
-                                "slice; rotate it or choose another direction",
-                                path, box.min.z));
+                ErrorKind::input,
+                fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing to "
+                            "slice; rotate it or choose another direction",
+                            path_of(plate, part), part.box.min.z));
 }
 
 /// Whether a plane at z can cut anything of the box, by the rule of the plane.
@@ -106,17 +108,28 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
 /// What is gathered about the layers while they pass, in any order and from any thread.
 class Gatherer {
   public:
-    Gatherer(const Plan& plan, bool statistics)
+    Gatherer(const Plan& plan, std::size_t parts, bool statistics)
         : first_(plan.layers.front().index), signs_(plan.layers.size()),
-          layers_(statistics ? plan.layers.size() : 0) {}
+          layers_(statistics ? plan.layers.size() : 0), parts_(parts) {}
 
-    void add(const Layer& layer) {
-        const auto place = static_cast<std::size_t>(layer.index - first_);
-        // In normal form the first ring has the smallest point of all, so nothing lies around it.
-        signs_[place] = {.open = layer.open_chains() > 0,
-                         .inside_out = layer.rings > 0 && ring_area(layer.contour(0)) < 0};
+    void add(std::span<const Layer> parts) {
+        const Layer& first = parts.front();
+        const auto place = static_cast<std::size_t>(first.index - first_);
+        LayerMeasure together;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const Layer& layer = parts[i];
+            // In normal form the first ring has the smallest point of all, so nothing lies around it.
+            signs_[place].open |= layer.open_chains() > 0;
+            signs_[place].inside_out |= layer.rings > 0 && ring_area(layer.contour(0)) < 0;
+            parts_[i].contours.fetch_add(layer.contours(), std::memory_order_relaxed);
+            parts_[i].open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
+            parts_[i].points.fetch_add(layer.points.size(), std::memory_order_relaxed);
+            if (!layers_.empty())
+                together.add(measure(layer));
+        }
         if (!layers_.empty())
-            layers_[place] = {layer.index, layer.z, layer.thickness(), measure(layer), content_hash(layer)};
+            layers_[place] = {first.index, first.z, first.thickness(), together,
+                              content_hash(parts.size() == 1 ? first : merged(parts))};
     }
 
     void finish(const Plan& plan, FileResult& result) {
@@ -128,6 +141,14 @@ class Gatherer {
             count(signs_[i].open, plan.layers[i].z, result.open);
             count(signs_[i].inside_out, plan.layers[i].z, result.inside_out);
         }
+        SliceReport& report = result.report;
+        report.contours = report.open_chains = report.points = 0;
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            PartResult& part = result.parts[i];
+            report.contours += part.contours = parts_[i].contours;
+            report.open_chains += part.open_chains = parts_[i].open_chains;
+            report.points += part.points = parts_[i].points;
+        }
         for (const LayerStatistics& layer : layers_)
             result.volume_mm3 += layer.measure.area_mm2 * layer.thickness;
         result.layers = std::move(layers_);
@@ -138,10 +159,74 @@ class Gatherer {
         bool open = false;
         bool inside_out = false;
     };
+    struct Counts {
+        std::atomic<std::uint64_t> contours{0};
+        std::atomic<std::uint64_t> open_chains{0};
+        std::atomic<std::uint64_t> points{0};
+    };
     std::uint64_t first_;
     std::vector<Signs> signs_;
     std::vector<LayerStatistics> layers_;
+    std::vector<Counts> parts_;
 };
+
+/// The counts of all parts, each of which is a solid of its own.
+Inspection together(const Plate& plate, const std::vector<Inspection>& shapes) {
+    Inspection all;
+    for (const PlatePart& part : plate.parts) {
+        const Inspection& one = shapes[part.shape];
+        all.box.add(part.box);
+        all.volume_mm3 += one.volume_mm3;
+        all.area_mm2 += one.area_mm2;
+        all.triangles += one.triangles;
+        all.vertices += one.vertices;
+        all.boundary_edges += one.boundary_edges;
+        all.nonmanifold_edges += one.nonmanifold_edges;
+        all.orientation_conflicts += one.orientation_conflicts;
+        all.duplicate_triangles += one.duplicate_triangles;
+        all.degenerate_triangles += one.degenerate_triangles;
+        all.shells += one.shells;
+        all.cavities += one.cavities;
+        all.inverted_shells += one.inverted_shells;
+    }
+    return all;
+}
+
+/// Inspects every shape, and leaves it welded for an engine that would weld it once more.
+Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Execution& execution) {
+    std::vector<Inspection> found;
+    for (PlateShape& shape : plate.shapes) {
+        IndexedMesh welded = weld(shape.mesh, execution);
+        found.push_back(inspect(welded, execution));
+        if (strict && !found.back().sound())
+            throw Error(ErrorKind::defect,
+                        fmt::format("{}: the mesh has defects: {}", plate.files[shape.input].path,
+                                    describe_defects(found.back())));
+        if (keep_welded)
+            shape.mesh = Mesh(std::move(welded));
+    }
+    return together(plate, found);
+}
+
+/// Files of indexed meshes need not share the vertices that are equal; contours would end between them.
+void join_vertices(Plate& plate, const Execution& execution) {
+    for (PlateShape& shape : plate.shapes)
+        if (shape.mesh.indexed() != nullptr)
+            shape.mesh = Mesh(weld(*shape.mesh.indexed(), execution));
+}
+
+bool has_indexed(const Plate& plate) {
+    return std::ranges::any_of(plate.shapes,
+                               [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
+}
+
+LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
+    LayerFileInfo info{
+        .box = plate.box, .layers = plan.layers.size(), .bottom = plan.layers.front().bottom, .parts = {}};
+    for (const PlatePart& part : plate.parts)
+        info.parts.push_back({part.label, part.box});
+    return info;
+}
 
 } // namespace
 
@@ -159,59 +244,59 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     result.threads = thread_count(execution);
 
     const Stopwatch reading;
-    MeshFile file = read_mesh(job.input, {.strict = job.strict}, execution);
-    const Mesh mesh = file.mesh(execution).transformed(job.placement);
-    result.box = bounding_box(mesh, execution);
+    Plate plate = load_plate(
+        job.inputs, {.strict = job.strict, .max_triangles = job.max_triangles, .max_memory = job.max_memory},
+        execution);
     result.seconds.read = reading.seconds();
-    result.mesh_format = file.format;
-    result.triangles = file.stored_triangles;
-    result.warnings = std::move(file.warnings);
-    check_box(result.box, job.input);
-    plan = job.z.empty() ? uniform_plan(job, result.box) : listed_plan(job, std::move(plan), result.box);
+    check_heights(plate);
+    if (job.build_volume)
+        check_build_volume(plate, *job.build_volume);
+    result.files = plate.files;
+    result.box = plate.box;
+    for (const PlatePart& part : plate.parts) {
+        result.parts.push_back(
+            {.label = part.label, .triangles = plate.shapes[part.shape].mesh.size(), .box = part.box});
+        result.triangles += result.parts.back().triangles;
+    }
+    plan = job.z.empty() ? uniform_plan(job, plate.box) : listed_plan(job, std::move(plan), plate.box);
     result.bottom = plan.layers.front().bottom;
     result.top = plan.layers.back().top;
-    if (job.layer_statistics)
-        result.mesh_volume_mm3 = volume(mesh, execution);
 
-    std::optional<IndexedMesh> welded; // for engines that would weld it once more
-    if (job.inspect || job.strict) {
-        const Stopwatch welding;
-        IndexedMesh indexed = weld(mesh, execution);
-        result.inspection = inspect(indexed, execution);
-        if (with.welds)
-            welded = std::move(indexed);
+    const Stopwatch welding;
+    const bool inspected = job.inspect || job.strict;
+    const bool indexed = has_indexed(plate);
+    if (indexed)
+        join_vertices(plate, execution);
+    if (inspected)
+        result.inspection = inspect_plate(plate, with.welds, job.strict, execution);
+    if (indexed || inspected)
         result.seconds.weld = welding.seconds();
-        if (job.strict && !result.inspection->sound())
-            throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects: {}", job.input,
-                                                       describe_defects(*result.inspection)));
-    }
+    if (job.layer_statistics)
+        for (const PlatePart& part : plate.parts)
+            result.mesh_volume_mm3 += volume(plate.shapes[part.shape].mesh, execution);
 
     std::unique_ptr<LayerWriter> writer;
     if (format != nullptr) {
-        const LayerFileInfo info{.box = result.box,
-                                 .layers = plan.layers.size(),
-                                 .bottom = result.bottom,
-                                 .parts = {{job.label, result.box}}};
-        writer = open_layer_writer(job.output, *format, info, job.write);
+        writer = open_layer_writer(job.output, *format, file_info(plate, plan), job.write);
         result.format = format->name;
     }
-    Gatherer gatherer(plan, job.layer_statistics);
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-        gatherer.add(layer);
+    Gatherer gatherer(plan, plate.parts.size(), job.layer_statistics);
+    const PlateSink sink = [&](std::span<const Layer> parts) -> std::function<void()> {
+        gatherer.add(parts);
         if (writer == nullptr)
             return {};
-        return [&result, write = writer->prepare(layer)] {
+        return [&result, write = writer->prepare(parts)] {
             const Stopwatch writing;
             write();
             result.seconds.write += writing.seconds();
         };
     };
-    slice_to(sink, welded ? MeshRef(*welded) : MeshRef(mesh), plan, execution, &result.report, with);
+    slice_plate_to(sink, plate, plan, execution, result.report, with);
     gatherer.finish(plan, result);
     if (job.strict && result.report.open_chains > 0)
         throw Error(ErrorKind::defect,
-                    fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm", job.input,
-                                result.report.open_chains, result.open.first_z));
+                    fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
+                                job.inputs.front().path, result.report.open_chains, result.open.first_z));
     if (writer != nullptr) {
         const Stopwatch writing;
         writer->finish();

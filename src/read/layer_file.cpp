@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <string_view>
-#include <utility>
 
 namespace lamella {
 
@@ -35,21 +34,11 @@ LayerStack LayerFile::merged() const {
     if (parts.size() == 1)
         return parts.front().layers;
     LayerStack all;
+    std::vector<Layer> plane(parts.size());
     for (std::size_t i = 0; !parts.empty() && i < parts.front().layers.size(); ++i) {
-        const Layer& first = parts.front().layers[i];
-        LayerBuilder builder;
-        std::vector<Point2> hatches;
-        for (const LayerPart& part : parts) {
-            const Layer& layer = part.layers[i];
-            for (std::size_t k = 0; k < layer.contours(); ++k) {
-                for (const Point2& p : layer.contour(k))
-                    builder.add_point(p);
-                builder.end_contour(layer.closed(k));
-            }
-            hatches.insert(hatches.end(), layer.hatches.begin(), layer.hatches.end());
-        }
-        all.push_back(builder.finish(first.index, first.z, first.bottom, first.top));
-        all.back().hatches = PointArray(std::move(hatches));
+        for (std::size_t part = 0; part < parts.size(); ++part)
+            plane[part] = parts[part].layers[i];
+        all.push_back(lamella::merged(plane));
     }
     return all;
 }

@@ -68,7 +68,7 @@ class CommandLine(ProgramTest):
         self.fail_with(2, "needs FILE", "slice", "-o", "a.cli")
         self.fail_with(2, "needs OUT", "convert", "a.cli")
         self.fail_with(2, "needs BODY.*rook", "make")
-        self.fail_with(2, '"b.stl"', "slice", "box.stl", "b.stl", "-o", "a.cli")
+        self.fail_with(2, '"b.stl"', "info", "box.stl", "b.stl")
         self.fail_with(2, "-o needs a value", "slice", "box.stl", "-o")
         self.fail_with(2, "-o needs a value", "slice", "box.stl", "-o", "--strict")
         self.fail_with(2, "neither true nor false", "slice", "box.stl", "--strict=perhaps")

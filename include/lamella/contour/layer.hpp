@@ -94,4 +94,8 @@ class LayerBuilder {
     std::vector<End> ends_;
 };
 
+/// The contours of all these layers in one, in normal form, and their hatches one after the other; index, z,
+/// bottom and top are those of the first. O(n + c log c) for n points in c contours.
+[[nodiscard]] Layer merged(std::span<const Layer> layers);
+
 } // namespace lamella

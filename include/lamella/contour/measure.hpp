@@ -23,6 +23,9 @@ struct LayerMeasure {
     std::size_t points = 0;
     double area_mm2 = 0; ///< of the rings, holes subtracted
     double perimeter_mm = 0;
+
+    /// Counts the contours of another layer with these.
+    void add(const LayerMeasure& other) noexcept;
 };
 
 /// O(points).

@@ -1,13 +1,12 @@
 #pragma once
 
-// The whole way: mesh file in, slice file out, layer by layer.
+// The whole way: mesh files in, slice file out, layer by layer.
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/inspect.hpp"
-#include "lamella/mesh/transform.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/pipeline/plate.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -21,11 +20,15 @@ namespace lamella {
 
 /// What is to be sliced, how, and where to.
 struct FileJob {
-    std::string input; ///< "-" is standard input
-    /// Applied to the mesh as the file has it: unit, pose and slicing direction.
-    Transform placement;
+    /// What stands on the plate, at least one; all of it is sliced on common planes.
+    std::vector<PlateInput> inputs;
+    /// Where set, every part must lie in the box from the origin to this point.
+    std::optional<Point3> build_volume;
+    /// Limits of reading; `strict` below holds for it, too.
+    std::uint64_t max_triangles = 0;
+    std::uint64_t max_memory = 0;
 
-    /// Layers of one height, stacked from the bottom of the placed mesh.
+    /// Layers of one height, stacked from the bottom of the plate's parts.
     UniformLayers layers;
     /// Where not empty: cuts at exactly these z instead. Of `layers`, slice_at and the two ranges still
     /// count.
@@ -41,7 +44,6 @@ struct FileJob {
 
     std::string output; ///< "" writes nothing, "-" is standard output
     std::string format; ///< by name; "" goes by the extension of `output`
-    std::string label = "part";
     LayerWriteOptions write;
 };
 
@@ -49,17 +51,28 @@ struct LayerStatistics {
     std::uint64_t index = 0;
     double z = 0;
     double thickness = 0;
-    LayerMeasure measure;
-    std::uint64_t hash = 0; ///< content_hash
+    LayerMeasure measure;   ///< of all parts together
+    std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
+};
+
+/// What became of one part.
+struct PartResult {
+    std::string label;
+    std::uint64_t triangles = 0;
+    Box3 box; ///< as it stands on the plate
+    std::uint64_t contours = 0;
+    std::uint64_t open_chains = 0;
+    std::uint64_t points = 0;
 };
 
 /// What was read, done and written.
 struct FileResult {
-    MeshFormat mesh_format = MeshFormat::stl_binary;
-    std::uint64_t triangles = 0;       ///< as the file stores them
-    std::vector<std::string> warnings; ///< of the reader
-    Box3 box;                          ///< of the placed mesh
-    double mesh_volume_mm3 = 0;        ///< signed, of the placed mesh; meaningful when it is closed
+    std::vector<PlateFile> files; ///< one for each input
+    std::vector<PartResult> parts;
+    std::uint64_t triangles = 0; ///< of all parts
+    Box3 box;                    ///< of all parts
+    double mesh_volume_mm3 = 0;  ///< signed, of all parts; meaningful when they are closed
+    /// Counts of all parts together.
     std::optional<Inspection> inspection;
 
     std::string engine;
@@ -94,8 +107,9 @@ struct FileResult {
     } seconds;
 };
 
-/// Slices a file into a file. Layers are written while slicing goes on, so that memory holds a bounded number
-/// of them; nothing appears at the output path before all went well.
+/// Slices files into a file. The layers of a single part are written while slicing goes on, so that memory
+/// holds a bounded number of them; of several parts, all layers are held. Nothing appears at the output path
+/// before all went well.
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
 /// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.

@@ -1,0 +1,136 @@
+#include "pipeline/plate_slicing.hpp"
+
+#include "core/executor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+/// Progress of several runs of one kind as that of one.
+class JointProgress {
+  public:
+    JointProgress(const Plate& plate, const Plan& plan) {
+        for (const PlateShape& shape : plate.shapes)
+            triangles_ += shape.mesh.size();
+        planes_ = plate.shapes.size() * plan.layers.size();
+    }
+
+    /// How the next run is to be executed.
+    [[nodiscard]] Execution next(const Execution& execution) {
+        for (Count& count : counts_)
+            count = {count.before + count.total, 0};
+        Execution run = execution;
+        if (execution.progress)
+            run.progress = [this, &execution](const Progress& progress) {
+                Count& count = counts_.at(static_cast<std::size_t>(progress.stage));
+                count.total = progress.total;
+                const std::uint64_t all = progress.stage == Stage::slice ? planes_ : triangles_;
+                const std::uint64_t done = count.before + progress.done;
+                execution.progress({progress.stage, done, std::max(all, done)});
+            };
+        return run;
+    }
+
+  private:
+    struct Count {
+        std::uint64_t before = 0; ///< of the runs that are over
+        std::uint64_t total = 0;  ///< of this one
+    };
+    std::array<Count, 6> counts_;
+    std::uint64_t triangles_ = 0;
+    std::uint64_t planes_ = 0;
+};
+
+void add(MatchingCounts::Cases& to, const MatchingCounts::Cases& cases) {
+    to.new_list += cases.new_list;
+    to.front += cases.front;
+    to.back += cases.back;
+    to.link += cases.link;
+    to.close += cases.close;
+}
+
+/// Times and work; what the layers hold is counted part by part.
+void add(SliceReport& to, const SliceReport& report) {
+    to.weld_seconds += report.weld_seconds;
+    to.link_seconds += report.link_seconds;
+    to.slice_seconds += report.slice_seconds;
+    if (!report.matching)
+        return;
+    if (!to.matching)
+        to.matching.emplace();
+    to.matching->searches += report.matching->searches;
+    to.matching->comparisons += report.matching->comparisons;
+    add(to.matching->inserted, report.matching->inserted);
+    add(to.matching->by_edge_link, report.matching->by_edge_link);
+    to.matching->node_bytes = report.matching->node_bytes;
+    to.matching->bytes = std::max(to.matching->bytes, report.matching->bytes);
+}
+
+Layer moved(const Layer& layer, double dx, double dy) {
+    if (dx == 0 && dy == 0)
+        return layer;
+    // Rounding can make neighbours equal, and then another point the smallest: the normal form is made anew.
+    LayerBuilder builder;
+    for (std::size_t i = 0; i < layer.contours(); ++i) {
+        for (const Point2& p : layer.contour(i))
+            builder.add_point({p.x + dx, p.y + dy});
+        builder.end_contour(layer.closed(i));
+    }
+    return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+}
+
+void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
+                 SliceReport& report, const Engine& with) {
+    report = {};
+    report.layers = plan.layers.size();
+    JointProgress progress(plate, plan);
+    std::vector<LayerStack> stacks;
+    for (const PlateShape& shape : plate.shapes) {
+        SliceReport ours;
+        stacks.push_back(slice(shape.mesh, plan, progress.next(execution), &ours, with));
+        add(report, ours);
+    }
+    Executor executor(execution);
+    // Formatted in parallel, written in order: so many planes at a time that all workers have some.
+    const std::size_t planes = plan.layers.size();
+    const std::size_t at_once = std::size_t{4} * executor.workers();
+    std::vector<std::function<void()>> actions(at_once);
+    for (std::size_t first = 0; first < planes; first += at_once) {
+        const std::size_t count = std::min(at_once, planes - first);
+        executor.for_chunks(count, 1, [&](std::size_t i, std::size_t, unsigned) {
+            std::vector<Layer> parts;
+            for (const PlatePart& part : plate.parts)
+                parts.push_back(moved(stacks[part.shape][first + i], part.dx, part.dy));
+            actions[i] = sink(parts);
+        });
+        executor.check_cancelled();
+        for (std::size_t i = 0; i < count; ++i)
+            if (actions[i])
+                actions[i]();
+        for (LayerStack& stack : stacks) // what is written is not needed any more
+            for (std::size_t i = first; i < first + count; ++i)
+                stack[i] = {};
+    }
+}
+
+} // namespace
+
+void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
+                    SliceReport& report, const Engine& with) {
+    if (plate.parts.size() > 1) {
+        slice_parts(sink, plate, plan, execution, report, with);
+        return;
+    }
+    const LayerSink single = [&](Layer&& layer) {
+        return sink(std::span<const Layer>(&layer, 1));
+    };
+    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, with);
+}
+
+} // namespace lamella

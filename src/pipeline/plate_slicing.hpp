@@ -1,0 +1,25 @@
+#pragma once
+
+// From a plate to layers: each shape is sliced once, and every plane is handed on with the layers of all
+// parts.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include <functional>
+#include <span>
+
+namespace lamella {
+
+/// As LayerSink, but for what one plane yields: a layer of each part, in the order of Plate::parts.
+using PlateSink = std::function<std::function<void()>(std::span<const Layer> parts)>;
+
+/// A plate with one part is sliced while its layers go to the sink. Of others, the layers of all shapes are
+/// held in memory first. Contours and points are for the sink to count: parts may share a shape.
+void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
+                    SliceReport& report, const Engine& with);
+
+} // namespace lamella

@@ -1,0 +1,86 @@
+"""Build plates: several files, copies, and where each of them stands."""
+
+import re
+
+from program import ProgramTest, main
+
+
+class Plate(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.succeed("make", "box", "--size", "10,20,5", "-o", "box.stl")
+        self.succeed("make", "sphere", "-o", "ball.stl")
+
+    def stats(self, *words):
+        return self.succeed("slice", *words, "--stats", "-", "--layer-height", "1").json()
+
+    def test_options_hold_for_the_file_before_them(self):
+        stats = self.stats("box.stl", "--translate", "5,0,0", "box.stl", "--rotate-z", "90")
+        low = [part["bbox"][0] for part in stats["parts"]]
+        alone = self.stats("box.stl")["input"]["bbox"][0]
+        self.assertAlmostEqual(low[0][0], alone[0] + 5)
+        self.assertAlmostEqual(low[0][1], alone[1])
+        turned = self.stats("box.stl", "--rotate-z", "90")["input"]["bbox"]
+        self.assertEqual(stats["parts"][1]["bbox"], turned)
+
+    def test_options_before_the_first_file_hold_for_all(self):
+        stats = self.stats("--scale", "2", "box.stl", "ball.stl", "--translate", "100,0,0")
+        for part, name in zip(stats["parts"], ["box.stl", "ball.stl"]):
+            alone = self.stats(name, "--scale", "2")["input"]["bbox"]
+            size = [high - low for low, high in zip(*part["bbox"])]
+            self.assertEqual(size, [high - low for low, high in zip(*alone)])
+
+    def test_a_part_has_the_layers_that_it_has_alone(self):
+        height = max(self.stats(name)["input"]["bbox"][1][2] for name in ["box.stl", "ball.stl"])
+        low = min(self.stats(name)["input"]["bbox"][0][2] for name in ["box.stl", "ball.stl"])
+        self.path("z.txt").write_text("\n".join(str(low + (height - low) * (i + 0.5) / 20) for i in range(20)))
+        words = ["--z-list", "z.txt", "--stats", "-"]
+        plate = self.succeed("slice", "box.stl", "ball.stl", "--translate", "50,1,0", *words).json()
+        box = self.succeed("slice", "box.stl", *words).json()
+        ball = self.succeed("slice", "ball.stl", "--translate", "50,1,0", *words).json()
+        for together, first, second in zip(plate["layers"], box["layers"], ball["layers"]):
+            self.assertEqual(together["contours"], first["contours"] + second["contours"])
+            self.assertEqual(together["points"], first["points"] + second["points"])
+            self.assertAlmostEqual(together["area_mm2"], first["area_mm2"] + second["area_mm2"], places=9)
+        self.assertEqual([part["points"] for part in plate["parts"]], [box["points"], ball["points"]])
+
+    def test_copies_stand_side_by_side_and_are_equal(self):
+        stats = self.stats("box.stl", "--copies", "3", "--spacing", "2.5")
+        boxes = [part["bbox"] for part in stats["parts"]]
+        self.assertEqual([part["label"] for part in stats["parts"]], ["box", "box 2", "box 3"])
+        (x, y, _), _ = boxes[0]
+        self.assertEqual(boxes[1][0][:2], [x + 12.5, y])
+        self.assertEqual(boxes[2][0][:2], [x, y + 22.5])
+        self.assertEqual(len({part["points"] for part in stats["parts"]}), 1)
+        self.assertAlmostEqual(stats["volume_mm3"], 3 * self.stats("box.stl")["volume_mm3"], places=6)
+
+    def test_the_result_does_not_depend_on_threads(self):
+        for name in ["a.cli", "a.svg"]:
+            contents = []
+            for threads in [1, 2, 5]:
+                self.succeed("slice", "box.stl", "--copies", "2", "ball.stl", "-o", name, "--threads", threads)
+                contents.append(self.path(name).read_bytes())
+            self.assertEqual(len(set(contents)), 1)
+
+    def test_parts_stay_apart_in_files_that_can(self):
+        self.succeed("slice", "box.stl", "--label", "crate", "ball.stl", "--copies", "2", "-o", "a.cli")
+        labels = re.findall(rb'\$\$LABEL/(\d),"(.*?)"', self.path("a.cli").read_bytes())
+        self.assertEqual(labels, [(b"1", b"crate"), (b"2", b"ball"), (b"3", b"ball 2")])
+
+    def test_a_part_outside_of_the_build_volume_is_named(self):
+        words = ["-o", "a.cli", "--build-volume", "100,100,50"]
+        self.succeed("slice", "box.stl", "--translate", "50,50,10", *words)
+        self.path("a.cli").unlink()
+        self.fail_with(2, '"ball".*build volume', "slice", "box.stl", "--translate", "50,50,10", "ball.stl",
+                       "--translate", "99,50,20", *words)
+
+    def test_what_cannot_be(self):
+        self.fail_with(2, "one at least", "slice", "box.stl", "--copies", "0", "-o", "a.cli")
+        self.fail_with(2, "one file only", "slice", "-", "-", "-o", "a.cli")
+        self.fail_with(3, "missing.stl", "slice", "box.stl", "missing.stl", "-o", "a.cli")
+        self.fail_with(2, "ball.stl", "slice", "box.stl", "ball.stl", "-o", "ball.stl", "--format", "cli")
+        self.fail_with(2, "no amount of memory", "slice", "box.stl", "-o", "a.cli", "--max-memory", "much")
+
+
+if __name__ == "__main__":
+    main()
