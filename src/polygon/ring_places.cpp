@@ -1,6 +1,6 @@
 #include "polygon/ring_places.hpp"
 
-#include "polygon/orientation.hpp"
+#include "core/orientation.hpp"
 
 #include <algorithm>
 #include <bit>
