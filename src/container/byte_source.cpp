@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/growing_memory.hpp"
 #include "core/pages.hpp"
 
 #include <fcntl.h>
@@ -13,7 +14,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <system_error>
 #include <utility>
 
@@ -67,16 +67,6 @@ class Mapping {
     Mapping& operator=(const Mapping&) = delete;
 
     [[nodiscard]] std::byte* data() const noexcept { return static_cast<std::byte*>(data_); }
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
-
-    /// Moves page tables, not bytes.
-    void resize(std::size_t bytes) {
-        void* moved = mremap(data_, bytes_, bytes, MREMAP_MAYMOVE);
-        if (moved == MAP_FAILED)
-            throw std::bad_alloc();
-        data_ = moved;
-        bytes_ = bytes;
-    }
 
   private:
     void* data_;
@@ -105,28 +95,22 @@ void wait_for_bytes(int descriptor, const std::stop_token& cancel) {
 }
 
 ByteSource read_to_end(int descriptor, std::string name, const std::stop_token& cancel) {
-    std::size_t capacity = std::size_t{1} << 20;
-    void* data = mmap(nullptr, capacity, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (data == MAP_FAILED)
-        throw std::bad_alloc();
-    const auto memory = std::make_shared<Mapping>(data, capacity);
-    std::size_t size = 0;
+    const auto memory = std::make_shared<GrowingMemory>();
     for (;;) {
-        if (size == memory->bytes())
-            memory->resize(2 * size);
+        const std::span<std::byte> room = memory->room();
         wait_for_bytes(descriptor, cancel);
-        const ssize_t got = read(descriptor, memory->data() + size, memory->bytes() - size);
+        const ssize_t got = read(descriptor, room.data(), room.size());
         if (got > 0)
-            size += static_cast<std::size_t>(got);
+            memory->use(static_cast<std::size_t>(got));
         else if (got == 0)
             break;
         else if (errno != EINTR && errno != EAGAIN)
             fail_with_errno(name, errno);
     }
-    if (size == 0)
+    if (memory->size() == 0)
         fail(name, "is empty, expected a file with content");
-    memory->resize(size);
-    return {std::move(name), {memory->data(), size}, memory};
+    memory->trim();
+    return {std::move(name), memory->bytes(), memory};
 }
 
 ByteSource take(const Descriptor& descriptor, std::string name, const std::stop_token& cancel) {

@@ -1,0 +1,37 @@
+#pragma once
+
+// Memory for bytes of which nobody knows how many will come.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+namespace lamella {
+
+/// Grows without copying: page tables are moved, not bytes. Throws std::bad_alloc.
+class GrowingMemory {
+  public:
+    GrowingMemory();
+    ~GrowingMemory();
+    GrowingMemory(const GrowingMemory&) = delete;
+    GrowingMemory& operator=(const GrowingMemory&) = delete;
+
+    /// Where the next bytes may go; never empty. It stays there until the next call.
+    [[nodiscard]] std::span<std::byte> room();
+    /// That so many bytes of the room are used now.
+    void use(std::size_t bytes) noexcept { size_ += bytes; }
+
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    /// Gives back what is not used. Not for none.
+    void trim();
+    [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {data_, size_}; }
+
+  private:
+    void resize(std::size_t bytes);
+
+    std::byte* data_;
+    std::size_t size_ = 0;
+    std::size_t capacity_;
+};
+
+} // namespace lamella

@@ -1,0 +1,25 @@
+#pragma once
+
+// Files packed with gzip.
+
+#include "container/byte_source.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+
+namespace lamella {
+
+/// Whether the bytes begin as a gzip file does.
+[[nodiscard]] bool is_gzip(std::span<const std::byte> bytes) noexcept;
+
+/// Unpacks a gzip file, of one member or several, into memory, under the same name. How much comes out is
+/// found by unpacking, never taken from the file; more than `max_bytes` (0: no limit) is Error{limit} as soon
+/// as it is reached. Checksums are compared. Throws Error{input} naming the byte where the file is broken,
+/// cut off, followed by something else, or has nothing in it; Error{cancelled} soon after a stop is
+/// requested.
+[[nodiscard]] ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes,
+                                     const std::stop_token& cancel = {});
+
+} // namespace lamella

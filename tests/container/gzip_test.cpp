@@ -1,0 +1,130 @@
+#include "lamella/core/error.hpp"
+
+#include "container/gzip.hpp"
+#include "fixtures/random.hpp"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <string>
+#include <string_view>
+
+namespace lamella {
+namespace {
+
+/// A member of a gzip file, as zlib makes it.
+std::string packed(std::string_view bytes) {
+    z_stream stream{};
+    constexpr int gzip_window = 15 + 16;
+    EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, gzip_window, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    std::string out(deflateBound(&stream, bytes.size()), '\0');
+    std::string in(bytes);
+    stream.next_in = reinterpret_cast<Bytef*>(in.data());
+    stream.avail_in = static_cast<uInt>(in.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = static_cast<uInt>(out.size());
+    EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+    return out;
+}
+
+ByteSource source(std::string_view bytes) {
+    return copy_bytes(std::as_bytes(std::span(bytes)), "part.gz");
+}
+
+std::string unpacked(std::string_view bytes, std::uint64_t max_bytes = 0) {
+    const ByteSource out = unpack_gzip(source(bytes), max_bytes);
+    EXPECT_EQ(out.name, "part.gz");
+    return {reinterpret_cast<const char*>(out.bytes.data()), out.bytes.size()};
+}
+
+std::string error_of(std::string_view bytes, std::uint64_t max_bytes = 0, ErrorKind kind = ErrorKind::input) {
+    try {
+        (void)unpacked(bytes, max_bytes);
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind);
+        return error.what();
+    }
+    return {};
+}
+
+/// Text that packs neither well nor badly.
+std::string some_text(std::size_t size) {
+    test::Random random(1);
+    std::string text;
+    while (text.size() < size)
+        text += std::to_string(random.integer(0, 999)) + "\n";
+    return text;
+}
+
+TEST(Gzip, IsToldByItsFirstBytes) {
+    EXPECT_TRUE(is_gzip(source(packed("x")).bytes));
+    EXPECT_FALSE(is_gzip(source("solid").bytes));
+    EXPECT_FALSE(is_gzip(source("\x1f\x8b").bytes));
+}
+
+TEST(Gzip, UnpacksOneMemberOrSeveral) {
+    const std::string text = some_text(30'000'000);
+    EXPECT_TRUE(unpacked(packed(text)) == text);
+    EXPECT_EQ(unpacked(packed("one ") + packed("") + packed("two")), "one two");
+    EXPECT_EQ(unpacked(packed("one") + std::string(100, '\0')), "one");
+}
+
+TEST(Gzip, DoesNotBelieveTheSizeInTheFile) {
+    std::string small = packed("one");
+    small.replace(small.size() - 4, 4, "\xff\xff\xff\xff");
+    EXPECT_NE(error_of(small).find("is broken (incorrect length check)"), std::string::npos);
+    std::string wrong = packed("one");
+    wrong[wrong.size() - 6] ^= 1;
+    EXPECT_NE(error_of(wrong).find("is broken (incorrect data check)"), std::string::npos);
+}
+
+TEST(Gzip, StopsAtTheLimit) {
+    const std::string bomb = packed(std::string(50'000'000, '\0'));
+    EXPECT_LT(bomb.size(), 500'000U);
+    EXPECT_EQ(error_of(bomb, 1'000'000, ErrorKind::limit),
+              "part.gz: unpacks to more than the 1000000 bytes of --max-memory");
+    EXPECT_EQ(unpacked(bomb, 50'000'000).size(), 50'000'000U);
+}
+
+TEST(Gzip, NamesTheByteOfADefect) {
+    const std::string whole = packed("a text");
+    for (std::size_t size = 3; size < whole.size(); ++size)
+        EXPECT_NE(error_of(whole.substr(0, size)).find("cut off"), std::string::npos) << size;
+    EXPECT_EQ(error_of(whole + "garbage"),
+              "part.gz: byte " + std::to_string(whole.size()) +
+                  ": something else follows what is packed with gzip, expected the end of the file");
+    EXPECT_NE(error_of(packed("")).find("nothing is packed in it"), std::string::npos);
+}
+
+TEST(Gzip, SurvivesMutations) {
+    const std::string whole = packed(some_text(300)) + packed("more");
+    test::Random random(2);
+    for (int round = 0; round < 3000; ++round) {
+        std::string bytes = whole;
+        for (int change = 0; change < 2; ++change)
+            bytes[static_cast<std::size_t>(random.integer(3, static_cast<std::int64_t>(bytes.size()) - 1))] =
+                static_cast<char>(random.bits());
+        try {
+            (void)unpack_gzip(source(bytes), 1'000'000);
+        } catch (const Error& error) {
+            EXPECT_TRUE(error.kind() == ErrorKind::input || error.kind() == ErrorKind::limit);
+        }
+    }
+}
+
+TEST(Gzip, EndsWhenAskedTo) {
+    std::stop_source stop;
+    stop.request_stop();
+    try {
+        (void)unpack_gzip(source(packed("x")), 0, stop.get_token());
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+    }
+}
+
+} // namespace
+} // namespace lamella
