@@ -246,7 +246,8 @@ Command info_command() {
     return {.name = "info",
             .summary = "what is in a mesh or slice file: size, volume, defects",
             .description =
-                "Tells what a file holds. Of a mesh (STL): size, volume, area, shells, and every kind of "
+                "Tells what a file holds. Of a mesh (STL, OBJ, PLY, OFF): size, volume, area, shells, and "
+                "every kind of "
                 "defect with what it means for slicing. Of a slice file (CLI, SVG): layers, contours, "
                 "points and volume. Nothing is repaired or written.",
             .operands = {{.placeholder = "FILE",

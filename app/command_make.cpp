@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
@@ -15,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -173,6 +175,22 @@ OptionGroup shape_options(MakeArguments& target) {
              {"wall", "hole", "split", "shuffle"}, target.order)}};
 }
 
+/// In the format of the extension: STL unless it is that of another one.
+void write(const std::string& output, const TriangleSoup& soup, const MakeArguments& arguments) {
+    const std::string extension = std::filesystem::path(output).extension().string();
+    if (arguments.ascii && extension == ".ply")
+        throw Error(ErrorKind::usage,
+                    "--ascii: PLY files are written as binary; STL and OBJ have a text form");
+    if (extension == ".ply")
+        write_ply(output, weld(soup));
+    else if (extension == ".obj")
+        write_obj(output, weld(soup), arguments.body);
+    else if (arguments.ascii)
+        write_stl_ascii(output, soup, arguments.body);
+    else
+        write_stl(output, soup);
+}
+
 int run_make(const MakeArguments& arguments, const Context& context) {
     const Body& body = *std::ranges::find(bodies, std::string_view(arguments.body), &Body::name);
     check_options(body, context.command);
@@ -183,10 +201,7 @@ int run_make(const MakeArguments& arguments, const Context& context) {
     if (arguments.shuffle && arguments.order != "shuffle")
         soup = shuffled(soup, *arguments.shuffle);
     soup = soup.transformed(pose);
-    if (arguments.ascii)
-        write_stl_ascii(output, soup, arguments.body);
-    else
-        write_stl(output, soup);
+    write(output, soup, arguments);
 
     const Box3 extent = bounding_box(soup);
     const std::string text =
@@ -205,11 +220,14 @@ int run_make(const MakeArguments& arguments, const Context& context) {
 Command make_command() {
     const auto arguments = std::make_shared<MakeArguments>();
     Option output =
-        file("output", "the STL file; - is standard output; without it, BODY.stl here", arguments->output);
+        file("output",
+             "the file, STL, or PLY or OBJ by its extension; - is standard output; without it, BODY.stl "
+             "here",
+             arguments->output);
     output.letter = 'o';
     return {
         .name = "make",
-        .summary = "make a test body as STL: a sheet with holes, a chess rook, ...",
+        .summary = "make a test body as STL, PLY or OBJ: a sheet with holes, a chess rook, ...",
         .description =
             "Makes a closed body to try things with. The same options give the same bytes on every "
             "machine.",
@@ -227,6 +245,7 @@ Command make_command() {
                    pose_options(arguments->pose),
                    common_options(true)},
         .examples = {{"lamella make rook", "writes rook.stl"},
+                     {"lamella make rook -o rook.obj", "the same with shared vertices"},
                      {"lamella make sheet --holes 1225 -o sheet.stl", "2.5 million triangles"},
                      {"lamella make sheet --holes 100 --rotate-x 90", "a sheet on its edge"},
                      {"lamella make sole", "struts from bottom to top: 860,000 long triangles"},

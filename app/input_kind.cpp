@@ -12,8 +12,8 @@
 namespace lamella::app {
 namespace {
 
-/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag; STL files with
-/// neither.
+/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag; mesh files
+/// with neither.
 bool holds_layers(std::string_view head) {
     if (head.starts_with("\xEF\xBB\xBF"))
         head.remove_prefix(3);

@@ -7,12 +7,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 namespace lamella {
 
@@ -64,6 +67,42 @@ Facet facet(const TriangleSoup& soup, std::size_t i) {
     return f;
 }
 
+std::string one_line(std::string text) {
+    for (char& c : text)
+        c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    return text;
+}
+
+bool fits_single_precision(const IndexedMesh& mesh) {
+    const auto fits = [](double v) {
+        return static_cast<double>(static_cast<float>(v)) == v;
+    };
+    return std::ranges::all_of(mesh.vertices,
+                               [&](const Point3& p) { return fits(p.x) && fits(p.y) && fits(p.z); });
+}
+
+/// Appends items in blocks; `put_item(at, i)` writes one of at most `longest` bytes and returns where it
+/// ends.
+template <class Put>
+void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put put_item) {
+    ByteBuffer block;
+    for (std::size_t begin = 0; begin < count; begin += triangles_per_block) {
+        const std::size_t end = std::min(count, begin + triangles_per_block);
+        block.clear();
+        char* at = block.room((end - begin) * longest);
+        for (std::size_t i = begin; i < end; ++i)
+            at = put_item(at, i);
+        block.end_at(at);
+        file.append(block.view());
+    }
+}
+
+template <class T>
+char* put_value(char* out, T value) {
+    std::memcpy(out, &value, sizeof value);
+    return out + sizeof value;
+}
+
 char* put(char* out, std::string_view text) {
     std::memcpy(out, text.data(), text.size());
     return out + text.size();
@@ -94,47 +133,73 @@ void write_stl(const std::string& path, const TriangleSoup& soup) {
     std::memcpy(head.data() + 80, &count, sizeof count);
     file.append({head.data(), head.size()});
 
-    ByteBuffer block;
-    for (std::size_t begin = 0; begin < soup.size(); begin += triangles_per_block) {
-        const std::size_t end = std::min(soup.size(), begin + triangles_per_block);
-        block.clear();
-        char* at = block.room((end - begin) * record_size);
-        for (std::size_t i = begin; i < end; ++i) {
-            const Facet f = facet(soup, i);
-            std::memcpy(at, &f, sizeof f);
-            std::memset(at + sizeof f, 0, record_size - sizeof f);
-            at += record_size;
-        }
-        block.end_at(at);
-        file.append(block.view());
-    }
+    append_blocks(file, soup.size(), record_size, [&](char* at, std::size_t i) {
+        std::memset(put_value(at, facet(soup, i)), 0, record_size - sizeof(Facet));
+        return at + record_size;
+    });
     file.commit();
 }
 
 void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const std::string& name) {
-    std::string title = name;
-    for (char& c : title)
-        c = static_cast<unsigned char>(c) < ' ' ? ' ' : c; // it must stay one line
+    const std::string title = one_line(name);
     AtomicFile file(path);
     file.append("solid " + title + "\n");
     constexpr std::size_t longest_facet = 400;
-    ByteBuffer block;
-    for (std::size_t begin = 0; begin < soup.size(); begin += triangles_per_block) {
-        const std::size_t end = std::min(soup.size(), begin + triangles_per_block);
-        block.clear();
-        char* at = block.room((end - begin) * longest_facet);
-        for (std::size_t i = begin; i < end; ++i) {
-            const Facet f = facet(soup, i);
-            at = put(put(at, "facet normal"), f.normal);
-            at = put(at, "  outer loop\n");
-            for (const Point3f& corner : f.corners)
-                at = put(put(at, "    vertex"), corner);
-            at = put(at, "  endloop\nendfacet\n");
-        }
-        block.end_at(at);
-        file.append(block.view());
-    }
+    append_blocks(file, soup.size(), longest_facet, [&](char* at, std::size_t i) {
+        const Facet f = facet(soup, i);
+        at = put(put(at, "facet normal"), f.normal);
+        at = put(at, "  outer loop\n");
+        for (const Point3f& corner : f.corners)
+            at = put(put(at, "    vertex"), corner);
+        return put(at, "  endloop\nendfacet\n");
+    });
     file.append("endsolid " + title + "\n");
+    file.commit();
+}
+
+void write_ply(const std::string& path, const IndexedMesh& mesh) {
+    static_assert(std::endian::native == std::endian::little, "written as memory has it");
+    const bool single_precision = fits_single_precision(mesh);
+    const std::string_view type = single_precision ? "float" : "double";
+    AtomicFile file(path);
+    file.append(fmt::format("ply\nformat binary_little_endian 1.0\ncomment written by Lamella, millimetres\n"
+                            "element vertex {0}\nproperty {1} x\nproperty {1} y\nproperty {1} z\n"
+                            "element face {2}\nproperty list uchar uint vertex_indices\nend_header\n",
+                            mesh.vertices.size(), type, mesh.triangles.size()));
+    append_blocks(file, mesh.vertices.size(), sizeof(Point3), [&](char* at, std::size_t i) {
+        for (const double v : {mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z})
+            at = single_precision ? put_value(at, static_cast<float>(v)) : put_value(at, v);
+        return at;
+    });
+    constexpr std::size_t face_bytes = 1 + 3 * sizeof(std::uint32_t);
+    append_blocks(file, mesh.triangles.size(), face_bytes, [&](char* at, std::size_t i) {
+        return put_value(put_value(at, std::uint8_t{3}), mesh.triangles[i]);
+    });
+    file.commit();
+}
+
+void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name) {
+    AtomicFile file(path);
+    file.append(fmt::format("# written by Lamella, millimetres\no {}\n", one_line(name)));
+    constexpr std::size_t longest_number = 25; // with the blank before it
+    append_blocks(file, mesh.vertices.size(), 2 + 3 * longest_number, [&](char* at, std::size_t i) {
+        *at++ = 'v';
+        for (const double v : {mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z}) {
+            *at++ = ' ';
+            at = std::to_chars(at, at + longest_number, v).ptr;
+        }
+        *at++ = '\n';
+        return at;
+    });
+    append_blocks(file, mesh.triangles.size(), 2 + 3 * longest_number, [&](char* at, std::size_t i) {
+        *at++ = 'f';
+        for (const std::uint32_t v : mesh.triangles[i]) {
+            *at++ = ' ';
+            at = std::to_chars(at, at + longest_number, std::uint64_t{v} + 1).ptr;
+        }
+        *at++ = '\n';
+        return at;
+    });
     file.commit();
 }
 

@@ -136,5 +136,42 @@ TEST(WriteStl, LeavesNothingOnAFullDisk) {
     EXPECT_THROW(write_stl("/dev/full", TriangleSoup(std::vector<Triangle3f>{corner})), Error);
 }
 
+const IndexedMesh two_triangles{{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0.5, -0.25, 1e3}}, {{0, 1, 2}, {3, 2, 1}}};
+
+std::string ply(const IndexedMesh& mesh) {
+    const TemporaryFolder folder;
+    write_ply(folder.file("out.ply"), mesh);
+    return file_bytes(folder.file("out.ply"));
+}
+
+TEST(WritePly, HasTheBytesOfTheFormat) {
+    const std::string bytes = ply(two_triangles);
+    const std::string head = "ply\nformat binary_little_endian 1.0\ncomment written by Lamella, millimetres\n"
+                             "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                             "element face 2\nproperty list uchar uint vertex_indices\nend_header\n";
+    ASSERT_EQ(bytes.substr(0, head.size()), head);
+    ASSERT_EQ(bytes.size(), head.size() + 4 * 12 + 2 * 13);
+    EXPECT_EQ(read_at<float>(bytes, head.size() + 3 * 12 + 4), -0.25F);
+    EXPECT_EQ(bytes[head.size() + 48 + 13], 3);
+    EXPECT_EQ(read_at<std::uint32_t>(bytes, head.size() + 48 + 14), 3U);
+}
+
+TEST(WritePly, KeepsWhatSinglePrecisionCannotHold) {
+    IndexedMesh mesh = two_triangles;
+    mesh.vertices[2].z = 0.1;
+    const std::string bytes = ply(mesh);
+    const std::size_t rows = bytes.find("end_header\n") + 11;
+    EXPECT_NE(bytes.find("property double z"), std::string::npos);
+    EXPECT_EQ(read_at<double>(bytes, rows + 2 * 24 + 16), 0.1);
+}
+
+TEST(WriteObj, HasTheTextOfTheFormat) {
+    const TemporaryFolder folder;
+    write_obj(folder.file("out.obj"), two_triangles, "two\nlines");
+    EXPECT_EQ(file_bytes(folder.file("out.obj")),
+              "# written by Lamella, millimetres\no two lines\nv 0 0 0\nv 2 0 0\n"
+              "v 0 3 0\nv 0.5 -0.25 1000\nf 1 2 3\nf 4 3 2\n");
+}
+
 } // namespace
 } // namespace lamella
