@@ -82,6 +82,11 @@ rivals: build packages-rivals  ## compare with other slicers on the same parts: 
 	cmake --build build-bench --target lamella_cgal_slicer
 	python3 -B -m bench.rivals $(OPTIONS)
 
+read-meshes: build packages-rivals  ## compare with other readers of meshes: out/read_meshes/ (bench/README.md)
+	cmake --preset bench
+	cmake --build build-bench --target lamella_mesh_reader lamella_assimp_reader
+	python3 -B -m bench.read_meshes $(OPTIONS)
+
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
 
@@ -107,4 +112,4 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
-        bench packages-rivals rivals paper format format-check lint install clean
+        bench packages-rivals rivals read-meshes paper format format-check lint install clean
