@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "core/orientation.hpp"
+#include "polygon/orientation.hpp"
 
 #include <algorithm>
 #include <cmath>

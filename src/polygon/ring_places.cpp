@@ -1,6 +1,6 @@
 #include "polygon/ring_places.hpp"
 
-#include "core/orientation.hpp"
+#include "polygon/orientation.hpp"
 
 #include <algorithm>
 #include <bit>

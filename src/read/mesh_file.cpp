@@ -1,7 +1,19 @@
 #include "lamella/read/mesh_file.hpp"
 
+#include "lamella/core/error.hpp"
+
 #include "container/byte_source.hpp"
+#include "container/gzip.hpp"
+#include "read/foreign_files.hpp"
+#include "read/obj.hpp"
+#include "read/off.hpp"
+#include "read/ply.hpp"
 #include "read/stl.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
 
 namespace lamella {
 
@@ -36,15 +48,52 @@ Mesh MeshFile::mesh(const Execution& execution) const {
     return joined(all, execution);
 }
 
+namespace {
+
+/// The extension of a name in lower case, without the one of gzip: "stl" of "PART.STL.gz".
+std::string extension_of(std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; });
+    if (name.ends_with(".gz"))
+        name.resize(name.size() - 3);
+    const std::size_t point = name.find_last_of("./");
+    return point == std::string::npos || name[point] == '/' ? std::string() : name.substr(point + 1);
+}
+
+/// By the content, where that tells; else by the extension.
+MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, const Execution& execution) {
+    const ByteSource source =
+        is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution.cancel) : opened;
+    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    const std::string extension = extension_of(source.name);
+    if (is_stl(source))
+        return read_stl(source, options, execution);
+    if (is_ply(text))
+        return read_ply(source, options, execution);
+    if (is_off(text))
+        return read_off(source, options, execution);
+    if (const std::string_view advice = foreign_advice(text); !advice.empty())
+        throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, advice));
+    if (extension == "obj" || (extension != "off" && extension != "ply" && looks_like_obj(text)))
+        return read_obj(source, options, execution);
+    if (extension == "off")
+        return read_off(source, options, execution);
+    if (extension == "ply")
+        return read_ply(source, options, execution);
+    return read_stl(source, options, execution);
+}
+
+} // namespace
+
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {
-    MeshFile file = read_stl(open_bytes(path, execution.cancel), options, execution);
+    MeshFile file = read_any(open_bytes(path, execution.cancel), options, execution);
     file.path = path;
     return file;
 }
 
 MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, const MeshReadOptions& options,
                    const Execution& execution) {
-    MeshFile file = read_stl(copy_bytes(bytes, name), options, execution);
+    MeshFile file = read_any(copy_bytes(bytes, name), options, execution);
     file.path = name;
     return file;
 }

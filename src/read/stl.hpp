@@ -9,11 +9,14 @@
 
 namespace lamella {
 
+/// Whether it is STL beyond doubt: rules 1 and 2 of read_stl.
+[[nodiscard]] bool is_stl(const ByteSource& source);
+
 /// Reads an STL file of either form; the contract of read_mesh. The content decides, because many binary
 /// files begin with "solid" as the ASCII form does:
 ///   1. a size of exactly 84 + 50 * count bytes: binary;
 ///   2. "solid", a name, and then a facet or "endsolid": ASCII;
-///   3. other text, or a well-known form of another format: an error that says what it is;
+///   3. other text: an error that says what was found;
 ///   4. at least 84 bytes: binary with a wrong count.
 [[nodiscard]] MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options,
                                 const Execution& execution);

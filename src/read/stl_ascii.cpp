@@ -5,12 +5,13 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
+#include "read/coordinate_text.hpp"
 #include "read/remarks.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -26,14 +27,6 @@ constexpr std::size_t nowhere = std::string_view::npos;
 
 /// Pieces are parsed in parallel; about as much text as 4,000 facets.
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
-
-bool is_blank(char c) {
-    return c == ' ' || (c >= '\t' && c <= '\r');
-}
-
-bool is_line_end(char c) {
-    return c == '\n' || c == '\r';
-}
 
 char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
@@ -129,10 +122,6 @@ std::string_view take_name(Words& words) {
         last = words.position();
     }
     return {first, static_cast<std::size_t>(last - first)};
-}
-
-std::size_t after_byte_order_mark(std::string_view text) {
-    return text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
 }
 
 /// What makes a piece of text unreadable.
@@ -294,53 +283,18 @@ class PieceParser {
 
     float coordinate() {
         words_.skip_blanks();
-        const char* first = words_.position();
-        const char* end = words_.text_end();
-        if (first != end && *first == '+' && end - first > 1 && first[1] != '-')
-            ++first;
+        const char* const first = words_.position();
+        const char* const end = words_.text_end();
         float value = 0;
-        const auto [stop, code] = std::from_chars(first, end, value);
-        const bool whole_word = stop == end || is_blank(*stop);
-        if (code == std::errc() && whole_word) {
+        const char* const stop = first == end ? nullptr : parse_coordinate(first, end, value);
+        if (stop != nullptr && stop != end) {
             words_.move_to(stop);
             return value;
         }
-        return unusual_coordinate(code == std::errc::result_out_of_range && whole_word);
-    }
-
-    /// Numbers beyond the range of a float, the many ways to write NaN, and what is no number.
-    float unusual_coordinate(bool out_of_range) {
         const std::string_view word = words_.peek();
         if (is_last(word))
-            throw CutOff{};
-        const std::string_view digits = word.substr(word[0] == '+' || word[0] == '-' ? 1 : 0);
-        float value = std::numeric_limits<float>::quiet_NaN();
-        if (out_of_range)
-            value = is_huge(digits) ? std::numeric_limits<float>::infinity() : 0.0F;
-        else if (!begins(digits, "nan") && !begins(digits, "inf") && !begins(digits, "1.#"))
-            throw Fault{words_.offset(), word.find(',') == nowhere
-                                             ? "a number"
-                                             : "a number with a decimal point and no comma"};
-        words_.skip_word();
-        return value;
-    }
-
-    /// Whether a number that no float can hold is too large rather than too small, from the place of its
-    /// first digit that is not 0.
-    static bool is_huge(std::string_view number) {
-        const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
-        const std::string_view mantissa = number.substr(0, exponent_at);
-        const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-        const std::size_t leading = std::min(mantissa.find_first_not_of("0."), mantissa.size());
-        const auto place = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(leading);
-        const std::string_view exponent = number.substr(std::min(exponent_at + 1, number.size()));
-        const bool negative = exponent.starts_with('-');
-        const std::string_view digits = exponent.substr(negative || exponent.starts_with('+') ? 1 : 0);
-        std::int64_t power = 0;
-        if (!digits.empty() &&
-            std::from_chars(digits.data(), digits.data() + digits.size(), power).ec != std::errc())
-            power = std::numeric_limits<std::int64_t>::max() / 2;
-        return place + (negative ? -power : power) > 0;
+            throw CutOff{}; // also after a number: who knows how it would have gone on?
+        throw Fault{words_.offset(), std::string(expected_instead(word))};
     }
 
     static bool finite(const Triangle3f& triangle) {

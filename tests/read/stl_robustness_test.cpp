@@ -1,6 +1,7 @@
 // The reader meets an enemy: cut files, changed bytes, lying numbers. Whatever comes, it answers with finite
 // triangles or with an error of one line.
 
+#include "fixtures/mutations.hpp"
 #include "read/stl_text.hpp"
 
 #include <cmath>
@@ -68,28 +69,7 @@ TEST(StlRobustness, SurvivesMutations) {
     std::size_t read_anyway = 0;
     for (int round = 0; round < 6000; ++round) {
         std::string bytes = seeds[random() % seeds.size()];
-        for (unsigned change = 0; change <= random() % 4; ++change) {
-            const std::size_t at = random() % bytes.size();
-            switch (random() % 6) {
-            case 0:
-                bytes[at] = static_cast<char>(random());
-                break;
-            case 1:
-                bytes[at] = static_cast<char>(bytes[at] ^ (1 << random() % 8));
-                break;
-            case 2:
-                bytes.erase(at, 1 + random() % 30);
-                break;
-            case 3:
-                bytes.insert(at, words[random() % words.size()]);
-                break;
-            case 4:
-                bytes.insert(at, bytes.substr(random() % bytes.size(), random() % 60));
-                break;
-            default:
-                bytes.resize(at + 1);
-            }
-        }
+        test::mutate(bytes, random, words);
         read_anyway += survive(bytes).has_value() ? 1 : 0;
     }
     EXPECT_GT(read_anyway, 500U) << "the mutations are so wild that they test nothing";

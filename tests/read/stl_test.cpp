@@ -84,15 +84,14 @@ TEST(Stl, ReadsABinaryFileWhoseHeaderLooksForeign) {
 }
 
 TEST(Stl, NeverTakesTextForBinaryTriangles) {
-    const std::string points = "# a point cloud\n" + replaced(std::string(300, 'x'), "x", "v 1 2 3\n");
-    EXPECT_EQ(error_of(points), "part.stl: line 1: is a text, but not an STL file: found '# a point cloud', "
-                                "expected 'solid'");
+    const std::string points = "# a point cloud\n" + replaced(std::string(300, 'x'), "x", "1 2 3\n");
+    EXPECT_EQ(error_of(points),
+              "part.stl: line 1: is a text, but no mesh file: found '# a point cloud', expected 'solid'");
     EXPECT_EQ(error_of("\n\n  ply\nformat ascii 1.0\n"),
-              "part.stl: line 3: is a text, but not an STL file: found 'ply', expected 'solid'");
+              "part.stl: line 3: is a text, but no mesh file: found 'ply', expected 'solid'");
     EXPECT_EQ(error_of("solidpart\n" + facet(one[0])),
-              "part.stl: line 1: is a text, but not an STL file: found 'solidpart', expected 'solid'");
-    EXPECT_EQ(error_of(" \n "),
-              "part.stl: line 2: is a text, but not an STL file: found '', expected 'solid'");
+              "part.stl: line 1: is a text, but no mesh file: found 'solidpart', expected 'solid'");
+    EXPECT_EQ(error_of(" \n "), "part.stl: line 2: is a text, but no mesh file: found '', expected 'solid'");
 }
 
 TEST(Stl, RefusesWhatIsTooShortToBeAnything) {

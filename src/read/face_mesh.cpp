@@ -1,0 +1,236 @@
+#include "read/face_mesh.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/pages.hpp"
+#include "mesh/polygon_triangulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+constexpr std::uint64_t chunk = 50'000;
+
+bool finite(const Point3& p) {
+    // Anything times zero is zero, but for NaN and infinity; one comparison for all three.
+    return (p.x * 0 + p.y * 0 + p.z * 0) == 0;
+}
+
+void keep_least(std::atomic<std::uint64_t>& least, std::uint64_t value) {
+    std::uint64_t known = least.load();
+    while (value < known && !least.compare_exchange_weak(known, value)) {
+    }
+}
+
+constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+
+/// The first triangle for which `is_bad`, or none.
+template <class IsBad>
+std::uint64_t first_triangle(const IndexedMesh& mesh, Executor& executor, IsBad is_bad) {
+    std::atomic<std::uint64_t> first{none};
+    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            if (is_bad(mesh.triangles[i])) {
+                keep_least(first, i);
+                return;
+            }
+    });
+    return first;
+}
+
+bool all_finite(const std::vector<Point3>& vertices, Executor& executor) {
+    std::atomic<bool> all{true};
+    executor.for_chunks(vertices.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        double sum = 0;
+        for (std::uint64_t i = begin; i < end; ++i)
+            sum += vertices[i].x * 0 + vertices[i].y * 0 + vertices[i].z * 0;
+        if (!(sum == 0))
+            all = false;
+    });
+    return all;
+}
+
+/// Each fan gives way to the triangles of its polygon.
+void cut_polygons(FaceMesh& faces, Executor& executor) {
+    constexpr std::uint64_t some = 1'000;
+    std::vector<PolygonTriangulator> triangulators(executor.workers());
+    std::vector<std::vector<std::uint32_t>> indices(executor.workers());
+    std::vector<std::vector<Point3>> points(executor.workers());
+    const std::vector<Point3>& vertices = faces.mesh.vertices;
+    executor.for_chunks(
+        faces.polygons.size(), some, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+            std::vector<std::uint32_t>& corners = indices[worker];
+            std::vector<Point3>& places = points[worker];
+            for (std::uint64_t i = begin; i < end; ++i) {
+                Corners* const fan = faces.mesh.triangles.data() + faces.polygons[i].first_triangle;
+                const std::uint32_t count = faces.polygons[i].triangles;
+                corners.assign({fan[0][0], fan[0][1]});
+                for (std::uint32_t k = 0; k < count; ++k)
+                    corners.push_back(fan[k][2]);
+                places.clear();
+                for (const std::uint32_t corner : corners)
+                    places.push_back(vertices[corner]);
+                if (!std::all_of(places.begin(), places.end(), finite))
+                    continue;
+                const auto triangles = triangulators[worker].triangulate(places);
+                for (std::uint32_t k = 0; k < count; ++k)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        fan[k][c] = corners[triangles[k][c]];
+            }
+        });
+    faces.polygons = {};
+}
+
+/// A file may have vertices that belong to no face, far away; the box of the part must not know them.
+void drop_unused(IndexedMesh& mesh, Executor& executor) {
+    PageArray<std::uint8_t> used(mesh.vertices.size(), Fill::zero);
+    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            for (const std::uint32_t v : mesh.triangles[i])
+                std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
+    });
+    std::atomic<bool> all{true};
+    executor.for_chunks(used.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        if (std::find(used.data() + begin, used.data() + end, std::uint8_t{0}) != used.data() + end)
+            all = false;
+    });
+    if (all)
+        return;
+    std::vector<std::uint32_t> number(mesh.vertices.size());
+    std::uint32_t kept = 0;
+    for (std::size_t v = 0; v < number.size(); ++v)
+        if (used[v] != 0) {
+            number[v] = kept;
+            mesh.vertices[kept++] = mesh.vertices[v];
+        }
+    mesh.vertices.resize(kept);
+    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            for (std::uint32_t& v : mesh.triangles[i])
+                v = number[v];
+    });
+}
+
+} // namespace
+
+void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t offset) {
+    if (corners.size() < 3) {
+        ++thin_faces;
+        first_thin = std::min(first_thin, offset);
+        return;
+    }
+    if (corners.size() > 3)
+        polygons.push_back({triangles.size(), static_cast<std::uint32_t>(corners.size() - 2)});
+    for (std::size_t k = 2; k < corners.size(); ++k)
+        triangles.push_back({corners[0], corners[k - 1], corners[k]});
+}
+
+FaceMesh join(std::vector<FacePiece>& pieces, ReadLimits& limits, Executor& executor) {
+    struct Begin {
+        std::uint64_t vertex = 0;
+        std::uint64_t triangle = 0;
+        std::uint64_t polygon = 0;
+    };
+    std::vector<Begin> begins;
+    Begin sum;
+    for (const FacePiece& piece : pieces) {
+        begins.push_back(sum);
+        sum.vertex += piece.vertices.size();
+        sum.triangle += piece.triangles.size();
+        sum.polygon += piece.polygons.size();
+    }
+    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    if (sum.vertex > most || sum.triangle > most)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{} vertices and {} triangles are too many: at most {} of each", sum.vertex,
+                                sum.triangle, most));
+    limits.add_bytes(sum.vertex * sizeof(Point3) + sum.triangle * sizeof(Corners));
+
+    FaceMesh faces;
+    resize_in_huge_pages(executor, faces.mesh.vertices, sum.vertex);
+    resize_in_huge_pages(executor, faces.mesh.triangles, sum.triangle);
+    faces.polygons.resize(sum.polygon);
+    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t first, std::uint64_t last, unsigned) {
+        for (std::uint64_t i = first; i < last; ++i) {
+            FacePiece& piece = pieces[i];
+            const Begin& begin = begins[i];
+            for (const std::uint64_t corner : piece.relative) {
+                std::uint32_t& v = piece.triangles[corner / 3][corner % 3];
+                if (v != FacePiece::no_vertex)
+                    v += static_cast<std::uint32_t>(begin.vertex);
+            }
+            std::copy(piece.vertices.begin(), piece.vertices.end(),
+                      faces.mesh.vertices.begin() + static_cast<std::ptrdiff_t>(begin.vertex));
+            std::copy(piece.triangles.begin(), piece.triangles.end(),
+                      faces.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(begin.triangle));
+            for (std::size_t k = 0; k < piece.polygons.size(); ++k)
+                faces.polygons[begin.polygon + k] = {piece.polygons[k].first_triangle + begin.triangle,
+                                                     piece.polygons[k].triangles};
+            piece.vertices = {};
+            piece.triangles = {};
+            piece.polygons = {};
+            piece.relative = {};
+        }
+    });
+    return faces;
+}
+
+MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned first_vertex,
+                        const TrianglePlace& place, Remarks& remarks, Executor& executor) {
+    const auto fail = [&](const std::string& what) {
+        throw Error(ErrorKind::input, fmt::format("{}: {}", source_name, what));
+    };
+    IndexedMesh& mesh = faces.mesh;
+    const std::size_t vertices = mesh.vertices.size();
+    const std::uint64_t beyond = first_triangle(mesh, executor, [&](const Corners& t) {
+        return t[0] >= vertices || t[1] >= vertices || t[2] >= vertices;
+    });
+    if (beyond != none) {
+        const std::string range = vertices == 0 ? "the file has no vertex"
+                                                : fmt::format("expected numbers from {} to {}", first_vertex,
+                                                              vertices - 1 + first_vertex);
+        fail(fmt::format("{}: a face names a vertex that is not there; {}", place(beyond), range));
+    }
+    MeshFile file;
+    file.stored_triangles = mesh.triangles.size();
+    if (mesh.triangles.empty())
+        fail(fmt::format("holds no triangle: {}",
+                         vertices == 0 ? "it has neither vertices nor faces"
+                                       : fmt::format("{} vertices without a face (a cloud of points has "
+                                                     "no surface to slice)",
+                                                     vertices)));
+    cut_polygons(faces, executor);
+    if (!all_finite(mesh.vertices, executor)) {
+        const auto unusable = [&](const Corners& t) {
+            return !finite(mesh.vertices[t[0]]) || !finite(mesh.vertices[t[1]]) ||
+                   !finite(mesh.vertices[t[2]]);
+        };
+        const std::uint64_t first = first_triangle(mesh, executor, unusable);
+        if (first != none) {
+            const std::string where = place(first);
+            file.nonfinite_triangles = std::erase_if(mesh.triangles, unusable);
+            if (mesh.triangles.empty())
+                fail(fmt::format(
+                    "{}: holds no usable triangle: each of the {} has a corner that is NaN or infinite",
+                    where, file.stored_triangles));
+            remarks.add(fmt::format("{}: left out {} of {} triangles, which have a corner that is NaN or "
+                                    "infinite (this is the first)",
+                                    where, file.nonfinite_triangles, file.stored_triangles));
+        }
+    }
+    drop_unused(mesh, executor);
+    file.objects.push_back({{}, Mesh(std::move(mesh))});
+    file.instances.push_back({});
+    return file;
+}
+
+} // namespace lamella

@@ -1,0 +1,60 @@
+#include "read/foreign_files.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace lamella {
+
+namespace {
+
+using namespace std::string_view_literals;
+
+struct Foreign {
+    std::string_view first_bytes; ///< letters in lower case stand for both cases
+    std::string_view advice;
+};
+
+/// What is often found under the name of an STL file.
+constexpr std::array foreign_files = {
+    Foreign{"\x1f\x8b"sv, "is packed with gzip twice; unpack it once first"},
+    Foreign{"pk\x03\x04"sv,
+            "is a zip archive (3MF files are, too); unpack it, or give it its real extension"},
+    Foreign{"<!doctype html"sv, "is a web page, no mesh file; download the file itself"},
+    Foreign{"<html"sv, "is a web page, no mesh file; download the file itself"},
+    Foreign{"<?xml"sv, "is an XML file of an unknown kind, no mesh file"},
+    Foreign{"<amf"sv, "is an AMF file, no mesh file"},
+    Foreign{"version https://git-lfs"sv,
+            "is a pointer of Git LFS to the real file; fetch it with 'git lfs pull'"},
+    Foreign{"\xff\xfe"sv, "is text in UTF-16; save it as UTF-8, or as a binary file"},
+    Foreign{"\xfe\xff"sv, "is text in UTF-16; save it as UTF-8, or as a binary file"},
+};
+
+bool begins_with(std::string_view text, std::string_view first_bytes) {
+    const auto same = [](char byte, char expected) {
+        return byte == expected ||
+               (expected >= 'a' && expected <= 'z' && byte == static_cast<char>(expected - ('a' - 'A')));
+    };
+    return text.size() >= first_bytes.size() &&
+           std::equal(first_bytes.begin(), first_bytes.end(), text.begin(),
+                      [&](char expected, char byte) { return same(byte, expected); });
+}
+
+/// What stands after a byte order mark and blanks.
+std::string_view content(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF"))
+        text.remove_prefix(3);
+    const std::size_t first = text.find_first_not_of(" \t\r\n\v\f");
+    return first == std::string_view::npos ? std::string_view() : text.substr(first);
+}
+
+} // namespace
+
+std::string_view foreign_advice(std::string_view text) {
+    const std::string_view begin = content(text);
+    for (const Foreign& foreign : foreign_files)
+        if (begins_with(text, foreign.first_bytes) || begins_with(begin, foreign.first_bytes))
+            return foreign.advice;
+    return {};
+}
+
+} // namespace lamella

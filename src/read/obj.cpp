@@ -1,0 +1,285 @@
+#include "read/obj.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "read/coordinate_text.hpp"
+#include "read/face_mesh.hpp"
+#include "read/read_limits.hpp"
+#include "read/remarks.hpp"
+#include "read/text_pieces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+using namespace std::string_view_literals;
+
+/// A piece of the text and what is in it.
+struct ObjPiece {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    FacePiece faces = {};
+    std::size_t name = FacePiece::nowhere;      ///< of the first object
+    std::size_t free_form = FacePiece::nowhere; ///< the first surface that is not made of faces
+};
+
+/// Reads a piece line by line.
+class PieceReader {
+  public:
+    /// Stops at the face that makes triangle `last_triangle`.
+    PieceReader(std::string_view text, ObjPiece& piece,
+                std::uint64_t last_triangle = std::numeric_limits<std::uint64_t>::max())
+        : text_(text.data()), at_(text_ + piece.begin), end_(text_ + piece.end), piece_(piece),
+          last_triangle_(last_triangle) {}
+
+    /// Returns where it stopped.
+    std::size_t run() {
+        try {
+            while (at_ != end_ && next_line()) {
+            }
+        } catch (TextFault& fault) {
+            piece_.faces.fault = std::move(fault);
+        }
+        return offset();
+    }
+
+  private:
+    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - text_); }
+
+    bool next_line() {
+        at_ = skip_blanks(at_, end_);
+        if (at_ == end_)
+            return false;
+        if (begins_with_keyword("v"))
+            vertex();
+        else if (begins_with_keyword("f"))
+            return face();
+        else if (*at_ == '#')
+            at_ = skip_to_line_end(at_, end_); // a comment does not go on after a backslash
+        else
+            other();
+        skip_line();
+        return true;
+    }
+
+    [[nodiscard]] bool begins_with_keyword(std::string_view keyword) const {
+        const auto left = static_cast<std::size_t>(end_ - at_);
+        return left >= keyword.size() && std::equal(keyword.begin(), keyword.end(), at_) &&
+               (left == keyword.size() || is_blank(at_[keyword.size()]));
+    }
+
+    void vertex() {
+        ++at_;
+        std::array<double, 3> p{};
+        for (double& value : p) {
+            to_word();
+            if (at_ == end_ || is_line_end(*at_))
+                throw TextFault{offset(), "the x, y and z of a vertex"};
+            const char* const stop = parse_coordinate(at_, end_, value);
+            if (stop == nullptr)
+                throw TextFault{offset(), std::string(expected_instead(word_at(at_, end_)))};
+            at_ = stop;
+        }
+        // Adding zero turns -0 into +0, as everywhere.
+        piece_.faces.vertices.push_back({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0});
+    }
+
+    bool face() {
+        const std::size_t begin = offset();
+        ++at_;
+        corners_.clear();
+        bool relative = false;
+        for (to_word(); at_ != end_ && !is_line_end(*at_) && *at_ != '#'; to_word())
+            corners_.push_back(corner(relative));
+        FacePiece& faces = piece_.faces;
+        const std::uint64_t first = faces.triangles.size();
+        faces.add_face(corners_, begin);
+        if (relative)
+            note_relative(first);
+        if (faces.triangles.size() > last_triangle_) {
+            at_ = text_ + begin;
+            return false;
+        }
+        skip_line();
+        return true;
+    }
+
+    /// V, V/VT, V//VN or V/VT/VN.
+    std::uint32_t corner(bool& relative) {
+        const char* const word = at_;
+        const auto fail = [&]() -> std::uint32_t {
+            throw TextFault{static_cast<std::size_t>(word - text_),
+                            "the number of a vertex, such as 7, 7/1 or 7//3"};
+        };
+        const bool backwards = *at_ == '-';
+        if (backwards)
+            ++at_;
+        const char* const digits = at_;
+        constexpr std::uint64_t too_large = std::uint64_t{1} << 33;
+        std::uint64_t number = 0;
+        for (; at_ != end_ && is_digit(*at_); ++at_)
+            number = std::min(number * 10 + static_cast<unsigned char>(*at_ - '0'), too_large);
+        if (at_ == digits)
+            return fail();
+        while (at_ != end_ && (*at_ == '/' || *at_ == '-' || is_digit(*at_)))
+            ++at_;
+        if (at_ != end_ && !is_blank(*at_) && *at_ != '\\')
+            return fail();
+        if (!backwards)
+            return number - 1 < FacePiece::no_vertex ? static_cast<std::uint32_t>(number - 1)
+                                                     : FacePiece::no_vertex;
+        // From the vertices so far, in this piece or before it. In a file of more than 2^31 vertices none can
+        // be counted back further than that.
+        relative = true;
+        constexpr std::uint64_t furthest = std::uint64_t{1} << 31;
+        relative_.resize(corners_.size() + 1, false);
+        if (number == 0 || number > furthest)
+            return FacePiece::no_vertex;
+        relative_[corners_.size()] = true;
+        return static_cast<std::uint32_t>(piece_.faces.vertices.size() - number);
+    }
+
+    /// Notes which corners of the face just added count from this piece's first vertex.
+    void note_relative(std::uint64_t first_triangle) {
+        relative_.resize(corners_.size(), false);
+        FacePiece& faces = piece_.faces;
+        for (std::uint64_t t = first_triangle; t < faces.triangles.size(); ++t) {
+            const std::array<std::size_t, 3> places{0, t - first_triangle + 1, t - first_triangle + 2};
+            for (std::size_t k = 0; k < 3; ++k)
+                if (relative_[places[k]])
+                    faces.relative.push_back(3 * t + k);
+        }
+        relative_.clear();
+    }
+
+    void other() {
+        if (begins_with_keyword("o") && piece_.name == FacePiece::nowhere)
+            piece_.name = offset() + 1;
+        if ((begins_with_keyword("surf") || begins_with_keyword("curv")) &&
+            piece_.free_form == FacePiece::nowhere)
+            piece_.free_form = offset();
+    }
+
+    static bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
+
+    /// Skips blanks in the line, also across a backslash at its end.
+    void to_word() {
+        for (;;) {
+            at_ = skip_spaces(at_, end_);
+            if (at_ == end_ || *at_ != '\\' || at_ + 1 == end_ || !is_line_end(at_[1]))
+                return;
+            at_ += at_[1] == '\r' && at_ + 2 != end_ && at_[2] == '\n' ? 3 : 2;
+        }
+    }
+
+    void skip_line() {
+        for (;;) {
+            const char* const from = at_;
+            at_ = skip_to_line_end(at_, end_);
+            if (at_ == from || at_ == end_ || at_[-1] != '\\')
+                return;
+            at_ += *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n' ? 2 : 1;
+        }
+    }
+
+    const char* text_;
+    const char* at_;
+    const char* end_;
+    ObjPiece& piece_;
+    std::uint64_t last_triangle_;
+    std::vector<std::uint32_t> corners_;
+    std::vector<bool> relative_; ///< which of them count from this piece's first vertex
+};
+
+std::string first_line(std::string_view text, std::size_t offset) {
+    constexpr std::size_t longest_name = 1000;
+    const char* const end = text.data() + text.size();
+    const char* const begin = skip_spaces(text.data() + offset, end);
+    std::string_view line(begin, static_cast<std::size_t>(skip_to_line_end(begin, end) - begin));
+    while (!line.empty() && is_blank(line.back()))
+        line.remove_suffix(1);
+    return printable(line, longest_name);
+}
+
+} // namespace
+
+bool looks_like_obj(std::string_view text) {
+    constexpr std::size_t enough = 65'536;
+    text = text.substr(after_byte_order_mark(text), enough);
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (at = skip_blanks(at, end); at != end && *at == '#'; at = skip_blanks(at, end))
+        at = skip_to_line_end(at, end);
+    const std::string_view word = word_at(at, end);
+    constexpr std::array keywords{"v"sv, "vt"sv, "vn"sv, "o"sv, "g"sv, "mtllib"sv, "usemtl"sv};
+    return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
+}
+
+MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
+    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    ReadLimits limits(source.name, options);
+    const std::vector<std::size_t> cuts = cut_at_lines(text, after_byte_order_mark(text));
+    std::vector<ObjPiece> pieces(cuts.size() - 1);
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, text.size());
+    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            pieces[i].begin = cuts[i];
+            pieces[i].end = cuts[i + 1];
+            PieceReader(text, pieces[i]).run();
+            limits.add_triangles(pieces[i].faces.triangles.size());
+            progress.add(cuts[i + 1] - cuts[i]);
+        }
+    });
+
+    Remarks remarks(source.name, options.strict);
+    std::uint64_t thin = 0;
+    std::size_t first_thin = FacePiece::nowhere;
+    std::size_t free_form = FacePiece::nowhere;
+    std::size_t name = FacePiece::nowhere;
+    std::vector<std::uint64_t> ends; // of the pieces, in triangles
+    std::vector<FacePiece> faces;
+    for (ObjPiece& piece : pieces) {
+        if (const auto& fault = piece.faces.fault)
+            throw Error(ErrorKind::input, fmt::format("{}: {}", source.name,
+                                                      found_instead(text, fault->offset, fault->expected)));
+        thin += piece.faces.thin_faces;
+        first_thin = std::min(first_thin, piece.faces.first_thin);
+        free_form = std::min(free_form, piece.free_form);
+        name = std::min(name, piece.name);
+        ends.push_back((ends.empty() ? 0 : ends.back()) + piece.faces.triangles.size());
+        faces.push_back(std::move(piece.faces));
+    }
+    if (thin != 0)
+        remarks.add(fmt::format("line {}: left out {} {} of fewer than three corners (this is the first)",
+                                line_at(text, first_thin), thin, thin == 1 ? "face" : "faces"));
+    if (free_form != FacePiece::nowhere)
+        remarks.add(fmt::format("line {}: left out free-form curves and surfaces; only faces are read",
+                                line_at(text, free_form)));
+    const auto place = [&](std::uint64_t triangle) {
+        const auto piece =
+            static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
+        ObjPiece again{.begin = cuts[piece], .end = cuts[piece + 1]};
+        const std::uint64_t before = piece == 0 ? 0 : ends[piece - 1];
+        return fmt::format("line {}", line_at(text, PieceReader(text, again, triangle - before).run()));
+    };
+    MeshFile file = make_mesh_file(join(faces, limits, executor), source.name, 1, place, remarks, executor);
+    file.format = MeshFormat::obj;
+    if (name != FacePiece::nowhere)
+        file.name = first_line(text, name);
+    file.objects.front().name = file.name;
+    file.warnings = remarks.take();
+    progress.finish();
+    return file;
+}
+
+} // namespace lamella

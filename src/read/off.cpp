@@ -1,0 +1,164 @@
+#include "read/off.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "read/coordinate_text.hpp"
+#include "read/face_rows.hpp"
+#include "read/read_limits.hpp"
+#include "read/remarks.hpp"
+#include "read/text_pieces.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace lamella {
+
+namespace {
+
+/// What the first word says: [ST][C][N][4][n]OFF.
+struct OffKind {
+    bool homogeneous = false;   ///< each vertex has a fourth coordinate
+    bool any_dimension = false; ///< the number of coordinates is given before the counts
+};
+
+std::optional<OffKind> kind_of(std::string_view word) {
+    OffKind kind;
+    const auto take = [&](std::string_view prefix) {
+        const bool taken = word.starts_with(prefix);
+        word.remove_prefix(taken ? prefix.size() : 0);
+        return taken;
+    };
+    take("ST");
+    take("C");
+    take("N");
+    kind.homogeneous = take("4");
+    kind.any_dimension = take("n");
+    if (word != "OFF")
+        return std::nullopt;
+    return kind;
+}
+
+/// Walks over the words before the rows.
+class OffHead {
+  public:
+    explicit OffHead(std::string_view text)
+        : text_(text), at_(text.data() + after_byte_order_mark(text)), end_(text.data() + text.size()) {}
+
+    /// The next word, across lines and comments; empty at the end.
+    std::string_view peek() {
+        for (at_ = skip_blanks(at_, end_); at_ != end_ && *at_ == '#'; at_ = skip_blanks(at_, end_))
+            at_ = skip_to_line_end(at_, end_);
+        return word_at(at_, end_);
+    }
+
+    void skip(std::string_view word) { at_ += word.size(); }
+
+    std::uint64_t count(std::string_view expected) {
+        const std::string_view word = peek();
+        std::uint64_t value = 0;
+        constexpr std::size_t most_digits = 18;
+        if (word.empty() || word.size() > most_digits)
+            throw TextFault{offset(), std::string(expected)};
+        for (const char digit : word) {
+            if (digit < '0' || digit > '9')
+                throw TextFault{offset(), std::string(expected)};
+            value = value * 10 + static_cast<std::uint64_t>(digit - '0');
+        }
+        skip(word);
+        return value;
+    }
+
+    [[nodiscard]] const char* at() const { return at_; }
+    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - text_.data()); }
+
+    /// Whether there is another word in this line.
+    [[nodiscard]] bool line_goes_on() {
+        at_ = skip_spaces(at_, end_);
+        return at_ != end_ && !is_line_end(*at_) && *at_ != '#';
+    }
+
+    void skip_line() { at_ = skip_to_line_end(at_, end_); }
+
+  private:
+    std::string_view text_;
+    const char* at_;
+    const char* end_;
+};
+
+struct OffCounts {
+    OffKind kind;
+    std::uint64_t vertices = 0;
+    std::uint64_t faces = 0;
+    std::size_t end = 0;
+};
+
+OffCounts read_head(std::string_view text) {
+    OffHead head(text);
+    OffCounts counts;
+    const std::string_view first = head.peek();
+    if (const auto kind = kind_of(first)) {
+        counts.kind = *kind;
+        head.skip(first);
+    }
+    if (const std::string_view word = head.peek(); word == "BINARY" || word == "binary")
+        throw TextFault{head.offset(), "a text (binary OFF is not read; save it as ASCII OFF or PLY)"};
+    if (counts.kind.any_dimension) {
+        const std::size_t place = (static_cast<void>(head.peek()), head.offset());
+        if (head.count("the number of coordinates, 3") != 3)
+            throw TextFault{place, "the number of coordinates, 3"};
+    }
+    counts.vertices = head.count("the numbers of vertices, faces and edges");
+    counts.faces = head.count("the number of faces");
+    if (head.line_goes_on()) // the number of edges, which nobody needs and some leave out
+        static_cast<void>(head.count("the number of edges"));
+    head.skip_line();
+    counts.end = head.offset();
+    return counts;
+}
+
+} // namespace
+
+bool is_off(std::string_view text) {
+    return kind_of(OffHead(text).peek()).has_value();
+}
+
+MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
+    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    OffCounts counts;
+    try {
+        counts = read_head(text);
+    } catch (const TextFault& fault) {
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: {}", source.name, found_instead(text, fault.offset, fault.expected)));
+    }
+    Remarks remarks(source.name, options.strict);
+    ReadLimits limits(source.name, options);
+    FaceRows rows;
+    rows.begin = counts.end;
+    rows.rows = counts.vertices + counts.faces;
+    rows.comment = '#';
+    rows.counted_where = "the numbers of vertices and faces";
+    rows.read_row = [&](std::uint64_t row, RowWords& words, FacePiece& piece) {
+        if (row >= counts.vertices) {
+            words.add_face(piece);
+            return;
+        }
+        const double x = words.coordinate();
+        const double y = words.coordinate();
+        const double z = words.coordinate();
+        const double w = counts.kind.homogeneous ? words.coordinate() : 1;
+        if (w == 1)
+            piece.vertices.push_back({x, y, z});
+        else
+            piece.vertices.push_back({x / w + 0.0, y / w + 0.0, z / w + 0.0});
+    };
+    MeshFile file = read_face_rows(source, rows, remarks, limits, execution);
+    file.format = MeshFormat::off;
+    file.warnings = remarks.take();
+    return file;
+}
+
+} // namespace lamella

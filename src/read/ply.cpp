@@ -1,0 +1,132 @@
+#include "read/ply.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "read/coordinate_text.hpp"
+#include "read/face_rows.hpp"
+#include "read/ply_binary.hpp"
+#include "read/ply_header.hpp"
+#include "read/read_limits.hpp"
+#include "read/remarks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+
+namespace lamella {
+
+namespace {
+
+std::size_t find_element(const PlyHeader& header, std::string_view name) {
+    return static_cast<std::size_t>(std::ranges::find(header.elements, name, &PlyElement::name) -
+                                    header.elements.begin());
+}
+
+PlyPlaces find_places(const PlyHeader& header, const std::string& file) {
+    const auto fail = [&](std::string_view what) {
+        throw Error(ErrorKind::input, fmt::format("{}: {}", file, what));
+    };
+    PlyPlaces places;
+    places.vertex = find_element(header, "vertex");
+    if (places.vertex == header.elements.size())
+        fail("the head has no 'element vertex', expected one with the properties x, y and z");
+    const PlyElement& vertex = header.elements[places.vertex];
+    constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = vertex.find(axes[axis]);
+        if (!at || vertex.properties[*at].list_length)
+            fail(fmt::format("the head has no 'property float {}' of the element 'vertex'", axes[axis]));
+        places.coordinates[axis] = *at;
+    }
+    places.face = find_element(header, "face");
+    if (places.face == header.elements.size() || header.elements[places.face].rows == 0)
+        fail(fmt::format("holds no triangle: {} vertices without an element 'face' (a cloud of points has no "
+                         "surface to slice)",
+                         vertex.rows));
+    const PlyElement& face = header.elements[places.face];
+    for (const std::string_view name : {"vertex_indices", "vertex_index"})
+        if (const auto at = face.find(name); at && face.properties[*at].list_length) {
+            places.corners = *at;
+            return places;
+        }
+    fail("the head has no 'property list uchar int vertex_indices' of the element 'face'");
+    return places;
+}
+
+void read_vertex(const PlyElement& element, const PlyPlaces& places, RowWords& words, FacePiece& piece) {
+    std::array<double, 3> p{};
+    const std::size_t last = std::ranges::max(places.coordinates);
+    for (std::size_t i = 0; i <= last; ++i) {
+        const PlyProperty& property = element.properties[i];
+        const auto* const axis = std::ranges::find(places.coordinates, i);
+        if (axis != places.coordinates.end())
+            p[static_cast<std::size_t>(axis - places.coordinates.begin())] = words.coordinate();
+        else if (property.list_length)
+            for (std::int64_t k = words.integer(); k > 0; --k)
+                words.skip_word();
+        else
+            words.skip_word();
+    }
+    piece.vertices.push_back({p[0], p[1], p[2]});
+}
+
+void read_face(const PlyElement& element, const PlyPlaces& places, RowWords& words, FacePiece& piece) {
+    for (std::size_t i = 0; i < places.corners; ++i) {
+        const bool list = element.properties[i].list_length.has_value();
+        for (std::int64_t k = list ? words.integer() : 1; k > 0; --k)
+            words.skip_word();
+    }
+    words.add_face(piece);
+}
+
+MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places,
+                    Remarks& remarks, ReadLimits& limits, const Execution& execution) {
+    // Rows of the elements in turn; each begins where the one before it ends.
+    const auto first_row = [&](std::size_t element) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < element; ++i)
+            sum += std::min(header.elements[i].rows, std::numeric_limits<std::uint64_t>::max() - sum);
+        return sum;
+    };
+    const PlyElement& vertex = header.elements[places.vertex];
+    const PlyElement& face = header.elements[places.face];
+    const std::uint64_t vertex_begin = first_row(places.vertex);
+    const std::uint64_t vertex_end = first_row(places.vertex + 1);
+    const std::uint64_t face_begin = first_row(places.face);
+    const std::uint64_t face_end = first_row(places.face + 1);
+    FaceRows rows;
+    rows.begin = header.end;
+    rows.rows = std::max(vertex_end, face_end);
+    rows.counted_where = "the head";
+    rows.read_row = [&](std::uint64_t row, RowWords& words, FacePiece& piece) {
+        if (row >= vertex_begin && row < vertex_end)
+            read_vertex(vertex, places, words, piece);
+        else if (row >= face_begin && row < face_end)
+            read_face(face, places, words, piece);
+    };
+    return read_face_rows(source, rows, remarks, limits, execution);
+}
+
+} // namespace
+
+bool is_ply(std::string_view text) {
+    return text.starts_with("ply") && text.size() > 3 && is_blank(text[3]);
+}
+
+MeshFile read_ply(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
+    Remarks remarks(source.name, options.strict);
+    ReadLimits limits(source.name, options);
+    const PlyHeader header = read_ply_header(source, remarks);
+    const PlyPlaces places = find_places(header, source.name);
+    MeshFile file = header.form == PlyForm::ascii
+                        ? read_ascii(source, header, places, remarks, limits, execution)
+                        : read_ply_binary(source, header, places, remarks, limits, execution);
+    file.format = MeshFormat::ply;
+    file.warnings = remarks.take();
+    return file;
+}
+
+} // namespace lamella

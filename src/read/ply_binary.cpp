@@ -1,0 +1,459 @@
+#include "read/ply_binary.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "read/face_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+static_assert(std::endian::native == std::endian::little, "little-endian rows are read as they are");
+
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+constexpr std::uint64_t chunk_rows = 16'384;
+
+/// A value at any address, in either order of bytes.
+template <class T, bool swapped>
+T value_at(const std::byte* at) {
+    std::array<std::byte, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), at, sizeof(T));
+    if constexpr (swapped)
+        std::reverse(bytes.begin(), bytes.end());
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof(T));
+    return value;
+}
+
+template <class Result, bool swapped>
+Result number_at(const std::byte* at, PlyType type) {
+    switch (type) {
+    case PlyType::int8:
+        return static_cast<Result>(value_at<std::int8_t, swapped>(at));
+    case PlyType::uint8:
+        return static_cast<Result>(value_at<std::uint8_t, swapped>(at));
+    case PlyType::int16:
+        return static_cast<Result>(value_at<std::int16_t, swapped>(at));
+    case PlyType::uint16:
+        return static_cast<Result>(value_at<std::uint16_t, swapped>(at));
+    case PlyType::int32:
+        return static_cast<Result>(value_at<std::int32_t, swapped>(at));
+    case PlyType::uint32:
+        return static_cast<Result>(value_at<std::uint32_t, swapped>(at));
+    case PlyType::int64:
+        return static_cast<Result>(value_at<std::int64_t, swapped>(at));
+    case PlyType::uint64:
+        return static_cast<Result>(value_at<std::uint64_t, swapped>(at));
+    case PlyType::float32:
+        return static_cast<Result>(value_at<float, swapped>(at));
+    case PlyType::float64:
+        return static_cast<Result>(value_at<double, swapped>(at));
+    }
+    return {};
+}
+
+bool is_real(PlyType type) {
+    return type == PlyType::float32 || type == PlyType::float64;
+}
+
+/// How long a list is, or the number of a vertex. What no list or vertex can have becomes the largest number.
+template <bool swapped>
+std::uint64_t whole_number_at(const std::byte* at, PlyType type) {
+    constexpr std::uint64_t impossible = std::numeric_limits<std::uint64_t>::max();
+    if (type == PlyType::uint64)
+        return value_at<std::uint64_t, swapped>(at);
+    if (is_real(type)) {
+        // Odd, but some write numbers of vertices so; 2^53 and more are not whole numbers any longer.
+        const double value = number_at<double, swapped>(at, type);
+        return value >= 0 && value < 0x1p53 ? static_cast<std::uint64_t>(value) : impossible;
+    }
+    const std::int64_t value = number_at<std::int64_t, swapped>(at, type);
+    return value >= 0 ? static_cast<std::uint64_t>(value) : impossible;
+}
+
+std::uint32_t as_vertex(std::uint64_t number) {
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(number, FacePiece::no_vertex));
+}
+
+/// Some values of fixed size that follow one another, or a list.
+struct Step {
+    std::size_t bytes = 0;
+    std::optional<PlyType> list_length = {};
+    PlyType item = PlyType::uint8;
+};
+
+std::vector<Step> steps_of(const PlyElement& element, std::size_t first, std::size_t last) {
+    std::vector<Step> steps;
+    for (std::size_t i = first; i < last; ++i) {
+        const PlyProperty& property = element.properties[i];
+        if (property.list_length)
+            steps.push_back({0, property.list_length, property.type});
+        else if (!steps.empty() && !steps.back().list_length)
+            steps.back().bytes += ply_bytes(property.type);
+        else
+            steps.push_back({ply_bytes(property.type)});
+    }
+    return steps;
+}
+
+/// Where the values after these begin; null where the file ends before.
+template <bool swapped>
+const std::byte* walk(const std::vector<Step>& steps, const std::byte* at, const std::byte* end) {
+    for (const Step& step : steps) {
+        auto left = static_cast<std::uint64_t>(end - at);
+        std::uint64_t bytes = step.bytes;
+        if (step.list_length) {
+            const std::size_t length_bytes = ply_bytes(*step.list_length);
+            if (left < length_bytes)
+                return nullptr;
+            const std::uint64_t length = whole_number_at<swapped>(at, *step.list_length);
+            at += length_bytes;
+            left -= length_bytes;
+            if (length > left / ply_bytes(step.item))
+                return nullptr;
+            bytes = length * ply_bytes(step.item);
+        }
+        if (bytes > left)
+            return nullptr;
+        at += bytes;
+    }
+    return at;
+}
+
+/// Where a run of faces begins, and how many triangles and polygons there are before it.
+struct FaceRun {
+    const std::byte* at;
+    std::uint64_t row;
+    std::uint64_t triangles;
+    std::uint64_t polygons;
+};
+
+template <bool swapped>
+class BinaryReader {
+  public:
+    BinaryReader(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places, Remarks& remarks,
+                 ReadLimits& limits, const Execution& execution)
+        : source_(source), header_(header), places_(places), remarks_(remarks), limits_(limits),
+          executor_(execution), progress_(execution, Stage::read, source.bytes.size()),
+          begin_(source.bytes.data()), at_(begin_ + header.end), end_(begin_ + source.bytes.size()) {}
+
+    MeshFile run() {
+        const std::size_t last = std::max(places_.vertex, places_.face);
+        for (std::size_t i = 0; i <= last; ++i) {
+            const PlyElement& element = header_.elements[i];
+            if (i == places_.vertex)
+                read_vertices(element);
+            else if (i == places_.face)
+                read_faces(element);
+            else
+                skip(element);
+        }
+        MeshFile file = make_mesh_file(
+            std::move(faces_), source_.name, 0, [this](std::uint64_t triangle) { return place(triangle); },
+            remarks_, executor_);
+        progress_.finish();
+        return file;
+    }
+
+  private:
+    [[noreturn]] void fail_cut_off(const PlyElement& element, std::uint64_t row) const {
+        throw Error(
+            ErrorKind::input,
+            fmt::format(
+                "{}: byte {}: the file ends within row {} of {} of the element '{}' (it is cut off, or "
+                "its head is wrong)",
+                source_.name, source_.bytes.size(), row + 1, element.rows, element.name));
+    }
+
+    [[nodiscard]] std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - at_); }
+
+    /// The rows of an element without lists have equal sizes; the file must have room for all of them.
+    void check_room(const PlyElement& element, std::size_t row_bytes) const {
+        if (row_bytes != 0 && element.rows > left() / row_bytes)
+            fail_cut_off(element, left() / row_bytes);
+    }
+
+    void skip(const PlyElement& element) {
+        if (const auto row_bytes = element.row_bytes()) {
+            check_room(element, *row_bytes);
+            at_ += *row_bytes * (*row_bytes == 0 ? 0 : element.rows);
+            return;
+        }
+        const std::vector<Step> steps = steps_of(element, 0, element.properties.size());
+        for (std::uint64_t row = 0; row < element.rows; ++row)
+            step_over(element, steps, row);
+    }
+
+    void step_over(const PlyElement& element, const std::vector<Step>& steps, std::uint64_t row) {
+        if (row % chunk_rows == 0)
+            executor_.check_cancelled();
+        const std::byte* const next = walk<swapped>(steps, at_, end_);
+        if (next == nullptr)
+            fail_cut_off(element, row);
+        at_ = next;
+    }
+
+    void read_vertices(const PlyElement& element) {
+        constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+        if (element.rows > most)
+            throw Error(ErrorKind::limit, fmt::format("{}: {} vertices are too many, at most {} can be held",
+                                                      source_.name, element.rows, most));
+        const auto row_bytes = element.row_bytes();
+        if (!row_bytes) {
+            read_uneven_vertices(element);
+            return;
+        }
+        check_room(element, *row_bytes);
+        limits_.add_bytes(element.rows * sizeof(Point3));
+        std::array<std::size_t, 3> offsets{};
+        std::array<PlyType, 3> types{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            types[axis] = element.properties[places_.coordinates[axis]].type;
+            for (std::size_t i = 0; i < places_.coordinates[axis]; ++i)
+                offsets[axis] += ply_bytes(element.properties[i].type);
+        }
+        std::vector<Point3>& vertices = faces_.mesh.vertices;
+        resize_in_huge_pages(executor_, vertices, element.rows);
+        const auto fill = [&](auto number) {
+            executor_.for_chunks(element.rows, chunk_rows,
+                                 [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+                                     const std::byte* row = at_ + begin * *row_bytes;
+                                     for (std::uint64_t i = begin; i < end; ++i, row += *row_bytes)
+                                         // Adding zero turns -0 into +0, as everywhere.
+                                         vertices[i] = {number(row + offsets[0], types[0]) + 0.0,
+                                                        number(row + offsets[1], types[1]) + 0.0,
+                                                        number(row + offsets[2], types[2]) + 0.0};
+                                     progress_.add((end - begin) * *row_bytes);
+                                 });
+        };
+        if (types == std::array{PlyType::float32, PlyType::float32, PlyType::float32})
+            fill([](const std::byte* at, PlyType) { return double{value_at<float, swapped>(at)}; });
+        else
+            fill([](const std::byte* at, PlyType type) { return number_at<double, swapped>(at, type); });
+        at_ += element.rows * *row_bytes;
+    }
+
+    /// Rows with lists in them, one after the other.
+    void read_uneven_vertices(const PlyElement& element) {
+        const std::vector<Step> row_steps = steps_of(element, 0, element.properties.size());
+        std::array<std::vector<Step>, 3> steps;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            steps[axis] = steps_of(element, 0, places_.coordinates[axis]);
+        for (std::uint64_t row = 0; row < element.rows; ++row) {
+            const std::byte* const begin = at_;
+            step_over(element, row_steps, row);
+            std::array<double, 3> p{};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                p[axis] = number_at<double, swapped>(walk<swapped>(steps[axis], begin, at_),
+                                                     element.properties[places_.coordinates[axis]].type) +
+                          0.0;
+            limits_.add_bytes(sizeof(Point3));
+            faces_.mesh.vertices.push_back({p[0], p[1], p[2]});
+        }
+    }
+
+    void read_faces(const PlyElement& element) {
+        before_ = steps_of(element, 0, places_.corners);
+        after_ = steps_of(element, places_.corners + 1, element.properties.size());
+        length_type_ = *element.properties[places_.corners].list_length;
+        item_type_ = element.properties[places_.corners].type;
+        if (!plan_even_rows(element))
+            plan_rows(element);
+
+        const FaceRun& sum = runs_.back();
+        constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+        if (sum.triangles > most)
+            throw Error(ErrorKind::limit, fmt::format("{}: {} triangles are too many, at most {} can be held",
+                                                      source_.name, sum.triangles, most));
+        limits_.add_triangles(sum.triangles);
+        limits_.add_bytes(sum.triangles * sizeof(Corners) + sum.polygons * sizeof(Polygon));
+        resize_in_huge_pages(executor_, faces_.mesh.triangles, sum.triangles);
+        faces_.polygons.resize(sum.polygons);
+        executor_.for_chunks(runs_.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = begin; i < end; ++i) {
+                if (even_ && item_type_is_u32() && corners_ == 3)
+                    fill_triangles(runs_[i], runs_[i + 1]);
+                else
+                    fill(runs_[i], runs_[i + 1]);
+                progress_.add(static_cast<std::uint64_t>(runs_[i + 1].at - runs_[i].at));
+            }
+        });
+        at_ = sum.at;
+        if (thin_faces_ != 0)
+            remarks_.add(
+                fmt::format("byte {}: left out {} {} of fewer than three corners (this is the first)",
+                            first_thin_ - begin_, thin_faces_, thin_faces_ == 1 ? "face" : "faces"));
+    }
+
+    [[nodiscard]] bool item_type_is_u32() const {
+        return item_type_ == PlyType::int32 || item_type_ == PlyType::uint32;
+    }
+
+    /// Most files have triangles only, so all rows are of one size; whether they are can be seen in all rows
+    /// at the same time: where every length is that of the first row, each row begins where it was looked
+    /// for.
+    bool plan_even_rows(const PlyElement& element) {
+        const auto fixed = [](const std::vector<Step>& steps) {
+            return std::ranges::none_of(steps, [](const Step& step) { return step.list_length.has_value(); });
+        };
+        if (!fixed(before_) || !fixed(after_))
+            return false;
+        const std::size_t head = before_.empty() ? 0 : before_[0].bytes;
+        const std::size_t tail = after_.empty() ? 0 : after_[0].bytes;
+        const std::size_t length_bytes = ply_bytes(length_type_);
+        if (left() < head + length_bytes)
+            return false;
+        corners_ = whole_number_at<swapped>(at_ + head, length_type_);
+        constexpr std::uint64_t many = 1'000;
+        if (corners_ < 3 || corners_ > many)
+            return false;
+        const std::uint64_t row_bytes = head + length_bytes + corners_ * ply_bytes(item_type_) + tail;
+        if (element.rows > left() / row_bytes)
+            return false;
+        std::atomic<bool> even{true};
+        executor_.for_chunks(element.rows, chunk_rows, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            const std::byte* at = at_ + begin * row_bytes + head;
+            for (std::uint64_t i = begin; i < end && even.load(std::memory_order_relaxed);
+                 ++i, at += row_bytes)
+                if (whole_number_at<swapped>(at, length_type_) != corners_)
+                    even = false;
+        });
+        if (!even)
+            return false;
+        even_ = true;
+        row_bytes_ = row_bytes;
+        index_offset_ = head + length_bytes;
+        for (std::uint64_t row = 0;; row = std::min(row + chunk_rows, element.rows)) {
+            runs_.push_back(
+                {at_ + row * row_bytes, row, row * (corners_ - 2), corners_ > 3 ? row : std::uint64_t{0}});
+            if (row == element.rows)
+                return true;
+        }
+    }
+
+    /// Goes from row to row.
+    void plan_rows(const PlyElement& element) {
+        const std::byte* at = at_;
+        std::uint64_t triangles = 0;
+        std::uint64_t polygons = 0;
+        for (std::uint64_t row = 0; row < element.rows; ++row) {
+            if (row % chunk_rows == 0) {
+                executor_.check_cancelled();
+                runs_.push_back({at, row, triangles, polygons});
+            }
+            const std::byte* const row_begin = at;
+            at = walk<swapped>(before_, at, end_);
+            const std::byte* const list = at;
+            if (at != nullptr)
+                at = walk<swapped>({{0, length_type_, item_type_}}, at, end_);
+            if (at != nullptr)
+                at = walk<swapped>(after_, at, end_);
+            if (at == nullptr)
+                fail_cut_off(element, row);
+            const std::uint64_t corners = whole_number_at<swapped>(list, length_type_);
+            if (corners < 3) {
+                first_thin_ = thin_faces_++ == 0 ? row_begin : first_thin_;
+                continue;
+            }
+            triangles += corners - 2;
+            polygons += corners > 3 ? 1 : 0;
+        }
+        runs_.push_back({at, element.rows, triangles, polygons});
+    }
+
+    /// Even rows of triangles whose corners are 32-bit numbers: twelve bytes from each row. Negative numbers
+    /// become large ones, which name no vertex.
+    void fill_triangles(const FaceRun& run, const FaceRun& next) {
+        const std::byte* at = run.at + index_offset_;
+        Corners* out = faces_.mesh.triangles.data() + run.triangles;
+        for (std::uint64_t row = run.row; row < next.row; ++row, at += row_bytes_)
+            *out++ = {value_at<std::uint32_t, swapped>(at), value_at<std::uint32_t, swapped>(at + 4),
+                      value_at<std::uint32_t, swapped>(at + 8)};
+    }
+
+    void fill(const FaceRun& run, const FaceRun& next) {
+        const std::byte* at = run.at;
+        Corners* out = faces_.mesh.triangles.data() + run.triangles;
+        Polygon* polygon = faces_.polygons.data() + run.polygons;
+        const std::size_t item_bytes = ply_bytes(item_type_);
+        for (std::uint64_t row = run.row; row < next.row; ++row) {
+            at = walk<swapped>(before_, at, end_);
+            const std::uint64_t corners = whole_number_at<swapped>(at, length_type_);
+            at += ply_bytes(length_type_);
+            const auto corner = [&](std::uint64_t k) {
+                return as_vertex(whole_number_at<swapped>(at + k * item_bytes, item_type_));
+            };
+            if (corners > 3)
+                *polygon++ = {static_cast<std::uint64_t>(out - faces_.mesh.triangles.data()),
+                              static_cast<std::uint32_t>(corners - 2)};
+            for (std::uint64_t k = 2; k < corners; ++k)
+                *out++ = {corner(0), corner(k - 1), corner(k)};
+            at = walk<swapped>(after_, at + corners * item_bytes, end_);
+        }
+    }
+
+    [[nodiscard]] std::string place(std::uint64_t triangle) const {
+        auto run = std::ranges::upper_bound(runs_, triangle, {}, &FaceRun::triangles);
+        --run;
+        const std::byte* at = run->at;
+        std::uint64_t before = run->triangles;
+        for (std::uint64_t row = run->row;; ++row) {
+            const std::byte* const list = walk<swapped>(before_, at, end_);
+            const std::uint64_t corners = whole_number_at<swapped>(list, length_type_);
+            before += corners < 3 ? 0 : corners - 2;
+            if (before > triangle)
+                return fmt::format("byte {}", at - begin_);
+            at = walk<swapped>(after_, walk<swapped>({{0, length_type_, item_type_}}, list, end_), end_);
+        }
+    }
+
+    const ByteSource& source_;
+    const PlyHeader& header_;
+    const PlyPlaces& places_;
+    Remarks& remarks_;
+    ReadLimits& limits_;
+    Executor executor_;
+    ProgressMeter progress_;
+    const std::byte* begin_;
+    const std::byte* at_;
+    const std::byte* end_;
+
+    FaceMesh faces_;
+    std::vector<Step> before_; ///< the list of corners, in a row of a face
+    std::vector<Step> after_;
+    PlyType length_type_ = PlyType::uint8;
+    PlyType item_type_ = PlyType::int32;
+    std::vector<FaceRun> runs_; ///< and the end of the last one
+    bool even_ = false;         ///< all rows have this form:
+    std::uint64_t corners_ = 0;
+    std::uint64_t row_bytes_ = 0;
+    std::size_t index_offset_ = 0;
+    std::uint64_t thin_faces_ = 0;
+    const std::byte* first_thin_ = nullptr;
+};
+
+} // namespace
+
+MeshFile read_ply_binary(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places,
+                         Remarks& remarks, ReadLimits& limits, const Execution& execution) {
+    if (header.form == PlyForm::big_endian)
+        return BinaryReader<true>(source, header, places, remarks, limits, execution).run();
+    return BinaryReader<false>(source, header, places, remarks, limits, execution).run();
+}
+
+} // namespace lamella

@@ -1,0 +1,29 @@
+#pragma once
+
+// The rows of a binary PLY file.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/read/mesh_file.hpp"
+
+#include "container/byte_source.hpp"
+#include "read/ply_header.hpp"
+#include "read/read_limits.hpp"
+#include "read/remarks.hpp"
+
+#include <array>
+
+namespace lamella {
+
+/// What of the rows is wanted: indices of elements and of their properties.
+struct PlyPlaces {
+    std::size_t vertex = 0;
+    std::array<std::size_t, 3> coordinates{};
+    std::size_t face = 0;
+    std::size_t corners = 0;
+};
+
+[[nodiscard]] MeshFile read_ply_binary(const ByteSource& source, const PlyHeader& header,
+                                       const PlyPlaces& places, Remarks& remarks, ReadLimits& limits,
+                                       const Execution& execution);
+
+} // namespace lamella

@@ -1,0 +1,153 @@
+#include "read/mesh_text.hpp"
+
+#include <fmt/format.h>
+
+namespace lamella::mesh_test {
+namespace {
+
+const std::string name = "part.obj";
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1.5 -2e-1\nf 1 2 3\n";
+const std::vector<Point3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.2}};
+
+TEST(Obj, ReadsVerticesAndFaces) {
+    expect_mesh(triangle, name, corners, {{0, 1, 2}});
+    EXPECT_EQ(read(triangle, name).format, MeshFormat::obj);
+}
+
+TEST(Obj, KeepsSharingAsTheFileHasIt) {
+    // Equal corners are two vertices where the file says so.
+    expect_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nf 1 2 3\nf 4 3 2\n", name,
+                {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}, {{0, 1, 2}, {3, 2, 1}});
+}
+
+TEST(Obj, SkipsWhatIsNoVertexAndNoFace) {
+    expect_mesh(
+        "\xEF\xBB\xBF# a comment that ends in a \\\nmtllib a.mtl\ng one two\nv 0 0 0 1\nvt 0 0\nvn 0 0 1\n"
+        "v 1 0 0 0.5 0.5 0.5\ns off\nusemtl red\n  v 0 1.5 -.2\nl 1 2\np 1\n\nf 1/1 2//1 3/1/1 # done",
+        name, corners, {{0, 1, 2}});
+}
+
+TEST(Obj, TakesAnyLineEndsAndLinesThatGoOn) {
+    for (const std::string end : {"\r\n", "\r", "\n\n \n"})
+        expect_mesh("v 0 0 0" + end + "v 1 0 0" + end + "v 0 1.5 -0.2" + end + "f 1 2 3" + end, name, corners,
+                    {{0, 1, 2}});
+    for (const std::string end : {"\r\n", "\r", "\n"})
+        expect_mesh("v 0 \\" + end + "0 0" + end + "v 1 0 0" + end + "v 0 1.5 -0.2" + end + "f 1 \\" + end +
+                        " 2\\" + end + " 3",
+                    name, corners, {{0, 1, 2}});
+}
+
+TEST(Obj, CountsBackFromTheLastVertex) {
+    expect_mesh("v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\nf -3 -2 -1\nv 5 5 5\nf 1 -3 4\n", name,
+                {{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.2}, {5, 5, 5}}, {{0, 1, 2}, {0, 1, 3}});
+}
+
+TEST(Obj, CutsConcaveFacesAtTheirNotch) {
+    const MeshFile file = read("v 0 0 0\nv 2 -3 0\nv 1 0 0\nv 2 3 0\nf 1 2 3 4\n", name);
+    for (const Corners& t : mesh_of(file).triangles)
+        EXPECT_TRUE((t[0] == 0 || t[1] == 0 || t[2] == 0) && (t[0] == 2 || t[1] == 2 || t[2] == 2));
+    EXPECT_EQ(file.stored_triangles, 2U);
+}
+
+TEST(Obj, LeavesOutVerticesThatNoFaceUses) {
+    expect_mesh("v 1e30 0 0\n" + std::string("v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\nf 2 3 4\nv -7 0 0\n"), name,
+                corners, {{0, 1, 2}});
+}
+
+TEST(Obj, TellsTheNameOfTheFirstObject) {
+    EXPECT_EQ(read("o  a long name \no other\n" + triangle, name).name, "a long name");
+}
+
+TEST(Obj, NamesLineAndWordOfAnError) {
+    const auto expect = [](const std::string& text, const std::string& error) {
+        EXPECT_EQ(error_of(text, name), name + ": " + error);
+    };
+    expect("v 0 0\nf 1 2 3\n", "line 1: found the end of the line, expected the x, y and z of a vertex");
+    expect("v 0 0 0\nv 0 1,5 0\n",
+           "line 2: found '1,5', expected a number with a decimal point and no comma");
+    expect("v 0 0 3.1+e2\n", "line 1: found '3.1+e2', expected a number");
+    expect(triangle + "f 1 2 x\n",
+           "line 5: found 'x', expected the number of a vertex, such as 7, 7/1 or 7//3");
+    expect(triangle + "f 1 2 3.5\n",
+           "line 5: found '3.5', expected the number of a vertex, such as 7, 7/1 or 7//3");
+    for (const char* const face :
+         {"f 1 2 4", "f 0 1 2", "f 1 2 -4", "f 1 2 99999999999999999999", "f 1 2 -0"})
+        expect(triangle + "\n" + face + "\n",
+               "line 6: a face names a vertex that is not there; expected numbers from 1 to 3");
+    expect("v 1 2 3\nvn 0 0 1\n",
+           "holds no triangle: 1 vertices without a face (a cloud of points has no surface to slice)");
+    expect("f 1 2 3\n", "line 1: a face names a vertex that is not there; the file has no vertex");
+}
+
+TEST(Obj, LeavesOutFacesOfTwoCornersWithAWarning) {
+    expect_warning(triangle + "f 1 2\nf 3\n", name, 1,
+                   "line 5: left out 2 faces of fewer than three corners (this is the first)");
+}
+
+TEST(Obj, LeavesOutTrianglesThatAreNotFinite) {
+    expect_warning(
+        triangle + "v nan 0 0\nf 1 2 4\nf 1 2 3\n", name, 2,
+        "line 6: left out 1 of 3 triangles, which have a corner that is NaN or infinite (this is the first)");
+    expect_warning(
+        triangle + "v 1e400 0 0\nf 1 2 3 4\n", name, 2,
+        "line 6: left out 1 of 3 triangles, which have a corner that is NaN or infinite (this is the first)");
+    EXPECT_EQ(error_of("v nan 0 0\nf 1 1 1\n", name),
+              name +
+                  ": line 2: holds no usable triangle: each of the 1 has a corner that is NaN or infinite");
+}
+
+TEST(Obj, WarnsOfFreeFormSurfaces) {
+    expect_warning(triangle + "surf 0 1 0 1 1 2 3\n", name, 1,
+                   "line 5: left out free-form curves and surfaces; only faces are read");
+}
+
+TEST(Obj, StopsAtTheLimits) {
+    const std::string more = triangle + "f 1 2 3\nf 1 2 3\n";
+    EXPECT_EQ(read(more, name, {.max_triangles = 3, .max_memory = 1000}).stored_triangles, 3U);
+    EXPECT_EQ(error_of(more, name, {.max_triangles = 2}, ErrorKind::limit),
+              name + ": holds more than the 2 triangles of --max-triangles");
+    EXPECT_EQ(error_of(more, name, {.max_memory = 100}, ErrorKind::limit),
+              name + ": takes more than the 100 bytes of --max-memory");
+}
+
+/// Some megabytes: quadrilaterals, triangles, and both ways to count.
+std::string large() {
+    std::string text;
+    for (int i = 0; i < 60'000; ++i) {
+        text += fmt::format("v {} 0.5 {}\nv {} 1.25 {}\nv {} 2 {}\nv {} 2 {}\n", i, i, i, i + 1, i + 1, i + 1,
+                            i + 1, i);
+        text += i % 2 == 0 ? fmt::format("f {} {} {} {}\n", 4 * i + 1, 4 * i + 2, 4 * i + 3, 4 * i + 4)
+                           : std::string("f -4 -3 -2\nf -240000 1 2\n").substr(0, i < 59'999 ? 11 : 99);
+    }
+    return text;
+}
+
+TEST(Obj, IsTheSameForAnyThreads) {
+    const std::string text = large();
+    ASSERT_GT(text.size(), std::size_t{4} << 20);
+    expect_same_for_any_threads(text, name);
+    const MeshFile file = read(text, name, {}, 2);
+    EXPECT_EQ(file.stored_triangles, 90'001U);
+    EXPECT_EQ(mesh_of(file).triangles.back(), (Corners{0, 0, 1}));
+    // An error in the middle is found at its line.
+    std::string broken = text;
+    const std::size_t middle = broken.find("\nf -4 -3 -2\n", broken.size() / 2) + 1;
+    broken.replace(middle, 10, "f 1 999999");
+    broken.insert(middle + 10, " 2");
+    const auto line =
+        std::count(broken.begin(), broken.begin() + static_cast<std::ptrdiff_t>(middle), '\n') + 1;
+    EXPECT_EQ(
+        error_of(broken, name),
+        fmt::format("{}: line {}: a face names a vertex that is not there; expected numbers from 1 to 240000",
+                    name, line));
+}
+
+TEST(Obj, SurvivesHostility) {
+    survive_hostility(
+        {triangle, "v 0 0 0\nv 2 -3 0\nv 1 0 0\nv 2 3 0\nf 1/1 2/1/1 3//1 4\nf -1 -2 -3 \\\n -4\n",
+         "o x\r\nv 0 0 0\r\nv 1 1 1\r\nv 2 0 1\r\nf 1 2 3\r\n"},
+        name, {"f", "v", "-1", "/", "\\\n", "1e400", "nan", "0", "99999999999", "\r", "\n", "#", "surf"});
+}
+
+} // namespace
+} // namespace lamella::mesh_test

@@ -1,0 +1,266 @@
+#include "read/mesh_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace lamella::mesh_test {
+namespace {
+
+const std::string name = "part.ply";
+const std::vector<Point3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.25}};
+
+std::string head(const std::string& form, std::uint64_t vertices = 3, std::uint64_t faces = 1) {
+    return fmt::format("ply\nformat {} 1.0\ncomment made by a test\nelement vertex {}\nproperty float x\n"
+                       "property float y\nproperty float z\nelement face {}\n"
+                       "property list uchar int vertex_indices\nend_header\n",
+                       form, vertices, faces);
+}
+
+const std::string rows = "0 0 0\n1 0 0\n0 1.5 -0.25\n3 0 1 2\n";
+
+/// Appends values in little or big-endian order.
+class Bytes {
+  public:
+    explicit Bytes(bool big_endian) : big_endian_(big_endian) {}
+
+    template <class T>
+    Bytes& add(T value) {
+        std::string bytes(sizeof value, '\0');
+        std::memcpy(bytes.data(), &value, sizeof value);
+        if (big_endian_)
+            std::reverse(bytes.begin(), bytes.end());
+        text += bytes;
+        return *this;
+    }
+    template <class T, class... Values>
+    Bytes& all(Values... values) {
+        (add(static_cast<T>(values)), ...);
+        return *this;
+    }
+
+    std::string text;
+
+  private:
+    bool big_endian_;
+};
+
+std::string binary_rows(bool big_endian) {
+    Bytes bytes(big_endian);
+    bytes.all<float>(0, 0, 0, 1, 0, 0, 0, 1.5, -0.25).add(std::uint8_t{3}).all<std::int32_t>(0, 1, 2);
+    return bytes.text;
+}
+
+const std::string little = "binary_little_endian";
+const std::string big = "binary_big_endian";
+
+TEST(Ply, ReadsAllThreeForms) {
+    expect_mesh(head("ascii") + rows, name, corners, {{0, 1, 2}});
+    expect_mesh(head(little) + binary_rows(false), name, corners, {{0, 1, 2}});
+    expect_mesh(head(big) + binary_rows(true), name, corners, {{0, 1, 2}});
+    // By its first line, whatever the name.
+    EXPECT_EQ(read(head(little) + binary_rows(false), "part.stl").format, MeshFormat::ply);
+}
+
+TEST(Ply, FindsTheRowsBehindAnyLineEnds) {
+    for (const std::string end : {"\r\n", "\r", "\n"}) {
+        std::string text = head(little);
+        for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += end.size())
+            text.replace(at, 1, end);
+        expect_mesh(text + binary_rows(false), name, corners, {{0, 1, 2}});
+    }
+    // Only the last line ends with both.
+    std::string text = head(little);
+    text.insert(text.size() - 1, "\r");
+    expect_mesh(text + binary_rows(false), name, corners, {{0, 1, 2}});
+    // The first byte of the rows looks like the end of a line.
+    Bytes odd(false);
+    odd.add(std::uint32_t{0x3f80000a}).all<float>(0, 0, 1, 0, 0, 0, 1, 0).add(std::uint8_t{3});
+    odd.all<std::int32_t>(0, 1, 2);
+    EXPECT_EQ(mesh_of(read(head(little) + odd.text, name)).vertices[0].x,
+              double{std::bit_cast<float>(0x3f80000aU)});
+}
+
+TEST(Ply, TakesAnyTypesPlacesAndOtherElements) {
+    const std::string text =
+        "ply\nformat {} 1.0\nelement camera 2\nproperty list ushort short places\nproperty char k\n"
+        "element vertex 4\nproperty uchar red\nproperty double z\nproperty int16 y\n"
+        "property list uint8 float odd\nproperty uint x\n"
+        "element face 3\nproperty float quality\nproperty list int float texcoord\n"
+        "property list uint uint16 vertex_index\nproperty list uchar uchar more\nproperty short last\n"
+        "element edge 1\nproperty int a\nend_header\n";
+    const std::vector<Point3> vertices{{0, 0, 0.5}, {10, 0, 0.5}, {10, 10, 0.5}, {0, 10, 0.5}};
+    const std::vector<Corners> triangles{{0, 1, 2}, {0, 1, 2}, {0, 2, 3}, {3, 2, 1}};
+    for (const bool swapped : {false, true}) {
+        Bytes bytes(swapped);
+        bytes.add(std::uint16_t{2}).all<std::int16_t>(7, 8).add(std::int8_t{1});
+        bytes.add(std::uint16_t{0}).add(std::int8_t{1});
+        for (const Point3& p : vertices)
+            bytes.add(std::uint8_t{255})
+                .add(p.z)
+                .add(static_cast<std::int16_t>(p.y))
+                .add(std::uint8_t{1})
+                .add(1.0F)
+                .add(static_cast<std::uint32_t>(p.x));
+        const std::vector<std::vector<int>> faces{{0, 1, 2}, {0, 1, 2, 3}, {3, 2, 1}};
+        for (const auto& face : faces) {
+            bytes.add(0.5F)
+                .add(std::int32_t{2})
+                .all<float>(0, 1)
+                .add(static_cast<std::uint32_t>(face.size()));
+            for (const int v : face)
+                bytes.add(static_cast<std::uint16_t>(v));
+            bytes.add(std::uint8_t{1}).add(std::uint8_t{9}).add(std::int16_t{-1});
+        }
+        bytes.add(std::int32_t{0});
+        expect_mesh(fmt::format(fmt::runtime(text), swapped ? big : little) + bytes.text, name, vertices,
+                    triangles);
+    }
+    expect_mesh(fmt::format(fmt::runtime(text), "ascii") +
+                    "2 7 8 1\n0 1\n255 0.5 0 1 1 0\n255 0.5 0 1 1 10\n255 5e-1 10 1 1 10\n255 0.5 10 1 1 0\n"
+                    "0.5 2 0 1 3 0 1 2 1 9 -1\n0.5 2 0 1 4 0 1 2 3 1 9 -1\n0.5 2 0 1 3 3 2 1 1 9 -1\n0\n",
+                name, vertices, triangles);
+}
+
+TEST(Ply, TakesFacesBeforeVertices) {
+    expect_mesh(
+        "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_index\nelement vertex 3\n"
+        "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1.5 "
+        "-0.25\n",
+        name, corners, {{0, 1, 2}});
+}
+
+/// A strip of alternating faces, in binary rows that are even or not.
+std::string strip(int faces, bool even, bool swapped) {
+    Bytes bytes(swapped);
+    for (int i = 0; i < faces + 2; ++i)
+        bytes.all<float>(i / 2, i % 2, 0.25 * (i % 5));
+    for (int i = 0; i < faces; ++i) {
+        const bool quad = !even && i % 3 == 1;
+        bytes.add(static_cast<std::uint8_t>(quad ? 4 : 3)).all<std::int32_t>(i, i + 1, i + 2);
+        if (quad)
+            bytes.add(std::int32_t{0});
+    }
+    return head(swapped ? big : little, static_cast<std::uint64_t>(faces) + 2,
+                static_cast<std::uint64_t>(faces)) +
+           bytes.text;
+}
+
+TEST(Ply, IsTheSameForAnyThreads) {
+    for (const bool even : {false, true})
+        for (const bool swapped : {false, true}) {
+            expect_same_for_any_threads(strip(200'000, even, swapped), name);
+            EXPECT_EQ(read(strip(200'000, even, swapped), name).stored_triangles, even ? 200'000U : 266'667U);
+        }
+    EXPECT_TRUE(mesh_of(read(strip(50'000, false, true), name)).triangles ==
+                mesh_of(read(strip(50'000, false, false), name)).triangles);
+}
+
+TEST(Ply, NamesPlaceOfAnErrorInTheHead) {
+    const auto expect = [](std::string text, const std::string& from, const std::string& to,
+                           const std::string& error) {
+        text.replace(text.find(from), from.size(), to);
+        EXPECT_EQ(error_of(text, name), name + ": " + error);
+    };
+    const std::string whole = head("ascii") + rows;
+    expect(whole, "format ascii 1.0", "format ascii 2.0",
+           "line 2: found 'format ascii 2.0' in the head of a PLY file, expected 'ascii', "
+           "'binary_little_endian' or "
+           "'binary_big_endian', and version 1.0");
+    expect(whole, "element vertex 3", "element vertex -3",
+           "line 4: found 'element vertex -3' in the head of a PLY file, expected the name of an element and "
+           "how many "
+           "there are");
+    expect(whole, "property float x", "property half x",
+           "line 5: found 'property half x' in the head of a PLY file, expected a type such as float, uchar "
+           "or int32");
+    expect(whole, "property float x", "property float u",
+           "the head has no 'property float x' of the element 'vertex'");
+    expect(whole, "element vertex", "element point",
+           "the head has no 'element vertex', expected one with the properties x, y and z");
+    expect(whole, "vertex_indices", "somewhat",
+           "the head has no 'property list uchar int vertex_indices' of the element 'face'");
+    expect(whole, "element face 1", "element face 0",
+           "holds no triangle: 3 vertices without an element 'face' (a cloud of points has no surface to "
+           "slice)");
+    EXPECT_NE(error_of("ply\nformat ascii 1.0\nelement vertex 3\n", name).find("expected 'end_header'"),
+              std::string::npos);
+    EXPECT_EQ(error_of("plx\n", name),
+              name + ": line 1: found 'plx' in the head of a PLY file, expected the line 'ply'");
+    expect_warning("ply\nformat ascii 1.0\nmade by nobody\n" + head("ascii").substr(21) + rows, name, 1,
+                   "line 3: took 'made by nobody' in the head for a comment");
+}
+
+TEST(Ply, NamesPlaceOfAnErrorInTheRows) {
+    const auto expect = [](const std::string& text, const std::string& error) {
+        EXPECT_EQ(error_of(text, name), name + ": " + error);
+    };
+    expect(head("ascii") + "0 0\n", "line 11: found the end of the line, expected a number");
+    expect(head("ascii") + "0 0 0\n1 0 0\n0 1 x\n3 0 1 2\n", "line 13: found 'x', expected a number");
+    expect(head("ascii") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+           "line 14: a face names a vertex that is not there; expected numbers from 0 to 2");
+    expect(head("ascii") + "0 0 0\n1 0 0\n", "line 13: the file ends after 2 rows, expected 4 by the head "
+                                             "(it is cut off, or the numbers there are wrong)");
+    const std::string binary = head(little) + binary_rows(false);
+    expect(
+        binary.substr(0, binary.size() - 1),
+        fmt::format(
+            "byte {}: the file ends within row 1 of 1 of the element 'face' (it is cut off, or its head is "
+            "wrong)",
+            binary.size() - 1));
+    expect(head(little, 4'000'000'000, 1) + binary_rows(false),
+           fmt::format("byte {}: the file ends within row 5 of 4000000000 of the element 'vertex' (it is cut "
+                       "off, or its "
+                       "head is wrong)",
+                       head(little, 4'000'000'000, 1).size() + 49));
+    for (const int corner : {3, -1}) {
+        std::string broken = binary;
+        std::memcpy(broken.data() + broken.size() - 4, &corner, 4);
+        expect(broken,
+               fmt::format("byte {}: a face names a vertex that is not there; expected numbers from 0 to 2",
+                           binary.size() - 13));
+    }
+}
+
+TEST(Ply, LeavesOutWhatIsNoTriangle) {
+    expect_warning(head("ascii", 3, 2) + "0 0 0\n1 0 0\n0 1.5 -0.25\n2 0 1\n3 0 1 2\n", name, 1,
+                   "line 14: left out 1 face of fewer than three corners (this is the first)");
+    Bytes bytes(false);
+    bytes.all<float>(0, 0, 0, 1, 0, 0, 0, 1.5, -0.25).add(std::uint8_t{1}).all<std::int32_t>(0);
+    bytes.add(std::uint8_t{3}).all<std::int32_t>(0, 1, 2);
+    expect_warning(head(little, 3, 2) + bytes.text, name, 1,
+                   fmt::format("byte {}: left out 1 face of fewer than three corners (this is the first)",
+                               head(little, 3, 2).size() + 36));
+    Bytes odd(false);
+    odd.all<float>(0, 0, 0, 1, 0, 0, 0, 1.5, -0.25, std::numeric_limits<float>::infinity(), 0, 0);
+    odd.add(std::uint8_t{3}).all<std::int32_t>(0, 1, 2).add(std::uint8_t{3}).all<std::int32_t>(0, 3, 2);
+    expect_warning(
+        head(little, 4, 2) + odd.text, name, 1,
+        fmt::format(
+            "byte {}: left out 1 of 2 triangles, which have a corner that is NaN or infinite (this is "
+            "the first)",
+            head(little, 4, 2).size() + 48 + 13));
+}
+
+TEST(Ply, StopsAtTheLimits) {
+    const std::string text = strip(1000, true, false);
+    EXPECT_EQ(read(text, name, {.max_triangles = 1000, .max_memory = 100'000}).stored_triangles, 1000U);
+    EXPECT_EQ(error_of(text, name, {.max_triangles = 999}, ErrorKind::limit),
+              name + ": holds more than the 999 triangles of --max-triangles");
+    EXPECT_EQ(error_of(text, name, {.max_memory = 30'000}, ErrorKind::limit),
+              name + ": takes more than the 30000 bytes of --max-memory");
+}
+
+TEST(Ply, SurvivesHostility) {
+    survive_hostility({head("ascii") + rows, head(little) + binary_rows(false), head(big) + binary_rows(true),
+                       strip(7, false, false)},
+                      name,
+                      {"property list uchar int x\n", "property double q\n", "element vertex 9\n",
+                       "\xff\xff\xff\xff", std::string(4, '\0'), "end_header\n", "3 0 1 2\n", "nan", "-1",
+                       "99999999999"});
+}
+
+} // namespace
+} // namespace lamella::mesh_test
