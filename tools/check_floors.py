@@ -36,6 +36,7 @@ ROOMS = {
 # text formatting in all of them.
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
+    "libdeflate.h": "src/container/inflate.cpp",
     "xxhash.h": "src/contour/normal_form.cpp",
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }

@@ -24,13 +24,6 @@ struct Deflater::State {
     z_stream stream{};
 };
 
-std::uint32_t crc32_of(std::string_view bytes) noexcept {
-    uLong crc = 0;
-    for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), most_at_once)))
-        crc = crc32(crc, input(bytes), static_cast<uInt>(std::min(bytes.size(), most_at_once)));
-    return static_cast<std::uint32_t>(crc);
-}
-
 std::uint32_t crc32_joined(std::uint32_t first, std::uint32_t second, std::uint64_t second_size) noexcept {
     return static_cast<std::uint32_t>(crc32_combine(first, second, static_cast<z_off_t>(second_size)));
 }

@@ -9,10 +9,7 @@
 
 namespace lamella {
 
-/// CRC-32 as zip and PNG files have it. O(n).
-[[nodiscard]] std::uint32_t crc32_of(std::string_view bytes) noexcept;
-
-/// The CRC-32 of a text and a second one of `second_size` bytes after it, from those of the two.
+/// The CRC-32 (`crc32_of`) of a text and a second one of `second_size` bytes after it, from those of the two.
 /// O(log second_size).
 [[nodiscard]] std::uint32_t crc32_joined(std::uint32_t first, std::uint32_t second,
                                          std::uint64_t second_size) noexcept;

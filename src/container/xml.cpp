@@ -2,106 +2,273 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/text_place.hpp"
+
 #include <expat.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <optional>
 
 namespace lamella {
 
 namespace {
 
 constexpr int deepest = 256;
+constexpr std::size_t most_attributes = 1000;
+// A token that is not whole is gone through again with each piece that is parsed.
+constexpr std::size_t piece = std::size_t{4} << 20;
+constexpr std::size_t longest_token = std::size_t{64} << 20;
+constexpr char namespace_end = '\n'; // Expat puts it between namespace and name; no URI has one
+
+XmlName split(std::string_view written) noexcept {
+    const std::size_t at = written.rfind(namespace_end);
+    return at == std::string_view::npos ? XmlName{{}, written}
+                                        : XmlName{written.substr(0, at), written.substr(at + 1)};
+}
 
 /// The state of one parse. Exceptions must not pass through the C library: they are kept and thrown behind
 /// it.
-struct Parse {
-    const XmlHandlers& handlers;
-    const std::string& name;
-    XML_Parser parser = nullptr;
-    int depth = 0;
-    std::exception_ptr error = nullptr;
+class Parse {
+  public:
+    Parse(std::string_view bytes, const std::string& name, const XmlHandlers& handlers, const XmlRules& rules)
+        : bytes_(bytes), name_(name), handlers_(handlers), rules_(rules),
+          parser_(rules.namespaces ? XML_ParserCreateNS(nullptr, namespace_end) : XML_ParserCreate(nullptr),
+                  &XML_ParserFree) {
+        if (!parser_)
+            throw std::bad_alloc();
+        XML_SetUserData(parser_.get(), this);
+        XML_SetElementHandler(parser_.get(), on_start, on_end);
+        XML_SetStartDoctypeDeclHandler(parser_.get(), on_doctype);
+        if (handlers.text)
+            XML_SetCharacterDataHandler(parser_.get(), on_text);
+        if (handlers.declare)
+            XML_SetStartNamespaceDeclHandler(parser_.get(), on_namespace);
+        if (rules.utf8_only)
+            XML_SetXmlDeclHandler(parser_.get(), on_declaration);
+    }
 
+    void run() {
+        if (rules_.utf8_only && (bytes_.starts_with("\xff\xfe") || bytes_.starts_with("\xfe\xff")))
+            fail("found UTF-16, expected UTF-8");
+        if (handlers_.skim)
+            skim_through();
+        feed(bytes_.size(), true);
+    }
+
+  private:
     template <class Call>
     void guarded(const Call& call) {
-        if (error)
+        if (error_)
             return;
         try {
             call();
         } catch (...) {
-            error = std::current_exception();
-            XML_StopParser(parser, XML_FALSE);
+            error_ = std::current_exception();
+            XML_StopParser(parser_.get(), XML_FALSE);
         }
     }
 
     [[noreturn]] void fail(const std::string& found) const {
-        throw Error(ErrorKind::input,
-                    fmt::format("{}, line {}: {}", name, XML_GetCurrentLineNumber(parser), found));
+        throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", name_, line(), found));
     }
+
+    [[nodiscard]] std::size_t line() const {
+        return XML_GetCurrentLineNumber(parser_.get()) + skimmed_lines_;
+    }
+
+    static Parse& self(void* data) { return *static_cast<Parse*>(data); }
+
+    static void on_start(void* data, const XML_Char* name, const XML_Char** attributes) {
+        Parse& parse = self(data);
+        parse.guarded([&] {
+            if (++parse.depth_ > deepest)
+                parse.fail(
+                    fmt::format("found elements nested deeper than {}; no file of this kind is", deepest));
+            if (attributes[0] != nullptr &&
+                static_cast<std::size_t>(XML_GetSpecifiedAttributeCount(parse.parser_.get())) / 2 >
+                    most_attributes)
+                parse.fail(fmt::format("found an element of more than {} attributes", most_attributes));
+            parse.note_tag();
+            parse.handlers_.start(split(name), XmlAttributes(attributes), parse.line());
+        });
+    }
+
+    static void on_end(void* data, const XML_Char* name) {
+        Parse& parse = self(data);
+        parse.guarded([&] {
+            --parse.depth_;
+            parse.note_tag();
+            parse.handlers_.end(split(name));
+        });
+    }
+
+    static void on_text(void* data, const XML_Char* text, int size) {
+        Parse& parse = self(data);
+        parse.guarded([&] { parse.handlers_.text({text, static_cast<std::size_t>(size)}); });
+    }
+
+    static void on_namespace(void* data, const XML_Char* prefix, const XML_Char* space) {
+        Parse& parse = self(data);
+        parse.guarded(
+            [&] { parse.handlers_.declare(prefix == nullptr ? "" : prefix, space == nullptr ? "" : space); });
+    }
+
+    static void on_doctype(void* data, const XML_Char*, const XML_Char*, const XML_Char*,
+                           int has_internal_subset) {
+        Parse& parse = self(data);
+        parse.guarded([&] {
+            if (parse.rules_.no_document_type)
+                parse.fail("found a document type (<!DOCTYPE ...>), which files of this kind must not have");
+            // Drawing programs write a reference to the public definition of SVG, which is harmless as
+            // nothing is fetched.
+            if (has_internal_subset != 0)
+                parse.fail("found a document type with definitions of its own; such files are not read");
+        });
+    }
+
+    static void on_declaration(void* data, const XML_Char*, const XML_Char* encoding, int) {
+        Parse& parse = self(data);
+        parse.guarded([&] {
+            if (encoding == nullptr)
+                return;
+            std::string upper = encoding;
+            std::transform(upper.begin(), upper.end(), upper.begin(),
+                           [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c & ~0x20) : c; });
+            if (upper != "UTF-8")
+                parse.fail(fmt::format("found encoding '{}', expected UTF-8", printable(encoding, 40)));
+        });
+    }
+
+    /// Remembers where a tag ends, as long as skimming asks for it.
+    void note_tag() {
+        if (handlers_.skim)
+            last_tag_end_ = XML_GetCurrentByteIndex(parser_.get()) + XML_GetCurrentByteCount(parser_.get());
+    }
+
+    /// Gives the parser the bytes up to `end`.
+    void feed(std::size_t end, bool last) {
+        do {
+            const std::string_view part = bytes_.substr(at_, std::min(end - at_, piece));
+            at_ += part.size();
+            fed_ += static_cast<XML_Index>(part.size());
+            const XML_Status status = XML_Parse(parser_.get(), part.data(), static_cast<int>(part.size()),
+                                                last && at_ == end ? XML_TRUE : XML_FALSE);
+            if (error_)
+                std::rethrow_exception(error_);
+            if (status != XML_STATUS_OK)
+                fail(fmt::format("the XML is broken: {}", XML_ErrorString(XML_GetErrorCode(parser_.get()))));
+            if (const XML_Index parsed = XML_GetCurrentByteIndex(parser_.get());
+                parsed >= 0 && fed_ - parsed > static_cast<XML_Index>(longest_token + piece))
+                fail(fmt::format("found a tag, text or comment longer than {} MB", longest_token >> 20));
+            tell_progress(at_);
+        } while (at_ < end);
+    }
+
+    void tell_progress(std::size_t place) {
+        if (handlers_.progress && (place - told_ >= piece || place == bytes_.size())) {
+            handlers_.progress(place - told_);
+            told_ = place;
+        }
+    }
+
+    /// Feeds everything up to the last run of elements that come in numbers, but for those runs.
+    void skim_through() {
+        std::size_t from = 0;
+        // Feeding in vain costs, as the parser begins an unfinished comment anew each time: the more often in
+        // vain, the later the next time.
+        constexpr std::size_t first_patience = std::size_t{1} << 16;
+        std::size_t patience = first_patience;
+        while (const std::optional<std::size_t> tag = find_tag(from)) {
+            std::size_t blanks = *tag;
+            while (blanks > at_ && is_blank(bytes_[blanks - 1]))
+                --blanks;
+            if (blanks > at_)
+                feed(blanks, false);
+            std::size_t skimmed = 0;
+            if (last_tag_end_ == fed_)
+                skimmed = std::min(handlers_.skim(bytes_, *tag), bytes_.size() - *tag);
+            if (skimmed == 0) {
+                from = *tag + patience;
+                patience *= 2;
+                continue;
+            }
+            count_lines(bytes_.substr(at_, *tag + skimmed - at_));
+            at_ = from = *tag + skimmed;
+            tell_progress(at_);
+        }
+    }
+
+    /// The first of the tags that come in numbers.
+    [[nodiscard]] std::optional<std::size_t> find_tag(std::size_t from) {
+        next_tags_.resize(handlers_.many.size());
+        std::size_t nearest = std::string_view::npos;
+        for (std::size_t i = 0; i < next_tags_.size(); ++i) {
+            const std::string_view tag = handlers_.many[i];
+            std::size_t& next = next_tags_[i];
+            // What was found once is not searched for again. "<triangles" is no "<triangle".
+            for (next = std::max(next, from); next < bytes_.size(); ++next) {
+                next = bytes_.find(tag, next);
+                if (next == std::string_view::npos || next + tag.size() == bytes_.size() ||
+                    ends_name(bytes_[next + tag.size()]))
+                    break;
+            }
+            nearest = std::min(nearest, next);
+        }
+        return nearest < bytes_.size() ? std::optional(nearest) : std::nullopt;
+    }
+
+    void count_lines(std::string_view text) {
+        const auto count = [&](char end) {
+            return static_cast<std::size_t>(std::count(text.begin(), text.end(), end));
+        };
+        const std::size_t lines = count('\n');
+        skimmed_lines_ += lines != 0 ? lines : count('\r');
+    }
+
+    static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+    static bool ends_name(char c) { return is_blank(c) || c == '>' || c == '/'; }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    const XmlHandlers& handlers_;
+    const XmlRules& rules_;
+    std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser_;
+    std::exception_ptr error_ = nullptr;
+    int depth_ = 0;
+    std::size_t at_ = 0;          ///< place in the document
+    XML_Index fed_ = 0;           ///< bytes that the parser has seen
+    XML_Index last_tag_end_ = -1; ///< in terms of these
+    std::size_t skimmed_lines_ = 0;
+    std::vector<std::size_t> next_tags_; ///< for each of `many`, the first place not before the last search
+    std::size_t told_ = 0;
 };
-
-void on_start(void* data, const XML_Char* name, const XML_Char** attributes) {
-    auto& parse = *static_cast<Parse*>(data);
-    parse.guarded([&] {
-        if (++parse.depth > deepest)
-            parse.fail(fmt::format("found elements nested deeper than {}; no slice file is", deepest));
-        parse.handlers.start(name, XmlAttributes(attributes), XML_GetCurrentLineNumber(parse.parser));
-    });
-}
-
-void on_end(void* data, const XML_Char* name) {
-    auto& parse = *static_cast<Parse*>(data);
-    parse.guarded([&] {
-        --parse.depth;
-        parse.handlers.end(name);
-    });
-}
-
-void on_doctype(void* data, const XML_Char*, const XML_Char*, const XML_Char*, int has_internal_subset) {
-    auto& parse = *static_cast<Parse*>(data);
-    parse.guarded([&] {
-        // Drawing programs write a reference to the public definition of SVG, which is harmless as nothing is
-        // fetched.
-        if (has_internal_subset != 0)
-            parse.fail("found a document type with definitions of its own; such files are not read");
-    });
-}
 
 } // namespace
 
-std::string_view XmlAttributes::find(std::string_view name) const noexcept {
+XmlName XmlAttributes::name_of(std::string_view written) noexcept {
+    return split(written);
+}
+
+std::string_view XmlAttributes::find(std::string_view local) const noexcept {
     for (const char** pair = pairs_; *pair != nullptr; pair += 2)
-        if (name == *pair)
+        if (local == *pair)
             return pair[1];
     return {};
 }
 
-void parse_xml(std::string_view bytes, const std::string& name, const XmlHandlers& handlers) {
-    const std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser(
-        XML_ParserCreate(nullptr), &XML_ParserFree);
-    if (!parser)
-        throw std::bad_alloc();
-    Parse parse{handlers, name, parser.get()};
-    XML_SetUserData(parser.get(), &parse);
-    XML_SetElementHandler(parser.get(), on_start, on_end);
-    XML_SetStartDoctypeDeclHandler(parser.get(), on_doctype);
+std::string_view XmlAttributes::find(XmlName name) const noexcept {
+    for (const char** pair = pairs_; *pair != nullptr; pair += 2)
+        if (split(*pair) == name)
+            return pair[1];
+    return {};
+}
 
-    constexpr std::size_t piece = std::size_t{4} << 20;
-    for (std::size_t at = 0;; at += piece) {
-        const std::string_view part = bytes.substr(std::min(at, bytes.size()), piece);
-        const bool last = at + piece >= bytes.size();
-        const XML_Status status =
-            XML_Parse(parser.get(), part.data(), static_cast<int>(part.size()), last ? XML_TRUE : XML_FALSE);
-        if (parse.error)
-            std::rethrow_exception(parse.error);
-        if (status != XML_STATUS_OK)
-            parse.fail(fmt::format("the XML is broken: {}", XML_ErrorString(XML_GetErrorCode(parser.get()))));
-        handlers.progress(part.size());
-        if (last)
-            return;
-    }
+void parse_xml(std::string_view bytes, const std::string& name, const XmlHandlers& handlers,
+               const XmlRules& rules) {
+    Parse(bytes, name, handlers, rules).run();
 }
 
 } // namespace lamella

@@ -4,6 +4,7 @@
 #include "container/zip_writer.hpp"
 
 #include "container/deflate.hpp"
+#include "container/inflate.hpp"
 
 #include <fmt/format.h>
 

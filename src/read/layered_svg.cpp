@@ -319,10 +319,10 @@ LayerFile read_layered_svg(std::string_view bytes, const std::string& name, cons
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
     parse_xml(bytes, name,
-              {[&](std::string_view element, const XmlAttributes& attributes, std::size_t line) {
-                   reader.start(element, attributes, line);
+              {[&](XmlName element, const XmlAttributes& attributes, std::size_t line) {
+                   reader.start(element.local, attributes, line);
                },
-               [&](std::string_view) { reader.end(); },
+               [&](XmlName) { reader.end(); },
                [&](std::size_t read) {
                    executor.check_cancelled();
                    progress.add(read);

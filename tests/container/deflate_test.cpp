@@ -1,4 +1,5 @@
 #include "container/deflate.hpp"
+#include "container/inflate.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

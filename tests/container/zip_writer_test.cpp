@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/deflate.hpp"
+#include "container/inflate.hpp"
 #include "container/zip_writer.hpp"
 #include "temporary_folder.hpp"
 

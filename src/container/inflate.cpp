@@ -1,0 +1,36 @@
+#include "container/inflate.hpp"
+
+#include <libdeflate.h>
+
+#include <memory>
+#include <new>
+
+namespace lamella {
+
+std::uint32_t crc32_of(std::string_view bytes) noexcept {
+    return libdeflate_crc32(0, bytes.data(), bytes.size());
+}
+
+Inflated inflate(std::string_view packed, std::span<std::byte> room) {
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
+        libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+    if (!decompressor)
+        throw std::bad_alloc();
+    std::byte nowhere{}; // room for nothing still needs a place
+    std::size_t read = 0;
+    std::size_t written = 0;
+    switch (libdeflate_deflate_decompress_ex(decompressor.get(), packed.data(), packed.size(),
+                                             room.empty() ? &nowhere : room.data(), room.size(), &read,
+                                             &written)) {
+    case LIBDEFLATE_SUCCESS:
+        if (read != packed.size())
+            return Inflated::broken;
+        return written == room.size() ? Inflated::whole : Inflated::too_short;
+    case LIBDEFLATE_INSUFFICIENT_SPACE:
+        return Inflated::too_long;
+    default:
+        return Inflated::broken;
+    }
+}
+
+} // namespace lamella

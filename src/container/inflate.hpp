@@ -1,0 +1,29 @@
+#pragma once
+
+// Unpacking Deflate, and the checksum of zip and PNG files.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace lamella {
+
+/// CRC-32 as zip and PNG files have it. O(n).
+[[nodiscard]] std::uint32_t crc32_of(std::string_view bytes) noexcept;
+
+enum class Inflated {
+    whole,     ///< exactly as many bytes as there was room for, and the packed bytes ended with them
+    too_short, ///< the stream ended before the room was full
+    too_long,  ///< the room was full before the stream ended
+    broken,    ///< no Deflate stream, cut off, or followed by something else
+};
+
+/// No byte of a Deflate stream stands for more than this many.
+inline constexpr std::uint64_t most_inflation = 1032;
+
+/// Unpacks a raw Deflate stream into a room of exactly the size that it ought to have. Pages of the room that
+/// it does not reach are not touched.
+[[nodiscard]] Inflated inflate(std::string_view packed, std::span<std::byte> room);
+
+} // namespace lamella

@@ -1,0 +1,382 @@
+// PKWARE's APPNOTE.TXT, version 6.3: 4.3 has the order of the records, 4.4 their fields, 4.5.3 the extra
+// field of zip64.
+
+#include "container/zip_reader.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/inflate.hpp"
+#include "container/text_place.hpp"
+#include "core/pages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::uint64_t full16 = 0xFFFF;
+constexpr std::uint64_t full32 = 0xFFFFFFFF;
+
+constexpr std::uint32_t entry_mark = 0x04034b50;
+constexpr std::uint32_t directory_mark = 0x02014b50;
+constexpr std::uint32_t end_mark = 0x06054b50;
+constexpr std::uint32_t end64_mark = 0x06064b50;
+constexpr std::uint32_t end64_place_mark = 0x07064b50;
+
+constexpr std::size_t entry_head = 30;
+constexpr std::size_t directory_head = 46;
+constexpr std::size_t end_head = 22;
+constexpr std::size_t end64_head = 56;
+constexpr std::size_t end64_place_size = 20;
+
+constexpr unsigned flag_encrypted = 1U;
+constexpr unsigned flag_sizes_behind = 1U << 3;
+constexpr unsigned flag_strongly_encrypted = 1U << 6;
+constexpr unsigned flag_masked = 1U << 13;
+
+constexpr std::uint16_t stored = 0;
+constexpr std::uint16_t deflated = 8;
+
+constexpr std::size_t longest_shown_name = 200;
+
+std::string_view view(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::uint64_t number(std::string_view bytes, std::size_t at, int size) {
+    std::uint64_t value = 0;
+    for (int i = 0; i < size; ++i)
+        value |= std::uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+    return value;
+}
+
+std::uint64_t u16(std::string_view bytes, std::size_t at) {
+    return number(bytes, at, 2);
+}
+std::uint64_t u32(std::string_view bytes, std::size_t at) {
+    return number(bytes, at, 4);
+}
+std::uint64_t u64(std::string_view bytes, std::size_t at) {
+    return number(bytes, at, 8);
+}
+
+bool has_mark(std::string_view bytes, std::uint64_t at, std::uint32_t mark, std::size_t head) {
+    return at <= bytes.size() && bytes.size() - at >= head && u32(bytes, at) == mark;
+}
+
+/// Puts the 64-bit forms in the place of values that say so. Values come in the order of the extra field.
+/// False when the field is missing or too short.
+bool widen(std::string_view extra, std::initializer_list<std::uint64_t*> values) {
+    std::string_view large;
+    while (extra.size() >= 4 && large.data() == nullptr) {
+        const std::size_t size = std::min<std::size_t>(u16(extra, 2), extra.size() - 4);
+        if (u16(extra, 0) == 1)
+            large = extra.substr(4, size);
+        extra.remove_prefix(4 + size);
+    }
+    for (std::uint64_t* value : values) {
+        if (*value != full32)
+            continue;
+        if (large.size() < 8)
+            return false;
+        *value = u64(large, 0);
+        large.remove_prefix(8);
+    }
+    return true;
+}
+
+/// Where the directory is, and what it should hold.
+struct Directory {
+    std::uint64_t place = 0;
+    std::uint64_t size = 0;
+    std::uint64_t entries = 0;
+    std::uint64_t trailing = 0; ///< bytes behind the end of the archive
+};
+
+class DirectoryFinder {
+  public:
+    DirectoryFinder(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+    Directory find() const {
+        const std::size_t end = find_end();
+        Directory directory{u32(bytes_, end + 16), u32(bytes_, end + 12), u16(bytes_, end + 10), 0};
+        directory.trailing = bytes_.size() - end - end_head - u16(bytes_, end + 20);
+        std::uint64_t directory_end = end;
+        if (end >= end64_place_size &&
+            has_mark(bytes_, end - end64_place_size, end64_place_mark, end64_place_size)) {
+            directory_end = u64(bytes_, end - end64_place_size + 8);
+            read_end64(directory_end, directory);
+        } else if (u16(bytes_, end + 4) != 0 || u16(bytes_, end + 6) != 0 ||
+                   u16(bytes_, end + 8) != directory.entries) {
+            fail("is one of several discs of a zip archive, expected a whole one");
+        }
+        if (directory.size > directory_end || directory.place != directory_end - directory.size)
+            fail(
+                fmt::format("the directory of the zip archive should take {} bytes from byte {}, but its end "
+                            "stands at byte {}; the file is cut off, or something is in front of it",
+                            directory.size, directory.place, directory_end));
+        if (directory.entries > directory.size / directory_head)
+            fail(fmt::format("the zip archive claims {} entries in a directory of {} bytes",
+                             directory.entries, directory.size));
+        return directory;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(ErrorKind::input, fmt::format("{}: {}", name_, what));
+    }
+
+    /// The record at the end. A comment may follow it, and hold anything; so may what somebody appended.
+    std::size_t find_end() const {
+        std::optional<std::size_t> before_others;
+        if (bytes_.size() >= end_head) {
+            const std::size_t last = bytes_.size() - end_head;
+            const std::size_t first = last - std::min<std::size_t>(last, full16);
+            for (std::size_t at = last + 1; at-- > first;) {
+                if (!has_mark(bytes_, at, end_mark, end_head))
+                    continue;
+                const std::size_t end = at + end_head + u16(bytes_, at + 20);
+                if (end == bytes_.size())
+                    return at;
+                if (end < bytes_.size() && !before_others)
+                    before_others = at;
+            }
+        }
+        if (!before_others)
+            fail("the end of the zip archive is missing; the file is cut off");
+        return *before_others;
+    }
+
+    void read_end64(std::uint64_t at, Directory& directory) const {
+        if (!has_mark(bytes_, at, end64_mark, end64_head))
+            fail(fmt::format("the zip archive should have its (64-bit) end at byte {}, but has not", at));
+        directory.entries = u64(bytes_, at + 32);
+        directory.size = u64(bytes_, at + 40);
+        directory.place = u64(bytes_, at + 48);
+        if (u32(bytes_, at + 16) != 0 || u32(bytes_, at + 20) != 0 ||
+            u64(bytes_, at + 24) != directory.entries)
+            fail("is one of several discs of a zip archive, expected a whole one");
+    }
+
+    std::string_view bytes_;
+    const std::string& name_;
+};
+
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+}
+
+bool same_but_for_case(std::string_view a, std::string_view b) {
+    return a.size() == b.size() &&
+           std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
+}
+
+} // namespace
+
+bool is_zip(std::string_view bytes) noexcept {
+    return bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06");
+}
+
+ZipReader::ZipReader(ByteSource source, std::uint64_t max_unpacked)
+    : source_(std::move(source)), max_unpacked_(max_unpacked) {
+    if (max_unpacked_ == 0) {
+        constexpr std::uint64_t usual_most = std::uint64_t{4} << 30;
+        constexpr std::uint64_t usual_ratio = 64;
+        max_unpacked_ = std::max(usual_most, usual_ratio * source_.bytes.size());
+    }
+    read_directory();
+}
+
+void ZipReader::read_directory() {
+    const std::string_view bytes = view(source_.bytes);
+    const Directory directory = DirectoryFinder(bytes, source_.name).find();
+    if (directory.trailing != 0)
+        oddities_.push_back(fmt::format("{} bytes follow the end of the zip archive; they were left out",
+                                        directory.trailing));
+    const auto fail = [&](std::uint64_t at, const std::string& what) {
+        throw Error(ErrorKind::input, fmt::format("{}: byte {}: {}", source_.name, at, what));
+    };
+    std::uint64_t at = directory.place;
+    const std::uint64_t end = directory.place + directory.size;
+    entries_.reserve(directory.entries);
+    for (std::uint64_t i = 0; i < directory.entries; ++i) {
+        if (end - at < directory_head || u32(bytes, at) != directory_mark)
+            fail(at, fmt::format("entry {} of {} of the zip directory is missing", i + 1, directory.entries));
+        ZipEntry entry;
+        entry.flags = static_cast<std::uint16_t>(u16(bytes, at + 8));
+        entry.method = static_cast<std::uint16_t>(u16(bytes, at + 10));
+        entry.crc = static_cast<std::uint32_t>(u32(bytes, at + 16));
+        entry.packed_size = u32(bytes, at + 20);
+        entry.size = u32(bytes, at + 24);
+        entry.place = u32(bytes, at + 42);
+        const std::uint64_t name_size = u16(bytes, at + 28);
+        const std::uint64_t extra_size = u16(bytes, at + 30);
+        const std::uint64_t size = directory_head + name_size + extra_size + u16(bytes, at + 32);
+        if (end - at < size)
+            fail(at, fmt::format("entry {} of the zip directory reaches beyond its end", i + 1));
+        entry.name = bytes.substr(at + directory_head, name_size);
+        const std::string_view extra = bytes.substr(at + directory_head + name_size, extra_size);
+        if (!widen(extra, {&entry.size, &entry.packed_size, &entry.place}))
+            fail(at, fmt::format("entry {} of the zip directory lacks its 64-bit sizes", i + 1));
+        if (const std::uint64_t disc = u16(bytes, at + 34); disc != 0 && disc != full16)
+            fail(at, fmt::format("entry {} of the zip directory is on disc {}, expected a single one", i + 1,
+                                 disc));
+        at += size;
+        entries_.push_back(std::move(entry));
+    }
+    if (at != end)
+        oddities_.push_back(
+            fmt::format("byte {}: {} bytes follow the last entry of the zip directory", at, end - at));
+    settle_places(directory.place);
+    settle_names();
+}
+
+/// Reads the head in front of each entry's bytes, turns `place` into that of the bytes, and has it that no
+/// two entries share any.
+void ZipReader::settle_places(std::uint64_t directory_place) {
+    const std::string_view bytes = view(source_.bytes);
+    const auto fail = [&](const ZipEntry& entry, const std::string& what) {
+        throw Error(ErrorKind::input, fmt::format("{}: byte {}: zip entry '{}' {}", source_.name, entry.place,
+                                                  printable(entry.name, longest_shown_name), what));
+    };
+    struct Span {
+        std::uint64_t begin;
+        std::uint64_t end;
+        std::size_t entry;
+    };
+    std::vector<Span> spans;
+    spans.reserve(entries_.size());
+    for (ZipEntry& entry : entries_) {
+        const std::uint64_t at = entry.place;
+        if (!has_mark(bytes.substr(0, directory_place), at, entry_mark, entry_head))
+            fail(entry, "does not begin where the directory says");
+        const std::uint64_t name_size = u16(bytes, at + 26);
+        const std::uint64_t extra_size = u16(bytes, at + 28);
+        const std::uint64_t place = at + entry_head + name_size + extra_size;
+        if (place > directory_place || entry.packed_size > directory_place - place)
+            fail(entry, fmt::format("of {} bytes reaches into the directory at byte {}", entry.packed_size,
+                                    directory_place));
+        if (bytes.substr(at + entry_head, name_size) != entry.name)
+            fail(entry, fmt::format("calls itself '{}'",
+                                    printable(bytes.substr(at + entry_head, name_size), longest_shown_name)));
+        const auto flags = static_cast<std::uint16_t>(u16(bytes, at + 6));
+        std::uint64_t packed_size = u32(bytes, at + 18);
+        std::uint64_t size = u32(bytes, at + 22);
+        const bool sizes_known = (flags & flag_sizes_behind) == 0;
+        if (u16(bytes, at + 8) != entry.method ||
+            (sizes_known &&
+             (!widen(bytes.substr(at + entry_head + name_size, extra_size), {&size, &packed_size}) ||
+              size != entry.size || packed_size != entry.packed_size || u32(bytes, at + 14) != entry.crc)))
+            fail(entry, "has another method, size or checksum than the directory says");
+        entry.flags |= flags;
+        spans.push_back({at, place + entry.packed_size, spans.size()});
+        entry.place = place;
+    }
+    std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) { return a.begin < b.begin; });
+    for (std::size_t i = 1; i < spans.size(); ++i)
+        if (spans[i].begin < spans[i - 1].end)
+            fail(entries_[spans[i].entry],
+                 fmt::format("lies upon entry '{}'",
+                             printable(entries_[spans[i - 1].entry].name, longest_shown_name)));
+}
+
+/// Names with slashes between folders, each once; folders themselves are left out.
+void ZipReader::settle_names() {
+    std::size_t backslashes = 0;
+    std::size_t rooted = 0;
+    for (ZipEntry& entry : entries_) {
+        if (entry.name.find('\\') != std::string::npos) {
+            std::replace(entry.name.begin(), entry.name.end(), '\\', '/');
+            ++backslashes;
+        }
+        if (entry.name.starts_with('/')) {
+            entry.name.erase(0, 1);
+            ++rooted;
+        }
+    }
+    if (backslashes != 0)
+        oddities_.push_back(
+            fmt::format("{} names in the zip archive have '\\' between folders, taken for '/'", backslashes));
+    if (rooted != 0)
+        oddities_.push_back(
+            fmt::format("{} names in the zip archive begin with '/', which was left out", rooted));
+    std::vector<std::size_t> order(entries_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return entries_[a].name < entries_[b].name; });
+    for (std::size_t i = 1; i < order.size(); ++i)
+        if (entries_[order[i]].name == entries_[order[i - 1]].name)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: two entries of the zip archive are called '{}'", source_.name,
+                                    printable(entries_[order[i]].name, longest_shown_name)));
+    std::erase_if(entries_,
+                  [](const ZipEntry& entry) { return entry.name.ends_with('/') && entry.size == 0; });
+}
+
+const ZipEntry* ZipReader::find(std::string_view name) const noexcept {
+    const ZipEntry* similar = nullptr;
+    for (const ZipEntry& entry : entries_) {
+        if (entry.name == name)
+            return &entry;
+        if (similar == nullptr && same_but_for_case(entry.name, name))
+            similar = &entry;
+    }
+    return similar;
+}
+
+ByteSource ZipReader::read(const ZipEntry& entry) const {
+    const std::string shown = printable(entry.name, longest_shown_name);
+    const auto fail = [&](const std::string& what) {
+        throw Error(ErrorKind::input, fmt::format("{}: zip entry '{}' {}", source_.name, shown, what));
+    };
+    if ((entry.flags & (flag_encrypted | flag_strongly_encrypted | flag_masked)) != 0)
+        fail("is encrypted, which cannot be read; save the file without a password");
+    if (entry.method != stored && entry.method != deflated)
+        fail(fmt::format("is packed by method {}, expected 0 (stored) or 8 (Deflate)", entry.method));
+    // Before there is room for it: a few bytes must not reserve the memory of others.
+    if (entry.method == deflated ? entry.size / most_inflation > entry.packed_size
+                                 : entry.size != entry.packed_size)
+        fail(
+            fmt::format("claims to hold {} bytes in {}, which is impossible", entry.size, entry.packed_size));
+    const std::uint64_t before = unpacked_.fetch_add(entry.size);
+    if (entry.size > max_unpacked_ || before > max_unpacked_ - entry.size)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{}: zip entry '{}' of {} bytes brings what is unpacked above {} bytes; "
+                                "--max-memory allows more",
+                                source_.name, shown, entry.size, max_unpacked_));
+
+    const std::string_view packed = view(source_.bytes).substr(entry.place, entry.packed_size);
+    ByteSource content{fmt::format("{}, part '{}'", source_.name, shown), {}, source_.owner};
+    if (entry.method == stored) {
+        content.bytes = source_.bytes.subspan(entry.place, entry.packed_size);
+    } else {
+        const auto room = std::make_shared<PageArray<std::byte>>(entry.size);
+        switch (inflate(packed, room->span())) {
+        case Inflated::whole:
+            break;
+        case Inflated::too_short:
+            fail(fmt::format("holds fewer than the {} bytes that it claims", entry.size));
+            break;
+        case Inflated::too_long:
+            fail(fmt::format("holds more than the {} bytes that it claims", entry.size));
+            break;
+        case Inflated::broken:
+            fail("is damaged: its packed bytes make no sense");
+        }
+        content.bytes = room->span();
+        content.owner = room;
+    }
+    if (const std::uint32_t crc = crc32_of(view(content.bytes)); crc != entry.crc)
+        fail(fmt::format("is damaged: its checksum is {:08x}, expected {:08x}", crc, entry.crc));
+    return content;
+}
+
+} // namespace lamella

@@ -1,0 +1,73 @@
+#pragma once
+
+// Reading zip archives that somebody may have made to do harm.
+
+#include "container/byte_source.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+
+struct ZipEntry {
+    std::string name; ///< with `/` between folders and none in front
+    std::uint64_t size = 0;
+    std::uint64_t packed_size = 0;
+    std::uint64_t place = 0; ///< of the packed bytes
+    std::uint32_t crc = 0;
+    std::uint16_t method = 0;
+    std::uint16_t flags = 0;
+};
+
+/// Whether the bytes begin as a zip archive does.
+[[nodiscard]] bool is_zip(std::string_view bytes) noexcept;
+
+/// The entries of a zip archive, zip64 included, sizes in front of the bytes or behind them. Nothing is
+/// unpacked before it is read, and nothing is allocated from what the archive claims: an entry gets room for
+/// its claimed size only where Deflate can reach that from the bytes that are there, and memory is taken as
+/// they fill it.
+///
+/// Refused with Error{input}, as two readers might see two contents: several discs, entries that reach into
+/// one another or beyond the file, two entries of a name, a name or size that the directory and the entry
+/// itself tell differently. Entries that are encrypted or packed by other methods than Deflate are refused
+/// when they are read.
+class ZipReader {
+  public:
+    /// Reads the directory. At most `max_unpacked` bytes will be unpacked in all, stored ones included; 0
+    /// means 64 times the size of the archive, and 4 GiB at least.
+    ZipReader(ByteSource source, std::uint64_t max_unpacked);
+
+    /// In the order of the directory; without folders.
+    [[nodiscard]] const std::vector<ZipEntry>& entries() const noexcept { return entries_; }
+
+    /// The entry of that name (without a slash in front), or else the first one that differs in the case of
+    /// ASCII letters only; null when there is none.
+    [[nodiscard]] const ZipEntry* find(std::string_view name) const noexcept;
+
+    /// The bytes of an entry, CRC checked; they may be none. Stored ones are a view of the archive. The name
+    /// tells archive and entry. May be called from several threads. Throws Error{input} when the entry is
+    /// damaged or not what it claims, and Error{limit} when the bytes are too many.
+    [[nodiscard]] ByteSource read(const ZipEntry& entry) const;
+
+    /// What is odd about the archive, one line each.
+    [[nodiscard]] const std::vector<std::string>& oddities() const noexcept { return oddities_; }
+    [[nodiscard]] const std::string& name() const noexcept { return source_.name; }
+    /// Bytes that entries took when they were read.
+    [[nodiscard]] std::uint64_t unpacked() const noexcept { return unpacked_.load(); }
+
+  private:
+    void read_directory();
+    void settle_places(std::uint64_t directory_place);
+    void settle_names();
+
+    ByteSource source_;
+    std::uint64_t max_unpacked_;
+    mutable std::atomic<std::uint64_t> unpacked_{0};
+    std::vector<ZipEntry> entries_;
+    std::vector<std::string> oddities_;
+};
+
+} // namespace lamella
