@@ -12,8 +12,8 @@
 namespace lamella::app {
 namespace {
 
-/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag; mesh files
-/// with neither.
+/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag; of files of
+/// meshes only AMF does.
 bool holds_layers(std::string_view head) {
     if (head.starts_with("\xEF\xBB\xBF"))
         head.remove_prefix(3);
@@ -21,14 +21,15 @@ bool holds_layers(std::string_view head) {
     if (first == std::string_view::npos)
         return false;
     head.remove_prefix(first);
-    return head.starts_with("$$") || head.starts_with("//") || head.starts_with("<");
+    return head.starts_with("$$") || head.starts_with("//") ||
+           (head.starts_with("<") && head.find("<amf") == std::string_view::npos);
 }
 
 std::string head_of(const std::string& path) {
     struct Close {
         void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
     };
-    std::string head(512, '\0');
+    std::string head(4096, '\0');
     // What cannot be opened is reported by the reader.
     const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
     head.resize(file == nullptr ? 0 : std::fread(head.data(), 1, head.size(), file.get()));

@@ -266,6 +266,13 @@ std::string_view XmlAttributes::find(XmlName name) const noexcept {
     return {};
 }
 
+std::string_view trimmed(std::string_view text) noexcept {
+    constexpr std::string_view blanks = " \t\r\n";
+    const std::size_t first = text.find_first_not_of(blanks);
+    return first == std::string_view::npos ? std::string_view()
+                                           : text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+}
+
 void parse_xml(std::string_view bytes, const std::string& name, const XmlHandlers& handlers,
                const XmlRules& rules) {
     Parse(bytes, name, handlers, rules).run();

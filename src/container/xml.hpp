@@ -74,6 +74,9 @@ struct XmlRules {
     bool no_document_type = false;
 };
 
+/// A value without the blanks around it, which say nothing in most XML files.
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+
 /// Parses a whole document. Refused are entities of the document's own, nesting deeper than 256, elements of
 /// more than 1000 attributes, and tags and comments longer than 64 MB. What the handlers throw ends parsing
 /// and is thrown again. Throws Error{input} with file, line and what is wrong.

@@ -4,11 +4,14 @@
 
 #include "container/byte_source.hpp"
 #include "container/gzip.hpp"
+#include "container/zip_reader.hpp"
+#include "read/amf.hpp"
 #include "read/foreign_files.hpp"
 #include "read/obj.hpp"
 #include "read/off.hpp"
 #include "read/ply.hpp"
 #include "read/stl.hpp"
+#include "read/three_mf.hpp"
 
 #include <fmt/format.h>
 
@@ -50,6 +53,23 @@ Mesh MeshFile::mesh(const Execution& execution) const {
 
 namespace {
 
+std::string_view text_of(const ByteSource& source) {
+    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
+}
+
+/// Whether a zip archive is no 3MF package, but a packed AMF file, perhaps of another name.
+bool holds_amf(const ByteSource& source, const MeshReadOptions& options) {
+    const ZipReader zip(source, options.max_memory);
+    const auto any = [&](std::string_view suffix) {
+        return std::any_of(zip.entries().begin(), zip.entries().end(),
+                           [&](const ZipEntry& entry) { return entry.name.ends_with(suffix); });
+    };
+    if (any(".rels") || any(".model"))
+        return false;
+    return any(".amf") || any(".AMF") || any(".amf.xml") ||
+           (zip.entries().size() == 1 && is_amf(text_of(zip.read(zip.entries().front()))));
+}
+
 /// The extension of a name in lower case, without the one of gzip: "stl" of "PART.STL.gz".
 std::string extension_of(std::string name) {
     std::transform(name.begin(), name.end(), name.begin(),
@@ -64,7 +84,12 @@ std::string extension_of(std::string name) {
 MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, const Execution& execution) {
     const ByteSource source =
         is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution.cancel) : opened;
-    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    const std::string_view text = text_of(source);
+    if (is_zip(text))
+        return holds_amf(source, options) ? read_amf(source, options, execution)
+                                          : read_three_mf(source, options, execution);
+    if (is_amf(text))
+        return read_amf(source, options, execution);
     const std::string extension = extension_of(source.name);
     if (is_stl(source))
         return read_stl(source, options, execution);

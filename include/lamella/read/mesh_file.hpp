@@ -65,13 +65,13 @@ struct MeshFile {
     [[nodiscard]] Mesh mesh(const Execution& execution = {}) const;
 };
 
-/// Reads an STL file, binary or ASCII by its content. "-" reads standard input. Parallel; O(bytes); the same
-/// result for any number of threads.
+/// Reads a mesh file; its content says of which format it is. "-" reads standard input. Parallel; O(bytes);
+/// the same result for any number of threads. docs/formats.md has what is accepted of each format.
 ///
-/// Binary files are memory-mapped and viewed, not copied (but where triangles are dropped). While the mesh
-/// lives, the file must not be written to or cut shorter (touching what was cut off ends the program with
-/// SIGBUS); replacing it under its name, or deleting it, does no harm. An ASCII file is not needed
-/// once this has returned.
+/// Binary STL files are memory-mapped and viewed, not copied (but where triangles are dropped). While the
+/// mesh lives, the file must not be written to or cut shorter (touching what was cut off ends the program
+/// with SIGBUS); replacing it under its name, or deleting it, does no harm. An ASCII file is not needed once
+/// this has returned.
 ///
 /// Corners are single precision in both forms: a number in an ASCII file is rounded once, to the nearest, so
 /// the ASCII and the binary form of a part give the same slices, bit for bit. Stored normals are ignored. All

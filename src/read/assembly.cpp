@@ -1,0 +1,158 @@
+#include "read/assembly.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "read/mesh_text.hpp"
+#include "read/read_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace lamella {
+
+namespace {
+
+constexpr int deepest = 64;
+constexpr std::uint64_t most_instances = std::uint64_t{1} << 20;
+
+std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
+    return a > std::numeric_limits<std::uint64_t>::max() - b ? std::numeric_limits<std::uint64_t>::max()
+                                                             : a + b;
+}
+
+class Placer {
+  public:
+    Placer(const std::string& file_name, std::span<const AssemblyNode> nodes,
+           std::span<const MeshObject> objects, ReadLimits& limits, Executor& executor)
+        : file_name_(file_name), nodes_(nodes), objects_(objects), limits_(limits), executor_(executor),
+          totals_(nodes.size()) {}
+
+    std::vector<MeshInstance> place(std::span<const AssemblyUse> roots) {
+        for (std::size_t node = 0; node < nodes_.size(); ++node)
+            total(node, 0); // a loop is an error also where no root leads to it
+        Total all;
+        for (const AssemblyUse& root : roots)
+            all.add(total(root.node, 0));
+        if (all.instances > most_instances)
+            throw Error(ErrorKind::limit,
+                        fmt::format("{}: puts {}{} meshes on the plate, at most {} are taken", file_name_,
+                                    all.instances + 1 == 0 ? "more than " : "", all.instances,
+                                    most_instances));
+        limits_.add_triangles(all.triangles);
+        limits_.add_bytes(all.instances * sizeof(MeshInstance));
+        instances_.reserve(all.instances);
+        reaches_.resize(objects_.size());
+        for (const AssemblyUse& root : roots)
+            put(root, {}, "");
+        return std::move(instances_);
+    }
+
+  private:
+    enum class State { unknown, open, known };
+
+    /// What comes of one use of a node; sums stay at the largest number.
+    struct Total {
+        State state = State::unknown;
+        std::uint64_t instances = 0;
+        std::uint64_t triangles = 0;
+
+        void add(const Total& other) {
+            instances = sum(instances, other.instances);
+            triangles = sum(triangles, other.triangles);
+        }
+    };
+
+    const Total& total(std::size_t index, int depth) {
+        const AssemblyNode& node = nodes_[index];
+        Total& known = totals_[index];
+        if (known.state == State::known)
+            return known;
+        if (known.state == State::open)
+            fail(node.place, "contains itself");
+        if (depth > deepest)
+            fail(node.place, fmt::format("is nested deeper than {}", deepest));
+        known.state = State::open;
+        Total result;
+        if (node.object) {
+            result.instances = 1;
+            result.triangles = objects_[*node.object].mesh.size();
+        }
+        for (const AssemblyUse& use : node.uses)
+            result.add(total(use.node, depth + 1));
+        result.state = State::known;
+        known = result;
+        return known;
+    }
+
+    // A node that was counted in one place may be used deeper down in another.
+    void put(const AssemblyUse& use, const Transform& outer, const std::string& name, int depth = 0) {
+        const AssemblyNode& node = nodes_[use.node];
+        if (totals_[use.node].instances == 0)
+            return; // many empty ones may be there
+        if (depth > deepest)
+            fail(node.place, fmt::format("is nested deeper than {}", deepest));
+        const Transform placement = compose(outer, use.placement);
+        const std::string& nearest = node.name.empty() ? name : node.name;
+        if (node.object) {
+            executor_.check_cancelled();
+            MeshInstance instance{*node.object, compose(placement, node.unit), nearest};
+            check_reach(instance, use.place);
+            instances_.push_back(std::move(instance));
+        }
+        for (const AssemblyUse& inner : node.uses)
+            put(inner, placement, nearest, depth + 1);
+    }
+
+    void check_reach(const MeshInstance& instance, const std::string& place) {
+        auto& reach = reaches_[instance.object];
+        if (!reach) {
+            const Box3 box = bounding_box(objects_[instance.object].mesh);
+            reach.emplace();
+            const auto largest = [](double low, double high) {
+                return std::max(std::abs(low), std::abs(high));
+            };
+            if (!box.empty())
+                *reach = {largest(box.min.x, box.max.x), largest(box.min.y, box.max.y),
+                          largest(box.min.z, box.max.z)};
+        }
+        const Transform& map = instance.placement;
+        for (std::size_t row = 0; row < 3; ++row) {
+            double furthest = std::abs(map.offset[row]);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                furthest += std::abs(map.linear[row][axis]) * (*reach)[axis];
+            if (!(furthest <= farthest_coordinate) || !finite(map))
+                fail(place, fmt::format("puts a mesh further away than {} mm", farthest_coordinate));
+        }
+        if (!(std::abs(map.determinant()) > 0))
+            fail(place, "flattens a mesh");
+    }
+
+    [[noreturn]] void fail(const std::string& place, const std::string& what) const {
+        throw Error(ErrorKind::input, fmt::format("{}, {}: {}", file_name_, place, what));
+    }
+
+    const std::string& file_name_;
+    std::span<const AssemblyNode> nodes_;
+    std::span<const MeshObject> objects_;
+    ReadLimits& limits_;
+    Executor& executor_;
+    std::vector<Total> totals_;
+    std::vector<std::optional<std::array<double, 3>>> reaches_; ///< largest coordinates of each mesh
+    std::vector<MeshInstance> instances_;
+};
+
+} // namespace
+
+std::vector<MeshInstance> place_meshes(const std::string& file_name, std::span<const AssemblyNode> nodes,
+                                       std::span<const AssemblyUse> roots,
+                                       std::span<const MeshObject> objects, ReadLimits& limits,
+                                       Executor& executor) {
+    return Placer(file_name, nodes, objects, limits, executor).place(roots);
+}
+
+} // namespace lamella

@@ -1,0 +1,177 @@
+#include "read/mesh_text.hpp"
+
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "read/read_limits.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+
+/// A part of a run that one thread reads.
+struct Piece {
+    std::string_view text;
+    std::size_t mesh;
+    std::size_t count = 0; ///< elements
+    std::size_t first = 0; ///< index of the first in its mesh
+    bool plain = true;
+};
+
+/// Cuts runs where elements begin.
+template <class Item>
+void cut_run(std::string_view run, std::size_t mesh, const MeshTextKind<Item>& kind,
+             std::vector<Piece>& pieces) {
+    while (run.size() > piece_bytes) {
+        const std::size_t cut = run.find(kind.tag, piece_bytes);
+        if (cut == std::string_view::npos)
+            break;
+        pieces.push_back({run.substr(0, cut), mesh});
+        run.remove_prefix(cut);
+    }
+    pieces.push_back({run, mesh});
+}
+
+/// How many elements there are, if all are plain.
+template <class Item>
+void count_elements(Piece& piece, const MeshTextKind<Item>& kind) {
+    const auto marks = static_cast<std::size_t>(std::count(piece.text.begin(), piece.text.end(), '<'));
+    piece.count = marks / kind.marks;
+    piece.plain = marks % kind.marks == 0 && piece.count <= piece.text.size() / kind.least;
+}
+
+/// Numbers the elements of each mesh and says how many each has; none where a piece is not plain.
+std::vector<std::optional<std::size_t>> number_elements(std::vector<Piece>& pieces, std::size_t meshes) {
+    std::vector<std::optional<std::size_t>> counts(meshes, 0);
+    for (Piece& piece : pieces) {
+        std::optional<std::size_t>& count = counts[piece.mesh];
+        if (!piece.plain)
+            count.reset();
+        if (!count)
+            continue;
+        piece.first = *count;
+        *count += piece.count;
+    }
+    return counts;
+}
+
+/// One kind of element of all meshes.
+template <class Item>
+class Elements {
+  public:
+    Elements(const MeshTextKind<Item>& kind, std::vector<std::string_view> MeshText::*runs,
+             std::span<const MeshText> texts)
+        : kind_(kind), texts_(texts) {
+        for (std::size_t i = 0; i < texts.size(); ++i)
+            for (const std::string_view run : texts[i].*runs)
+                cut_run(run, i, kind, pieces_);
+    }
+
+    void count(Executor& executor) {
+        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = begin; i < end; ++i)
+                count_elements(pieces_[i], kind_);
+        });
+        counts_ = number_elements(pieces_, texts_.size());
+    }
+
+    [[nodiscard]] const std::optional<std::size_t>& count_of(std::size_t mesh) const { return counts_[mesh]; }
+
+    /// Reads into `items_of(mesh)`, and hands each piece that was read to `done`.
+    template <class ItemsOf, class Done>
+    void read(Executor& executor, const std::vector<bool>& wanted, const ItemsOf& items_of,
+              const Done& done) {
+        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = begin; i < end; ++i) {
+                Piece& piece = pieces_[i];
+                if (!wanted[piece.mesh])
+                    continue;
+                const std::span<Item> items = items_of(piece.mesh).subspan(piece.first, piece.count);
+                piece.plain = kind_.read(piece.text, texts_[piece.mesh], items) && done(piece.mesh, items);
+            }
+        });
+    }
+
+    void drop_odd(std::vector<bool>& wanted) const {
+        for (const Piece& piece : pieces_)
+            if (!piece.plain)
+                wanted[piece.mesh] = false;
+    }
+
+  private:
+    const MeshTextKind<Item>& kind_;
+    std::span<const MeshText> texts_;
+    std::vector<Piece> pieces_;
+    std::vector<std::optional<std::size_t>> counts_;
+};
+
+} // namespace
+
+std::size_t take_run(std::string_view document, std::size_t place, std::string_view end_tag,
+                     std::vector<std::string_view>& runs) {
+    const std::size_t end = document.find(end_tag, place);
+    if (end == std::string_view::npos)
+        return 0;
+    runs.push_back(document.substr(place, end - place));
+    return end - place;
+}
+
+std::size_t degenerate_triangles(const IndexedMesh& mesh) {
+    return static_cast<std::size_t>(
+        std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                      [](const TriangleIndices& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }));
+}
+
+std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText> texts,
+                                                        const MeshTextForm& form, ReadLimits& limits,
+                                                        Executor& executor) {
+    Elements<Point3> vertices(form.vertex, &MeshText::vertices, texts);
+    Elements<TriangleIndices> triangles(form.triangle, &MeshText::triangles, texts);
+    vertices.count(executor);
+    triangles.count(executor);
+
+    std::vector<bool> plain(texts.size());
+    std::uint64_t all_bytes = 0;
+    constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        plain[i] = vertices.count_of(i) && triangles.count_of(i) && *vertices.count_of(i) <= most &&
+                   *triangles.count_of(i) <= most;
+        if (!plain[i])
+            continue;
+        all_bytes +=
+            *vertices.count_of(i) * sizeof(Point3) + *triangles.count_of(i) * sizeof(TriangleIndices);
+    }
+    limits.add_bytes(all_bytes);
+
+    std::vector<std::optional<IndexedMesh>> meshes(texts.size());
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        if (!plain[i])
+            continue;
+        IndexedMesh& mesh = meshes[i].emplace();
+        resize_in_huge_pages(executor, mesh.vertices, *vertices.count_of(i));
+        resize_in_huge_pages(executor, mesh.triangles, *triangles.count_of(i));
+    }
+    vertices.read(
+        executor, plain, [&](std::size_t i) { return std::span(meshes[i]->vertices); },
+        [](std::size_t, std::span<const Point3>) { return true; });
+    triangles.read(
+        executor, plain, [&](std::size_t i) { return std::span(meshes[i]->triangles); },
+        [&](std::size_t i, std::span<const TriangleIndices> items) {
+            std::uint32_t largest = 0;
+            for (const TriangleIndices& corners : items)
+                largest = std::max({largest, corners[0], corners[1], corners[2]});
+            return items.empty() || largest < meshes[i]->vertices.size();
+        });
+    vertices.drop_odd(plain);
+    triangles.drop_odd(plain);
+    for (std::size_t i = 0; i < texts.size(); ++i)
+        if (!plain[i])
+            meshes[i].reset();
+    return meshes;
+}
+
+} // namespace lamella

@@ -1,0 +1,65 @@
+#pragma once
+
+// Vertices and triangles that stand in XML files as long runs of small elements: read without an XML parser,
+// in parallel. What is not quite plain is left to the parser.
+
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+
+class Executor;
+class ReadLimits;
+
+/// The runs of one mesh, in their order. Behind each there is another byte, and it is '<'.
+struct MeshText {
+    std::vector<std::string_view> vertices;
+    std::vector<std::string_view> triangles;
+    /// Prefixes of namespaces that attributes may have.
+    std::span<const std::string> prefixes;
+};
+
+/// Takes down the run that begins at `place` of a document and goes up to `end_tag`, and says how long it is;
+/// 0 when there is no such end.
+[[nodiscard]] std::size_t take_run(std::string_view document, std::size_t place, std::string_view end_tag,
+                                   std::vector<std::string_view>& runs);
+
+/// How a kind of element is written.
+template <class Item>
+struct MeshTextKind {
+    std::string_view tag; ///< with which each begins, such as "<vertex"
+    std::size_t marks;    ///< how many '<' there are in each
+    std::size_t least;    ///< bytes of the shortest one
+    /// Reads a run of exactly these many elements, blanks between them; false when it is not plain.
+    bool (*read)(std::string_view run, const MeshText& text, std::span<Item> items);
+};
+
+using TriangleIndices = std::array<std::uint32_t, 3>;
+
+struct MeshTextForm {
+    MeshTextKind<Point3> vertex;
+    MeshTextKind<TriangleIndices> triangle;
+};
+
+/// Where no coordinate is: further away, squares and volumes would overflow.
+inline constexpr double farthest_coordinate = 1e38;
+
+/// The meshes, each empty where it is not plain: some element has another form, or an index is out of range.
+/// Memory is taken for elements that the text has room for only, and after the limits agreed.
+[[nodiscard]] std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText> texts,
+                                                                      const MeshTextForm& form,
+                                                                      ReadLimits& limits, Executor& executor);
+
+/// Triangles that use a vertex twice.
+[[nodiscard]] std::size_t degenerate_triangles(const IndexedMesh& mesh);
+
+} // namespace lamella

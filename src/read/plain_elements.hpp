@@ -1,0 +1,126 @@
+#pragma once
+
+// Runs of small empty elements, such as <vertex x="1" y="2" z="3"/>: a part of XML so plain that it needs no
+// parser. What is accepted here is well-formed, and a parser would say the same of it.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// What a reader makes of an attribute.
+struct PlainValue {
+    int index = -1;            ///< which of the ones that it wants; -1 for another one, which is passed over
+    const char* end = nullptr; ///< where the value ends, null when it is not what was wanted
+};
+
+/// Walks over a run of elements with blanks between them. Behind the run there is another byte, and it is
+/// '<'.
+class PlainElements {
+  public:
+    PlainElements(std::string_view run, std::span<const std::string> prefixes)
+        : at_(run.data()), end_(run.data() + run.size()), prefixes_(prefixes) {}
+
+    [[nodiscard]] const char* end() const noexcept { return end_; }
+
+    /// Reads the next element, which begins with `tag`, and of it each of `wanted` attributes once:
+    /// read(name, length of the name, value) gives a PlainValue. False when it is not plain, or lacks one.
+    template <class Read>
+    bool take(std::string_view tag, int wanted, const Read& read) {
+        skip_blanks();
+        if (static_cast<std::size_t>(end_ - at_) < tag.size() ||
+            std::memcmp(at_, tag.data(), tag.size()) != 0)
+            return false;
+        at_ += tag.size();
+        unsigned seen = 0;
+        std::size_t others = 0;
+        for (;;) {
+            const char* at = at_;
+            while (is_blank(*at))
+                ++at;
+            if (*at == '/') {
+                at_ = at + 2;
+                return at[1] == '>' && seen == (1U << wanted) - 1;
+            }
+            if (at == at_)
+                return false; // glued to what is before it
+            const char* const name = at;
+            while (is_name(*at))
+                ++at;
+            const auto length = static_cast<std::size_t>(at - name);
+            if (length == 0 || *at != '=' || (at[1] != '"' && at[1] != '\''))
+                return false;
+            const char quote = at[1];
+            const PlainValue value = read(name, length, at + 2);
+            const char* stop = value.end;
+            if (value.index < 0) {
+                stop = is_new({name, length}, others) ? end_of_value(at + 2, quote) : nullptr;
+            } else {
+                if ((seen >> value.index & 1) != 0)
+                    return false;
+                seen |= 1U << value.index;
+            }
+            if (stop == nullptr || *stop != quote)
+                return false;
+            at_ = stop + 1;
+        }
+    }
+
+    /// Nothing but blanks is left.
+    bool done() {
+        skip_blanks();
+        return at_ == end_;
+    }
+
+  private:
+    static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
+    static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
+    static bool is_name(char c) {
+        return is_letter(c) || (c >= '0' && c <= '9') || c == ':' || c == '-' || c == '.';
+    }
+
+    void skip_blanks() {
+        while (is_blank(*at_))
+            ++at_;
+    }
+
+    /// Whether an attribute of another meaning has a name that may stand here once more.
+    bool is_new(std::string_view name, std::size_t& others) {
+        if (!is_letter(name.front()) || name.starts_with("xmlns") || others == others_.size())
+            return false;
+        if (const std::size_t colon = name.find(':'); colon != std::string_view::npos) {
+            const std::string_view local = name.substr(colon + 1);
+            if (local.empty() || !is_letter(local.front()) || local.find(':') != std::string_view::npos ||
+                std::find(prefixes_.begin(), prefixes_.end(), name.substr(0, colon)) == prefixes_.end())
+                return false;
+        }
+        const auto last = others_.begin() + static_cast<std::ptrdiff_t>(others);
+        if (std::find(others_.begin(), last, name) != last)
+            return false;
+        others_[others++] = name;
+        return true;
+    }
+
+    /// The quote that ends a value of printable ASCII without references.
+    static const char* end_of_value(const char* at, char quote) {
+        for (; *at != quote; ++at)
+            if (*at == '<' || *at == '&' || *at < ' ' || *at == '\x7f')
+                return nullptr;
+        return at;
+    }
+
+    const char* at_;
+    const char* end_;
+    std::span<const std::string> prefixes_;
+    std::array<std::string_view, 16> others_; ///< names of attributes that were passed over in this element
+};
+
+} // namespace lamella

@@ -1,0 +1,377 @@
+#include "read/three_mf.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "read/assembly.hpp"
+#include "read/opc_package.hpp"
+#include "read/read_limits.hpp"
+#include "read/remarks.hpp"
+#include "read/three_mf_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::string_view model_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+constexpr std::string_view ticket_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/printticket";
+constexpr std::string_view usual_root = "3D/3dmodel.model";
+constexpr std::size_t longest_name = 200;
+
+bool is_solid(ThreeMfObjectType type) {
+    return type == ThreeMfObjectType::model || type == ThreeMfObjectType::solid_support;
+}
+
+class ThreeMfReader {
+  public:
+    ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
+        : package_(source, options.max_memory), name_(source.name), remarks_(source.name, options.strict),
+          limits_(source.name, options), executor_(execution),
+          progress_(execution, Stage::read, bytes_of(package_.zip())) {}
+
+    MeshFile read() {
+        for (const std::string& oddity : package_.zip().oddities())
+            remarks_.add(oddity);
+        if (package_.zip().find("[Content_Types].xml") == nullptr)
+            remarks_.add("found no [Content_Types].xml in the package");
+        const std::string root = find_root();
+        load_parts(root);
+        progress_.finish();
+        for (const Part& part : parts_)
+            for (const ThreeMfModel::Remark& remark : part.model.remarks)
+                tell(remark.text, remark.offence);
+        make_nodes();
+        make_file();
+        file_.format = MeshFormat::three_mf;
+        const ThreeMfModel& model = parts_.front().model;
+        file_.unit_mm = model.unit_mm;
+        file_.name = !model.title.empty() ? model.title : file_.objects.front().name;
+        file_.warnings = remarks_.take();
+        file_.warnings.insert(file_.warnings.end(), notes_.begin(), notes_.end());
+        return std::move(file_);
+    }
+
+  private:
+    struct Part {
+        ByteSource bytes;
+        ThreeMfModel model;
+    };
+
+    /// Of all entries: which of them are needed shows late.
+    static std::uint64_t bytes_of(const ZipReader& zip) {
+        std::uint64_t bytes = 0;
+        for (const ZipEntry& entry : zip.entries())
+            bytes += entry.size;
+        return bytes;
+    }
+
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(ErrorKind::input, fmt::format("{}: {}", name_, what));
+    }
+
+    /// What breaks a rule is for strict callers to refuse; a note is not.
+    void tell(const std::string& text, bool offence) {
+        if (offence)
+            remarks_.add(text);
+        else
+            notes_.push_back(text);
+    }
+
+    std::string find_root() {
+        std::vector<std::string> targets;
+        for (const OpcRelationship& relationship : relationships_of("")) {
+            if (relationship.type != model_type)
+                continue;
+            if (relationship.external)
+                fail("the model lies outside of the package, expected a part of it");
+            targets.push_back(relationship.target);
+        }
+        if (targets.size() > 1)
+            fail(fmt::format("the package names {} models ('{}', '{}'), expected one", targets.size(),
+                             printable(targets[0], longest_name), printable(targets[1], longest_name)));
+        if (!targets.empty()) {
+            if (package_.zip().find(targets.front()) == nullptr)
+                fail(fmt::format("the package names the model '{}', which is not in it",
+                                 printable(targets.front(), longest_name)));
+            return targets.front();
+        }
+        const ZipEntry* entry = package_.zip().find(usual_root);
+        for (const ZipEntry& other : package_.zip().entries())
+            if (entry == nullptr && other.name.ends_with(".model"))
+                entry = &other;
+        if (entry == nullptr)
+            fail("is a zip archive without a model, expected a 3MF file; unpack it and slice what is in it");
+        remarks_.add(fmt::format("the package does not say which part is its model; took '{}'",
+                                 printable(entry->name, longest_name)));
+        return entry->name;
+    }
+
+    /// The relationships of a part, with a remark about what is wrong with them.
+    std::vector<OpcRelationship> relationships_of(const std::string& part) {
+        std::vector<OpcRelationship> found = package_.relationships(part);
+        std::size_t tickets = 0;
+        for (const OpcRelationship& relationship : found) {
+            tickets += relationship.type == ticket_type ? 1 : 0;
+            if (!relationship.external && relationship.type != model_type &&
+                package_.zip().find(relationship.target) == nullptr)
+                remarks_.add(fmt::format("the package refers to '{}', which is not in it",
+                                         printable(relationship.target, longest_name)));
+        }
+        if (tickets > 1)
+            remarks_.add(fmt::format("the package has {} print tickets for one part, expected one", tickets));
+        return found;
+    }
+
+    /// The root part and all that it refers to.
+    void load_parts(const std::string& root) {
+        parts_.emplace_back().model.part = root;
+        part_index_.emplace(root, 0);
+        load_parts_from(0);
+        ThreeMfModel& model = parts_[0].model;
+        std::vector<ThreeMfUse*> uses;
+        for (ThreeMfUse& item : model.items)
+            uses.push_back(&item);
+        for (ThreeMfObject& object : model.objects)
+            for (ThreeMfUse& component : object.components)
+                uses.push_back(&component);
+        std::vector<std::string> others;
+        for (ThreeMfUse* use : uses)
+            if (!use->part.empty())
+                find_part(*use, others);
+        const std::vector<OpcRelationship> listed = relationships_of(root);
+        for (const std::string& part : others) {
+            if (std::none_of(listed.begin(), listed.end(),
+                             [&](const OpcRelationship& r) { return r.target == part; }))
+                remarks_.add(fmt::format("the part '{}' is used without a relationship to it",
+                                         printable(part, longest_name)));
+            parts_.emplace_back().model.part = part;
+        }
+        if (!others.empty())
+            load_parts_from(1);
+    }
+
+    /// Takes down the part that an object is used from, under its name in the archive.
+    void find_part(ThreeMfUse& use, std::vector<std::string>& others) {
+        const ThreeMfModel& root = parts_[0].model;
+        use.part = OpcPackage::resolve(root.part, use.part);
+        if (!part_index_.emplace(use.part, 1 + others.size()).second)
+            return;
+        if (package_.zip().find(use.part) == nullptr)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, line {}: refers to the part '{}', which is not in the package",
+                                    root.source, use.line, printable(use.part, longest_name)));
+        others.push_back(use.part);
+    }
+
+    /// Unpacks and reads parts, in parallel: first their structure, then the numbers of all meshes.
+    void load_parts_from(std::size_t first) {
+        const std::uint64_t unpacked = package_.zip().unpacked();
+        executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = first + begin; i < first + end; ++i) {
+                Part& part = parts_[i];
+                part.bytes = package_.zip().read(entry_of(part));
+                const auto advance = [&](std::size_t read) {
+                    executor_.check_cancelled();
+                    progress_.add(read);
+                };
+                part.model = load_model(part, i == 0, advance);
+            }
+        });
+        limits_.add_bytes(package_.zip().unpacked() - unpacked);
+        read_meshes(first);
+    }
+
+    const ZipEntry& entry_of(const Part& part) const { return *package_.zip().find(part.model.part); }
+
+    static ThreeMfModel load_model(const Part& part, bool is_root,
+                                   const std::function<void(std::size_t)>& advance) {
+        const std::string name = part.model.part;
+        try {
+            return read_three_mf_model(part.bytes, name, is_root, true, advance);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input)
+                throw;
+        }
+        // It may be at fault, or only be written in a way that is no good for skimming.
+        return read_three_mf_model(part.bytes, name, is_root, false, [](std::size_t) {});
+    }
+
+    void read_meshes(std::size_t first) {
+        std::vector<MeshText> texts;
+        std::vector<std::pair<std::size_t, ThreeMfObject*>> owners; // and their parts
+        for (std::size_t i = first; i < parts_.size(); ++i) {
+            ThreeMfModel& model = parts_[i].model;
+            for (ThreeMfObject& object : model.objects) {
+                if (object.text.vertices.empty() && object.text.triangles.empty())
+                    continue;
+                object.text.prefixes = model.prefixes;
+                texts.push_back(object.text);
+                owners.emplace_back(i, &object);
+            }
+        }
+        std::vector<std::optional<IndexedMesh>> meshes =
+            read_mesh_texts(texts, three_mf_text_form(), limits_, executor_);
+        std::vector<bool> odd(parts_.size());
+        for (std::size_t m = 0; m < meshes.size(); ++m) {
+            const auto& [part, object] = owners[m];
+            if (meshes[m])
+                object->mesh = std::move(*meshes[m]);
+            else
+                odd[part] = true;
+        }
+        for (std::size_t i = first; i < parts_.size(); ++i) {
+            Part& part = parts_[i];
+            if (odd[i]) {
+                const std::string name = part.model.part;
+                part.model = read_three_mf_model(part.bytes, name, i == 0, false,
+                                                 [&](std::size_t) { executor_.check_cancelled(); });
+            }
+            part.bytes = {};
+        }
+    }
+
+    /// One node for each object of each part.
+    void make_nodes() {
+        std::vector<std::map<std::uint32_t, std::size_t>> numbers(parts_.size());
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            for (std::size_t k = 0; k < parts_[i].model.objects.size(); ++k) {
+                numbers[i].emplace(parts_[i].model.objects[k].id, nodes_.size());
+                sources_.push_back(&parts_[i].model.objects[k]);
+                const double unit = parts_[i].model.unit_mm;
+                AssemblyNode node;
+                node.name = sources_.back()->name;
+                node.unit = scaling(unit, unit, unit);
+                node.place = place(parts_[i].model, sources_.back()->line,
+                                   fmt::format("object {}", sources_.back()->id));
+                nodes_.push_back(std::move(node));
+            }
+        const auto make_use = [&](std::size_t part, const ThreeMfUse& use) {
+            const std::size_t target = use.part.empty() ? part : part_index_.at(use.part);
+            const ThreeMfModel& model = parts_[part].model;
+            const auto node = numbers[target].find(use.object);
+            if (node == numbers[target].end())
+                throw Error(ErrorKind::input,
+                            fmt::format("{}, line {}: found objectid {}, but there is no such object{}",
+                                        model.source, use.line, use.object,
+                                        target == part
+                                            ? ""
+                                            : fmt::format(" in '{}'", printable(use.part, longest_name))));
+            return AssemblyUse{node->second, use.placement, place(model, use.line, "this use")};
+        };
+        std::size_t node = 0;
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            for (const ThreeMfObject& object : parts_[i].model.objects) {
+                for (const ThreeMfUse& component : object.components)
+                    nodes_[node].uses.push_back(make_use(i, component));
+                ++node;
+            }
+        for (const ThreeMfUse& item : parts_[0].model.items) {
+            AssemblyUse use = make_use(0, item);
+            const ThreeMfObject& object = *sources_[use.node];
+            if (object.type == ThreeMfObjectType::other)
+                throw Error(
+                    ErrorKind::input,
+                    fmt::format("{}, line {}: the build holds object {}, whose type 'other' says that it "
+                                "is not to be made",
+                                parts_[0].model.source, item.line, object.id));
+            if (item.printable)
+                roots_.push_back(std::move(use));
+            else
+                not_printable_ += 1;
+        }
+    }
+
+    static std::string place(const ThreeMfModel& model, std::size_t line, std::string_view what) {
+        return fmt::format("part '{}', line {}: {}", printable(model.part, longest_name), line, what);
+    }
+
+    /// The meshes that the build reaches, and where they stand.
+    void make_file() {
+        if (parts_[0].model.items.empty())
+            fail("holds nothing to slice: its build is empty");
+        std::vector<bool> reached(nodes_.size());
+        std::vector<std::size_t> open;
+        for (const AssemblyUse& root : roots_)
+            open.push_back(root.node);
+        std::size_t not_solid = 0;
+        std::size_t empty = 0;
+        while (!open.empty()) {
+            const std::size_t node = open.back();
+            open.pop_back();
+            if (reached[node])
+                continue;
+            reached[node] = true;
+            if (!is_solid(sources_[node]->type)) {
+                nodes_[node].uses.clear();
+                ++not_solid;
+                continue;
+            }
+            for (const AssemblyUse& use : nodes_[node].uses)
+                open.push_back(use.node);
+        }
+        std::size_t unused = 0;
+        std::size_t degenerate = 0;
+        for (std::size_t node = 0; node < nodes_.size(); ++node) {
+            if (!reached[node]) {
+                ++unused;
+                continue;
+            }
+            ThreeMfObject& source = *sources_[node];
+            if (!is_solid(source.type) || !source.is_mesh)
+                continue;
+            if (source.mesh.triangles.empty()) {
+                ++empty;
+                continue;
+            }
+            degenerate += degenerate_triangles(source.mesh);
+            nodes_[node].object = file_.objects.size();
+            file_.stored_triangles += source.mesh.triangles.size();
+            file_.objects.push_back({source.name, Mesh(std::move(source.mesh))});
+        }
+        const auto tell_count = [&](std::size_t count, std::string_view what, bool offence) {
+            if (count != 0)
+                tell(fmt::format("{} {}", count, what), offence);
+        };
+        tell_count(empty, "objects have a mesh without triangles", true);
+        tell_count(degenerate, "triangles use a vertex twice; they bound nothing", true);
+        tell_count(not_solid, "objects are of type support or surface, which is no solid; they were left out",
+                   false);
+        tell_count(not_printable_, "items of the build are marked as not to be printed; they were left out",
+                   false);
+        tell_count(unused, "objects are not in the build; they were left out", false);
+        file_.instances = place_meshes(name_, nodes_, roots_, file_.objects, limits_, executor_);
+        if (file_.objects.empty())
+            fail("holds nothing to slice: no item of its build leads to a mesh that is a solid");
+    }
+
+    OpcPackage package_;
+    std::string name_;
+    Remarks remarks_;
+    std::vector<std::string> notes_;
+    ReadLimits limits_;
+    Executor executor_;
+    ProgressMeter progress_;
+    std::vector<Part> parts_; ///< the root first
+    std::map<std::string, std::size_t> part_index_;
+    std::vector<AssemblyNode> nodes_;
+    std::vector<ThreeMfObject*> sources_; ///< of each node
+    std::vector<AssemblyUse> roots_;
+    std::size_t not_printable_ = 0;
+    MeshFile file_;
+};
+
+} // namespace
+
+MeshFile read_three_mf(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
+    return ThreeMfReader(source, options, execution).read();
+}
+
+} // namespace lamella

@@ -1,0 +1,68 @@
+#pragma once
+
+// One model part of a 3MF package, as it stands there.
+
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/transform.hpp"
+
+#include "container/byte_source.hpp"
+#include "read/mesh_text.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+enum class ThreeMfObjectType { model, solid_support, support, surface, other };
+
+/// An object that is put somewhere: a component of another one, or an item of the build.
+struct ThreeMfUse {
+    std::uint32_t object = 0; ///< its id
+    std::string part;         ///< where it is defined; empty for the part that uses it
+    Transform placement;      ///< lengths in millimetres
+    bool printable = true;
+    std::size_t line = 0;
+};
+
+struct ThreeMfObject {
+    std::uint32_t id = 0;
+    std::string name;
+    ThreeMfObjectType type = ThreeMfObjectType::model;
+    std::size_t line = 0;
+    bool is_mesh = false; ///< else it consists of components
+    IndexedMesh mesh;     ///< in the unit of the part; where `text` was not read by the parser, empty yet
+    MeshText text;
+    std::vector<ThreeMfUse> components;
+};
+
+struct ThreeMfModel {
+    std::string part;   ///< name in the package
+    std::string source; ///< as errors call it
+    double unit_mm = 1;
+    std::string title;
+    std::vector<ThreeMfObject> objects;
+    std::vector<ThreeMfUse> items;
+    std::vector<std::string> prefixes; ///< that the root element declares
+    /// What is odd, one line each, and whether it is an offence against the rules of the format or only worth
+    /// to be told.
+    struct Remark {
+        std::string text;
+        bool offence = true;
+    };
+    std::vector<Remark> remarks;
+
+    [[nodiscard]] const ThreeMfObject* find(std::uint32_t id) const noexcept;
+};
+
+/// Reads a model part. `skim`: leave the vertices and triangles of meshes in `text`, unread, where they stand
+/// as plain runs. Throws Error{input} with the line for what is no model.
+[[nodiscard]] ThreeMfModel read_three_mf_model(const ByteSource& source, std::string part, bool is_root,
+                                               bool skim, const std::function<void(std::size_t)>& progress);
+
+/// How meshes are written in model parts.
+[[nodiscard]] const MeshTextForm& three_mf_text_form() noexcept;
+
+} // namespace lamella
