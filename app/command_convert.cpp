@@ -1,5 +1,6 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -22,6 +23,7 @@ struct ConvertArguments {
     std::string input;
     std::string output;
     LayerOutputOptions writing;
+    LayerStepOptions making;
     std::string label;
     RunOptions run;
 };
@@ -58,9 +60,13 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     check_distinct(arguments.input, arguments.output);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
     const LayerWriteOptions options = arguments.writing.write_options(format);
-    const LayerFile file = read_layers(arguments.input, arguments.run.execution(context));
+    const Execution execution = arguments.run.execution(context);
+    LayerFile file = read_layers(arguments.input, execution);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
+    LayerChanges changes;
+    for (LayerPart& part : file.parts)
+        part.layers = take_steps(arguments.making.steps(), std::move(part.layers), changes, execution);
     const LayerStack& layers = file.parts.front().layers;
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
@@ -97,8 +103,8 @@ Command convert_command() {
         .name = "convert",
         .summary = "turn a slice file into another format",
         .description =
-            "Reads the layers of a slice file and writes them in another format. Contours stay as they "
-            "are, up to the rounding that the new format asks for.",
+            "Reads the layers of a slice file and writes them in another format. Unless more is asked for, "
+            "contours stay as they are, up to the rounding of the new format.",
         .operands = {{.placeholder = "IN",
                       .help = "the slice file to read; - is standard input",
                       .set =
@@ -111,7 +117,8 @@ Command convert_command() {
                           [arguments](const std::string& text) {
                               arguments->output = text;
                           }}},
-        .groups = {output_options(*arguments), run_options(arguments->run), common_options(true)},
+        .groups = {output_options(*arguments), layer_step_options(arguments->making),
+                   run_options(arguments->run), common_options(true)},
         .examples = {{"lamella convert part.cli part.svg", "to look at it"},
                      {"lamella convert part.svg part.cli --units-mm 0.005", "for a machine with 5 um steps"}},
         .run = [arguments](const Context& context) {

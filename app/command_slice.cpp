@@ -59,6 +59,7 @@ struct SliceArguments {
     std::string engine;
     bool inspect = false;
     bool strict = false;
+    LayerStepOptions making;
     std::string stats;
     std::optional<double> timeout;
     RunOptions run;
@@ -206,6 +207,7 @@ FileJob make_job(const SliceArguments& arguments) {
     job.engine = arguments.engine;
     job.inspect = arguments.inspect;
     job.strict = arguments.strict;
+    job.steps = arguments.making.steps();
     job.layer_statistics = !arguments.stats.empty();
     job.output = arguments.output;
     job.format = arguments.writing.format;
@@ -241,6 +243,11 @@ std::string summary(const FileJob& job, const FileResult& result) {
                                                  ? "closed, consistently oriented, no defects"
                                                  : fmt::format("has defects; lamella info {} lists them",
                                                                one_line(job.inputs.front().path)));
+    if (result.changes)
+        text += fmt::format("made     {} other than sliced: {} united, {} turned, {} dropped, {} left out\n",
+                            counted(result.changes->changed_layers, "layer"),
+                            counted(result.changes->rings_united, "ring"), result.changes->rings_reversed,
+                            result.changes->rings_dropped, counted(result.changes->points_dropped, "point"));
     const FileResult::Seconds& s = result.seconds;
     text += fmt::format("took     {:.3f} s on {} (read {:.3f}, ", s.total, counted(result.threads, "thread"),
                         s.read);
@@ -334,7 +341,8 @@ Command slice_command() {
                           [arguments](const std::string& text) {
                               add_input(*arguments, text);
                           }}},
-        .groups = {output_options(*arguments), plan_options(*arguments), input_options(*arguments),
+        .groups = {output_options(*arguments), plan_options(*arguments),
+                   layer_step_options(arguments->making), input_options(*arguments),
                    checking_options(*arguments), timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},

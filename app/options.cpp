@@ -234,6 +234,32 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) con
     return options;
 }
 
+LayerSteps LayerStepOptions::steps() const {
+    LayerSteps steps;
+    for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd, FillRule::positive})
+        if (fill == fill_rule_name(rule))
+            steps.fill = rule;
+    steps.offset_mm = offset.value_or(0);
+    steps.largest_only = largest_only;
+    steps.min_area_mm2 = min_area.value_or(0);
+    steps.simplify_mm = simplify.value_or(0);
+    return steps;
+}
+
+OptionGroup layer_step_options(LayerStepOptions& target) {
+    std::vector<std::string> rules;
+    for (const FillRule rule : {FillRule::none, FillRule::nonzero, FillRule::evenodd, FillRule::positive})
+        rules.emplace_back(fill_rule_name(rule));
+    return {"What is made of the layers, in this order",
+            {choice("fill", "RULE", "unite contours that overlap: where material is, by the winding number",
+                    std::move(rules), target.fill),
+             number("offset", "MM", "move contours outwards, or inwards by a negative number", target.offset),
+             flag("largest-only", "keep the largest body of each layer, with its holes", target.largest_only),
+             row("min-area", ValueKind::number, "MM2", "drop bodies and holes of a smaller area",
+                 [&target](const std::string& text) { target.min_area = parse_positive(text); }),
+             length("simplify", "leave out points, contours moving by so much at most", target.simplify)}};
+}
+
 const std::vector<std::string>& slice_at_names() {
     static const std::vector<std::string> names{"bottom", "middle", "top"};
     return names;

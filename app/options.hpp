@@ -4,6 +4,7 @@
 
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -87,6 +88,18 @@ struct LayerOutputOptions {
 };
 /// To be appended to a group.
 [[nodiscard]] std::vector<Option> layer_output_options(LayerOutputOptions& target);
+
+/// What is made of the layers before they are written.
+struct LayerStepOptions {
+    std::string fill = "none";
+    std::optional<double> offset;
+    bool largest_only = false;
+    std::optional<double> min_area;
+    std::optional<double> simplify;
+
+    [[nodiscard]] LayerSteps steps() const;
+};
+[[nodiscard]] OptionGroup layer_step_options(LayerStepOptions& target);
 
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
 [[nodiscard]] SliceAt slice_at_of(std::string_view name);

@@ -48,9 +48,16 @@ Json matching_json(const MatchingCounts& counts) {
             {"bytes", counts.bytes}};
 }
 
+Json changes_json(const LayerChanges& changes) {
+    return {{"groups_united", changes.groups_united},   {"rings_united", changes.rings_united},
+            {"rings_reversed", changes.rings_reversed}, {"rings_dropped", changes.rings_dropped},
+            {"points_dropped", changes.points_dropped}, {"area_before_mm2", changes.area_before_mm2},
+            {"area_after_mm2", changes.area_after_mm2}};
+}
+
 Json layers_json(const FileResult& result) {
     Json layers = Json::array();
-    for (const LayerStatistics& layer : result.layers)
+    for (const LayerStatistics& layer : result.layers) {
         layers.push_back({{"index", layer.index},
                           {"z", layer.z},
                           {"thickness", layer.thickness},
@@ -62,6 +69,9 @@ Json layers_json(const FileResult& result) {
                           {"open_chains", layer.measure.open_chains},
                           // As text: a JSON number loses digits beyond 2^53.
                           {"hash", fmt::format("{:016x}", layer.hash)}});
+        if (result.changes)
+            layers.back().update(changes_json(layer.changes));
+    }
     return layers;
 }
 
@@ -146,7 +156,7 @@ Json stats_json(const Command& command, const FileResult& result) {
                     {"weld", seconds.weld},
                     {"link", seconds.link},
                     {"slice", seconds.slice},
-                    {"polygon", 0.0},
+                    {"polygon", seconds.polygon},
                     {"write", seconds.write},
                     {"total", seconds.total}}},
                   {"peak_rss_bytes", peak_rss_bytes()},
@@ -154,6 +164,11 @@ Json stats_json(const Command& command, const FileResult& result) {
                   {"contours", result.report.contours},
                   {"open_chains", result.report.open_chains},
                   {"volume_mm3", result.volume_mm3}};
+    if (result.changes) {
+        Json changes = {{"changed_layers", result.changes->changed_layers}};
+        changes.update(changes_json(*result.changes));
+        stats["changes"] = std::move(changes);
+    }
     if (result.report.matching)
         stats["matching"] = matching_json(*result.report.matching);
     if (result.parts.size() > 1) {

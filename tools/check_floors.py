@@ -37,6 +37,7 @@ ROOMS = {
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
     "libdeflate.h": "src/container/inflate.cpp",
+    "polyclipping": "src/polygon/clipping.cpp",
     "xxhash.h": "src/contour/normal_form.cpp",
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }

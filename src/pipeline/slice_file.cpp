@@ -110,7 +110,7 @@ class Gatherer {
   public:
     Gatherer(const Plan& plan, std::size_t parts, bool statistics)
         : first_(plan.layers.front().index), signs_(plan.layers.size()),
-          layers_(statistics ? plan.layers.size() : 0), parts_(parts) {}
+          layers_(statistics ? plan.layers.size() : 0), changes_(plan.layers.size()), parts_(parts) {}
 
     void add(std::span<const Layer> parts) {
         const Layer& first = parts.front();
@@ -128,8 +128,18 @@ class Gatherer {
                 together.add(measure(layer));
         }
         if (!layers_.empty())
-            layers_[place] = {first.index, first.z, first.thickness(), together,
-                              content_hash(parts.size() == 1 ? first : merged(parts))};
+            layers_[place] = {first.index,
+                              first.z,
+                              first.thickness(),
+                              together,
+                              content_hash(parts.size() == 1 ? first : merged(parts)),
+                              changes_[place]};
+    }
+
+    /// Before the layers are added.
+    void add(const Layer& layer, const LayerChanges& changes, double seconds) {
+        changes_[static_cast<std::size_t>(layer.index - first_)] += changes;
+        step_seconds_.fetch_add(seconds, std::memory_order_relaxed);
     }
 
     void finish(const Plan& plan, FileResult& result) {
@@ -152,6 +162,10 @@ class Gatherer {
         for (const LayerStatistics& layer : layers_)
             result.volume_mm3 += layer.measure.area_mm2 * layer.thickness;
         result.layers = std::move(layers_);
+        if (result.changes)
+            for (const LayerChanges& changes : changes_)
+                *result.changes += changes;
+        result.seconds.polygon = step_seconds_;
     }
 
   private:
@@ -167,6 +181,8 @@ class Gatherer {
     std::uint64_t first_;
     std::vector<Signs> signs_;
     std::vector<LayerStatistics> layers_;
+    std::vector<LayerChanges> changes_; // of all parts
+    std::atomic<double> step_seconds_{0};
     std::vector<Counts> parts_;
 };
 
@@ -281,7 +297,19 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
         result.format = format->name;
     }
     Gatherer gatherer(plan, plate.parts.size(), job.layer_statistics);
+    if (job.steps.any())
+        result.changes.emplace();
     const PlateSink sink = [&](std::span<const Layer> parts) -> std::function<void()> {
+        std::vector<Layer> made;
+        if (job.steps.any()) {
+            for (const Layer& layer : parts) {
+                const Stopwatch stepping;
+                LayerChanges changes;
+                made.push_back(take_steps(job.steps, layer, changes));
+                gatherer.add(layer, changes, stepping.seconds());
+            }
+            parts = made;
+        }
         gatherer.add(parts);
         if (writer == nullptr)
             return {};

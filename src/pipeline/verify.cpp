@@ -2,9 +2,9 @@
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/polygon/crossings.hpp"
+#include "lamella/polygon/nesting.hpp"
 
 #include "core/executor.hpp"
-#include "polygon/ring_places.hpp"
 
 #include <fmt/format.h>
 
@@ -54,12 +54,13 @@ LayerCheck check(const Layer& layer, double quantum) {
     const Crossings crossings = find_crossings(layer, 1);
     if (crossings.count > 0)
         result.crossings.add(crossings.count, crossings.first.front().at);
-    const std::vector<RingPlace> places = ring_places(layer);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        if (places[i] == RingPlace::sound || orientation_is_lost(layer.contour(i), quantum))
+    const std::vector<RingKind> kinds = nesting(layer).kind;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        if (kinds[i] != RingKind::misoriented && kinds[i] != RingKind::overlapping)
             continue;
-        Occurrences& found = places[i] == RingPlace::misoriented ? result.misoriented : result.overlapping;
-        found.add(1, layer.contour(i).front());
+        if (!orientation_is_lost(layer.contour(i), quantum))
+            (kinds[i] == RingKind::misoriented ? result.misoriented : result.overlapping)
+                .add(1, layer.contour(i).front());
     }
     return result;
 }

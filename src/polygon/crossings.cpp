@@ -161,7 +161,8 @@ bool cross(const Segment& s, const Segment& t) noexcept {
 /// Two segments can meet in several cells: a crossing counts in the one cell that holds its computed place.
 class Search {
   public:
-    Search(const Layer& layer, std::size_t keep) : layer_(layer), keep_(keep), frame_(layer.points.span()) {
+    Search(const Layer& layer, std::size_t keep, std::uint64_t enough)
+        : layer_(layer), keep_(keep), enough_(enough), frame_(layer.points.span()) {
         segments_.resize(layer.points.size());
         ids_.reserve(layer.points.size());
         for (std::size_t c = 0; c < layer.contours(); ++c) {
@@ -201,6 +202,8 @@ class Search {
 
     /// Finds the crossings in `cell` among the segments that meet it.
     void search(const Cell& cell, std::span<const SegmentId> ids) {
+        if (count_ >= enough_)
+            return;
         if (ids.size() <= few) {
             search_all_pairs(cell, ids);
             return;
@@ -245,7 +248,7 @@ class Search {
     }
 
     void search_all_pairs(const Cell& cell, std::span<const SegmentId> ids) {
-        for (std::size_t i = 0; i < ids.size(); ++i)
+        for (std::size_t i = 0; i < ids.size() && count_ < enough_; ++i)
             for (std::size_t j = i + 1; j < ids.size(); ++j)
                 test(cell, ids[i], ids[j]);
     }
@@ -410,7 +413,7 @@ class Search {
             if (has_left[intervals[k].i])
                 left.push_back(k);
         std::size_t next_left = 0;
-        for (std::size_t k = 0; k < intervals.size(); ++k) {
+        for (std::size_t k = 0; k < intervals.size() && count_ < enough_; ++k) {
             const Interval& here = intervals[k];
             if (next_left < left.size() && left[next_left] == k) {
                 ++next_left;
@@ -445,6 +448,7 @@ class Search {
 
     const Layer& layer_;
     std::size_t keep_;
+    std::uint64_t enough_; // crossings: the search may stop at so many
     Frame frame_;
     std::vector<Segment> segments_; // by the number of the first point; not all of them are there
     std::vector<SegmentId> ids_;    // of those that are
@@ -452,15 +456,23 @@ class Search {
     std::set<Pair> first_;
 };
 
-} // namespace
-
-Crossings find_crossings(const Layer& layer, std::size_t keep) {
+Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
     if (layer.points.empty())
         return {};
     if (layer.points.size() > std::numeric_limits<SegmentId>::max())
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967295 points; crossings are found in smaller ones");
-    return Search(layer, keep).run();
+    return Search(layer, keep, enough).run();
+}
+
+} // namespace
+
+Crossings find_crossings(const Layer& layer, std::size_t keep) {
+    return found_in(layer, keep, std::numeric_limits<std::uint64_t>::max());
+}
+
+bool has_crossings(const Layer& layer) {
+    return found_in(layer, 0, 1).count > 0;
 }
 
 } // namespace lamella

@@ -7,6 +7,7 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/pipeline/plate.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -42,6 +43,9 @@ struct FileJob {
     /// Measure and hash every layer.
     bool layer_statistics = false;
 
+    /// What is made of the layers of each part before they are written.
+    LayerSteps steps;
+
     std::string output; ///< "" writes nothing, "-" is standard output
     std::string format; ///< by name; "" goes by the extension of `output`
     LayerWriteOptions write;
@@ -53,6 +57,7 @@ struct LayerStatistics {
     double thickness = 0;
     LayerMeasure measure;   ///< of all parts together
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
+    LayerChanges changes;   ///< by FileJob::steps
 };
 
 /// What became of one part.
@@ -83,12 +88,13 @@ struct FileResult {
         std::uint64_t layers = 0;
         double first_z = 0;
     };
-    Affected open;           ///< with open chains
-    Affected inside_out;     ///< whose first ring, always an outer one, runs clockwise
-    double bottom = 0;       ///< of the first layer
-    double top = 0;          ///< of the last layer
-    std::string format;      ///< of the slice file, "" when none was written
-    std::uint64_t bytes = 0; ///< written
+    std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
+    Affected open;                       ///< with open chains
+    Affected inside_out;                 ///< whose first ring, always an outer one, runs clockwise
+    double bottom = 0;                   ///< of the first layer
+    double top = 0;                      ///< of the last layer
+    std::string format;                  ///< of the slice file, "" when none was written
+    std::uint64_t bytes = 0;             ///< written
 
     /// With FileJob::layer_statistics: in ascending z, and the sum of area times thickness.
     std::vector<LayerStatistics> layers;
@@ -96,12 +102,14 @@ struct FileResult {
 
     /// Wall time. `read` includes finding the bounding box, for that is when a mapped file is read;
     /// `weld` includes the inspection, and the weld of engines that need one; `write` is the part of writing
-    /// that must be done in order, while formatting is done in parallel and part of `slice`.
+    /// that must be done in order, while formatting is done in parallel and part of `slice`. So is what is
+    /// made of the layers; `polygon` is its time on all threads added up.
     struct Seconds {
         double read = 0;
         double weld = 0;
         double link = 0;
         double slice = 0;
+        double polygon = 0;
         double write = 0;
         double total = 0;
     } seconds;

@@ -33,4 +33,7 @@ struct Crossings {
 /// layer of more than 2^32 - 1 points.
 [[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16);
 
+/// Whether there are any: stops at the first one found.
+[[nodiscard]] bool has_crossings(const Layer& layer);
+
 } // namespace lamella

@@ -1,0 +1,50 @@
+#pragma once
+
+// What is made of layers between slicing and writing, one step after the other.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/polygon/fill.hpp"
+
+#include <cstdint>
+
+namespace lamella {
+
+/// The steps in the order in which they are taken. By default none is.
+struct LayerSteps {
+    FillRule fill = FillRule::none; ///< see `fill`
+    double offset_mm = 0;           ///< see `offset`; 0 is none
+    bool largest_only = false;      ///< see `largest_body`
+    double min_area_mm2 = 0;        ///< see `without_small_rings`; 0 is none
+    double simplify_mm = 0;         ///< see `simplify`; 0 is none
+
+    [[nodiscard]] bool any() const noexcept {
+        return fill != FillRule::none || offset_mm != 0 || largest_only || min_area_mm2 > 0 ||
+               simplify_mm > 0;
+    }
+    friend bool operator==(const LayerSteps&, const LayerSteps&) = default;
+};
+
+/// What the steps did to a layer, or to several in all.
+struct LayerChanges {
+    std::uint64_t changed_layers = 0;
+    std::uint64_t groups_united = 0;  ///< by `fill`: groups of rings that overlapped
+    std::uint64_t rings_united = 0;   ///< the rings of these groups
+    std::uint64_t rings_reversed = 0; ///< by `fill`
+    std::uint64_t rings_dropped = 0;  ///< by `fill`, `largest_body` and `without_small_rings`
+    std::uint64_t points_dropped = 0; ///< by `simplify`
+    double area_before_mm2 = 0;
+    double area_after_mm2 = 0;
+
+    LayerChanges& operator+=(const LayerChanges& other) noexcept;
+};
+
+/// Takes the steps. A layer that none of them changes is passed through, bit for bit; the result is in normal
+/// form when the layer was. Throws what the steps throw.
+[[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes);
+
+/// The same for all layers of a stack, in parallel; `changes` are those of all layers together.
+[[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
+                                    const Execution& execution = {});
+
+} // namespace lamella

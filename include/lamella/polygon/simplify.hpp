@@ -1,0 +1,21 @@
+#pragma once
+
+// Fewer points for the same contours.
+
+#include "lamella/contour/layer.hpp"
+
+namespace lamella {
+
+/// The layer with some of its points left out, so that no point of a contour, old or new, is farther than
+/// `tolerance` mm from the other one (Hausdorff distance). Points that remain keep their coordinates and
+/// their order; ends of chains remain.
+///
+/// Contours that do not cross do not begin to: where leaving out points would make contours cross, turn a
+/// ring over, let it vanish or move it past another one, points are put back there until it does not, if need
+/// be all of them. A tolerance of 0 leaves out points that lie exactly on a line with their neighbours.
+///
+/// By the method of Douglas and Peucker, O(n log n) for most contours, O(n^2) for spirals and the like.
+/// Throws Error{usage} for a tolerance that is negative or not a number.
+[[nodiscard]] Layer simplify(const Layer& layer, double tolerance);
+
+} // namespace lamella

@@ -1,0 +1,364 @@
+#include "polygon/arrangement.hpp"
+
+#include "lamella/polygon/crossings.hpp"
+
+#include "polygon/orientation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+/// A piece of the boundary, on the grid. All numbers are whole.
+struct Side {
+    Segment line;
+    std::int64_t step;      ///< of the winding number, from below to above
+    std::int64_t below = 0; ///< the winding number there
+
+    [[nodiscard]] std::int64_t above() const noexcept { return below + step; }
+};
+
+/// Adds up sides that lie upon one another.
+void merge(std::vector<Side>& sides) {
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.line.lo, a.line.hi) < std::tie(b.line.lo, b.line.hi);
+    });
+    std::size_t kept = 0;
+    for (const Side& side : sides)
+        if (kept > 0 && sides[kept - 1].line.lo == side.line.lo && sides[kept - 1].line.hi == side.line.hi)
+            sides[kept - 1].step += side.step;
+        else
+            sides[kept++] = side;
+    sides.resize(kept);
+    std::erase_if(sides, [](const Side& side) { return side.step == 0; });
+}
+
+std::vector<Side> sides_of(std::span<const std::span<const Point2>> rings, const ClippingGrid& grid) {
+    std::vector<Side> sides;
+    for (const std::span<const Point2> ring : rings) {
+        if (ring.empty())
+            continue;
+        Point2 a = grid.place(ring.back());
+        for (const Point2& p : ring) {
+            const Point2 b = grid.place(p);
+            if (a < b)
+                sides.push_back({{a, b}, 1});
+            else if (b < a)
+                sides.push_back({{b, a}, -1});
+            a = b;
+        }
+    }
+    merge(sides);
+    return sides;
+}
+
+/// The ends of sides, row by row.
+class Ends {
+  public:
+    explicit Ends(std::span<const Side> sides) {
+        for (const Side& side : sides)
+            ends_.insert(ends_.end(), {side.line.lo, side.line.hi});
+        double high = -std::numeric_limits<double>::infinity();
+        low_ = -high;
+        for (const Point2& p : ends_) {
+            low_ = std::min(low_, p.y);
+            high = std::max(high, p.y);
+        }
+        height_ = std::max(1.0, std::ceil((high - low_) / std::sqrt(static_cast<double>(ends_.size()))));
+        std::sort(ends_.begin(), ends_.end(), [this](const Point2& a, const Point2& b) {
+            return std::pair(row(a.y), a) < std::pair(row(b.y), b);
+        });
+        ends_.erase(std::unique(ends_.begin(), ends_.end()), ends_.end());
+        begins_.resize(row(high) + 2, 0);
+        for (const Point2& p : ends_)
+            ++begins_[row(p.y) + 1];
+        std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+    }
+
+    /// Calls visit(end) for the ends that lie strictly within the segment.
+    template <class Visit>
+    void for_ends_on(const Segment& s, Visit visit) const {
+        const double dx = s.hi.x - s.lo.x;
+        const double dy = s.hi.y - s.lo.y;
+        const auto x_at = [&](double y) {
+            return s.lo.x + std::clamp((y - s.lo.y) / dy, 0.0, 1.0) * dx;
+        };
+        const std::size_t last = row(std::max(s.lo.y, s.hi.y));
+        for (std::size_t r = row(std::min(s.lo.y, s.hi.y)); r <= last; ++r) {
+            double x0 = s.lo.x;
+            double x1 = s.hi.x;
+            if (dy != 0) {
+                const double bottom = low_ + static_cast<double>(r) * height_;
+                std::tie(x0, x1) = std::minmax({x_at(bottom), x_at(bottom + height_)});
+            }
+            const auto end = ends_.begin() + begins_[r + 1];
+            for (auto p = std::partition_point(ends_.begin() + begins_[r], end,
+                                               [&](const Point2& q) { return q.x < x0 - 1; });
+                 p != end && p->x <= x1 + 1; ++p)
+                if (s.lo < *p && *p < s.hi && side(s, *p) == 0)
+                    visit(*p);
+        }
+    }
+
+  private:
+    [[nodiscard]] std::size_t row(double y) const noexcept {
+        return static_cast<std::size_t>((y - low_) / height_);
+    }
+
+    std::vector<Point2> ends_;
+    std::vector<std::ptrdiff_t> begins_; // of the rows
+    double low_ = 0;
+    double height_ = 1;
+};
+
+/// Cuts all sides where they cross others, in the nearest place of the grid, and where others end on them.
+/// False when there was nothing to cut.
+bool cut(std::vector<Side>& sides) {
+    struct Cut {
+        std::size_t side;
+        Point2 at;
+    };
+    std::vector<Cut> cuts;
+    const Ends ends(sides);
+    Layer layer; // every side an open chain
+    std::vector<Point2> points;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const Segment& line = sides[i].line;
+        ends.for_ends_on(line, [&](const Point2& p) { cuts.push_back({i, p}); });
+        points.insert(points.end(), {line.lo, line.hi});
+        layer.offsets.push_back(points.size());
+    }
+    layer.points = PointArray(std::move(points));
+    const auto add = [&](std::size_t i, const Point2& at) {
+        if (at != sides[i].line.lo && at != sides[i].line.hi)
+            cuts.push_back({i, at});
+    };
+    for (const Crossing& crossing : find_crossings(layer, std::numeric_limits<std::size_t>::max()).first) {
+        const Point2 at{std::nearbyint(crossing.at.x) + 0.0, std::nearbyint(crossing.at.y) + 0.0};
+        add(crossing.contour_a, at);
+        add(crossing.contour_b, at);
+    }
+    if (cuts.empty())
+        return false;
+    const auto along = [&](const Cut& c) {
+        const Segment& s = sides[c.side].line;
+        return (c.at.x - s.lo.x) * (s.hi.x - s.lo.x) + (c.at.y - s.lo.y) * (s.hi.y - s.lo.y);
+    };
+    std::sort(cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
+        if (a.side != b.side)
+            return a.side < b.side;
+        return std::pair(along(a), a.at) < std::pair(along(b), b.at);
+    });
+    const auto add_piece = [&sides](const Point2& a, const Point2& b, std::int64_t step) {
+        if (a < b)
+            sides.push_back({{a, b}, step});
+        else if (b < a)
+            sides.push_back({{b, a}, -step}); // bent back by rounding
+    };
+    for (std::size_t begin = 0, end = 0; begin < cuts.size(); begin = end) {
+        const Side whole = sides[cuts[begin].side];
+        Point2 from = whole.line.lo;
+        for (end = begin; end < cuts.size() && cuts[end].side == cuts[begin].side; ++end) {
+            add_piece(from, cuts[end].at, whole.step);
+            from = cuts[end].at;
+        }
+        add_piece(from, whole.line.hi, whole.step);
+        sides[cuts[begin].side].step = 0;
+    }
+    merge(sides);
+    return true;
+}
+
+/// Tells the winding number below each side, by a sweep from left to right. The sides meet in their ends
+/// only.
+void wind(std::vector<Side>& sides, std::int64_t around) {
+    const auto lower = [&](std::size_t i, std::size_t j) {
+        const Segment& s = sides[i].line;
+        const Segment& t = sides[j].line;
+        const bool s_starts_later = t.lo < s.lo;
+        int s_side = s_starts_later ? side(t, s.lo) : -side(s, t.lo);
+        if (s_side == 0)
+            s_side = s_starts_later ? side(t, s.hi) : -side(s, t.hi);
+        return s_side != 0 ? s_side < 0 : i < j;
+    };
+    using Status = std::set<std::size_t, decltype(lower)>;
+    Status status(lower);
+    std::vector<Status::iterator> places(sides.size(), status.end());
+    std::vector<std::size_t> ending(sides.size());
+    std::iota(ending.begin(), ending.end(), std::size_t{0});
+    std::sort(ending.begin(), ending.end(),
+              [&](std::size_t i, std::size_t j) { return sides[i].line.hi < sides[j].line.hi; });
+    auto next_ending = ending.begin();
+    // Sides are in the order of their beginnings; those that begin in one point are placed together, for each
+    // takes its number from the one below.
+    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+        const Point2& at = sides[begin].line.lo;
+        for (; sides[*next_ending].line.hi <= at; ++next_ending)
+            status.erase(places[*next_ending]);
+        for (end = begin; end < sides.size() && sides[end].line.lo == at; ++end)
+            places[end] = status.insert(end).first;
+        auto first = places[begin];
+        while (first != status.begin() && sides[*std::prev(first)].line.lo == at)
+            --first;
+        std::int64_t below = first == status.begin() ? around : sides[*std::prev(first)].above();
+        for (auto place = first; place != status.end() && sides[*place].line.lo == at; ++place) {
+            sides[*place].below = below;
+            below = sides[*place].above();
+        }
+    }
+}
+
+std::vector<Side> arrangement(std::span<const std::span<const Point2>> rings, std::int64_t around,
+                              const ClippingGrid& grid) {
+    std::vector<Side> sides = sides_of(rings, grid);
+    // Rounding the places where sides cross bends them, so that they may cross others: each round has far
+    // fewer.
+    constexpr int rounds = 30;
+    for (int round = 0; round < rounds && !sides.empty() && cut(sides); ++round) {
+    }
+    wind(sides, around);
+    return sides;
+}
+
+/// A side with material on its left.
+struct Directed {
+    Point2 from;
+    Point2 to;
+};
+
+/// Whether, turning clockwise about v from the direction to u, a comes before b.
+bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const Point2& b) noexcept {
+    const auto half = [&](const Point2& p) {
+        const int turn = orientation(v, u, p);
+        if (turn != 0)
+            return turn < 0 ? 0 : 2;
+        return (u < v) == (p < v) ? 3 : 1;
+    };
+    const int half_a = half(a);
+    const int half_b = half(b);
+    return half_a != half_b ? half_a < half_b : orientation(v, a, b) < 0;
+}
+
+/// Joins sides to rings; where several meet, so that each keeps its own wedge of material.
+std::vector<Ring> joined(std::vector<Directed> sides) {
+    std::sort(sides.begin(), sides.end(), [](const Directed& a, const Directed& b) {
+        return std::tie(a.from, a.to) < std::tie(b.from, b.to);
+    });
+    std::vector<bool> used(sides.size(), false);
+    std::vector<Ring> rings;
+    for (std::size_t start = 0; start < sides.size(); ++start) {
+        if (used[start])
+            continue;
+        Ring& ring = rings.emplace_back();
+        std::size_t at = start;
+        while (true) {
+            used[at] = true;
+            ring.push_back(sides[at].from);
+            const Point2& v = sides[at].to;
+            std::size_t next = sides.size();
+            const auto first = std::partition_point(sides.begin(), sides.end(),
+                                                    [&](const Directed& s) { return s.from < v; });
+            for (auto i = static_cast<std::size_t>(first - sides.begin());
+                 i < sides.size() && sides[i].from == v; ++i)
+                if ((!used[i] || i == start) &&
+                    (next == sides.size() ||
+                     clockwise_before(v, sides[at].from, sides[i].to, sides[next].to)))
+                    next = i;
+            if (next == start || next == sides.size())
+                break;
+            at = next;
+        }
+    }
+    return rings;
+}
+
+bool crossing(const std::vector<Ring>& rings) {
+    const std::vector<std::span<const Point2>> spans(rings.begin(), rings.end());
+    return has_crossings(layer_of(spans));
+}
+
+/// Puts the corners of the given rings back where they were before they were rounded.
+std::vector<Ring> with_corners(std::vector<Ring> rings, std::span<const std::span<const Point2>> given,
+                               const ClippingGrid& grid) {
+    std::vector<std::pair<Point2, Point2>> corners; // by their places
+    for (const std::span<const Point2> ring : given)
+        for (const Point2& p : ring)
+            corners.emplace_back(grid.place(p), p);
+    std::sort(corners.begin(), corners.end()); // of several ones in a place the smallest counts
+    for (Ring& ring : rings)
+        for (Point2& p : ring) {
+            const auto corner = std::partition_point(corners.begin(), corners.end(),
+                                                     [&](const auto& c) { return c.first < p; });
+            p = corner != corners.end() && corner->first == p ? corner->second : grid.point(p);
+        }
+    return rings;
+}
+
+} // namespace
+
+std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule, std::int64_t around,
+                         const ClippingGrid& grid) {
+    std::vector<Directed> sides;
+    for (const Side& side : arrangement(rings, around, grid)) {
+        const bool above = is_material(rule, side.above());
+        if (above != is_material(rule, side.below))
+            sides.push_back(above ? Directed{side.line.lo, side.line.hi}
+                                  : Directed{side.line.hi, side.line.lo});
+    }
+    std::vector<Ring> result = joined(std::move(sides));
+    std::vector<Ring> at_corners = with_corners(result, rings, grid);
+    if (!crossing(at_corners))
+        return at_corners;
+    for (Ring& ring : result)
+        for (Point2& p : ring)
+            p = grid.point(p);
+    return result;
+}
+
+bool winds_once(std::span<const std::span<const Point2>> rings, std::int64_t around,
+                const ClippingGrid& grid) {
+    double excess = 0; // the integral of by how much w is off
+    double length = 0;
+    const auto off = [](std::int64_t w) {
+        return static_cast<double>(w > 1 ? w - 1 : w < 0 ? -w : 0);
+    };
+    for (const Side& side : arrangement(rings, around, grid)) {
+        const auto& [lo, hi] = side.line;
+        length += std::hypot(hi.x - lo.x, hi.y - lo.y);
+        excess += (off(side.below) - off(side.above())) * (hi.x - lo.x) * (lo.y + hi.y) / 2;
+    }
+    return std::abs(excess) <= 2 * length;
+}
+
+bool is_material(FillRule rule, std::int64_t winding) noexcept {
+    switch (rule) {
+    case FillRule::nonzero:
+        return winding != 0;
+    case FillRule::evenodd:
+        return winding % 2 != 0;
+    default:
+        return winding > 0;
+    }
+}
+
+Layer layer_of(std::span<const std::span<const Point2>> rings) {
+    Layer layer;
+    std::vector<Point2> points;
+    for (const std::span<const Point2> ring : rings) {
+        points.insert(points.end(), ring.begin(), ring.end());
+        layer.offsets.push_back(points.size());
+    }
+    layer.points = PointArray(std::move(points));
+    layer.rings = rings.size();
+    return layer;
+}
+
+} // namespace lamella

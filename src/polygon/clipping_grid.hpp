@@ -1,0 +1,34 @@
+#pragma once
+
+// A grid of integers over a layer, on which contours are cut at their crossings.
+
+#include "lamella/core/point.hpp"
+
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+using Ring = std::vector<Point2>;
+
+/// A square grid whose unit is a power of two, at most 2^-36 of the layer's extent (about 1e-9 mm for 100 mm)
+/// or, far from the origin, the last place of the largest coordinate.
+class ClippingGrid {
+  public:
+    /// `margin` is by how much results may reach beyond the points. Throws Error{limit} when coordinates are
+    /// too large.
+    explicit ClippingGrid(std::span<const Point2> points, double margin = 0);
+
+    [[nodiscard]] double unit() const noexcept { return unit_; }
+    /// The nearest place: whole numbers, at most some 2^37.
+    [[nodiscard]] Point2 place(const Point2& p) const noexcept;
+    [[nodiscard]] Point2 point(const Point2& place) const noexcept {
+        return {(origin_.x + place.x) * unit_ + 0.0, (origin_.y + place.y) * unit_ + 0.0};
+    }
+
+  private:
+    double unit_ = 1;
+    Point2 origin_; ///< in units
+};
+
+} // namespace lamella

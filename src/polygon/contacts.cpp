@@ -1,0 +1,415 @@
+#include "polygon/contacts.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "polygon/orientation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+struct Box {
+    double x0;
+    double y0;
+    double x1;
+    double y1;
+
+    static Box of(const Point2& a, const Point2& b) noexcept {
+        return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+    }
+    void add(const Box& other) noexcept {
+        x0 = std::min(x0, other.x0);
+        y0 = std::min(y0, other.y0);
+        x1 = std::max(x1, other.x1);
+        y1 = std::max(y1, other.y1);
+    }
+    [[nodiscard]] bool meets(const Box& other) const noexcept {
+        return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
+    }
+};
+
+/// Whether two segments have a point in common. Neither is a point.
+bool meet(const Segment& s, const Segment& t) noexcept {
+    const int a = side(s, t.lo) * side(s, t.hi);
+    if (a > 0)
+        return false;
+    const int b = side(t, s.lo) * side(t, s.hi);
+    if (b > 0)
+        return false;
+    if (a < 0 || b < 0)
+        return true; // one has its ends on both sides of the other one's line, the other one on or across its
+    // Ends that lie on the other one's line: all of them, or a common one, or one in the other's inside.
+    return s.lo <= t.hi && t.lo <= s.hi;
+}
+
+Segment ascending(const Point2& a, const Point2& b) noexcept {
+    return a < b ? Segment{a, b} : Segment{b, a};
+}
+
+/// Disjoint sets of rings; a set is marked once a contact was found in it.
+class Groups {
+  public:
+    explicit Groups(std::size_t rings) : parent_(rings), marked_(rings, false) {
+        std::iota(parent_.begin(), parent_.end(), 0U);
+    }
+    [[nodiscard]] std::uint32_t find(std::uint32_t i) noexcept {
+        while (parent_[i] != i)
+            i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    /// Whether a contact between the two would be news.
+    [[nodiscard]] bool open(std::uint32_t i, std::uint32_t j) noexcept {
+        return i == j ? !marked_[find(i)] : find(i) != find(j);
+    }
+    void connect(std::uint32_t i, std::uint32_t j) noexcept {
+        i = find(i);
+        j = find(j);
+        parent_[std::max(i, j)] = std::min(i, j);
+        marked_[std::min(i, j)] = true;
+    }
+    [[nodiscard]] Contacts contacts() {
+        Contacts result;
+        result.group.assign(parent_.size(), Contacts::none);
+        for (std::uint32_t i = 0; i < parent_.size(); ++i) {
+            const std::uint32_t first = find(i);
+            if (marked_[first])
+                result.group[i] = first == i ? result.groups++ : result.group[first];
+        }
+        return result;
+    }
+
+  private:
+    std::vector<std::uint32_t> parent_; // the smallest number of a set is its root
+    std::vector<bool> marked_;
+};
+
+/// A piece of a ring that goes one way in x and one way in y: its box is that of its ends, and it does not
+/// meet itself.
+struct Chain {
+    std::uint32_t ring;
+    std::uint32_t first;    ///< number of its first point in the layer
+    std::uint32_t segments; ///< its last point may be the first one of the ring
+    bool goes_on;           ///< the next chain is the same way's continuation
+};
+
+class Search {
+  public:
+    explicit Search(const Layer& layer) : layer_(layer), groups_(layer.rings) {}
+
+    Contacts run() && {
+        make_chains();
+        if (!chains_.empty() && !search_grid() && (found_ || !free_of_contacts()))
+            group_by_boxes();
+        return groups_.contacts();
+    }
+
+  private:
+    [[nodiscard]] const Point2& point(const Chain& chain, std::uint32_t i) const noexcept {
+        const std::uint64_t at = chain.first + i;
+        return layer_.points[at == layer_.offsets[chain.ring + 1] ? layer_.offsets[chain.ring] : at];
+    }
+
+    void make_chains() {
+        chains_.reserve(layer_.points.size() / (longest / 2) + 4 * layer_.rings);
+        boxes_.reserve(chains_.capacity());
+        for (std::uint32_t ring = 0; ring < layer_.rings; ++ring) {
+            const std::uint64_t begin = layer_.offsets[ring];
+            const std::uint64_t end = layer_.offsets[ring + 1];
+            if (end - begin < 2)
+                continue;
+            Chain chain{ring, static_cast<std::uint32_t>(begin), 0, false};
+            unsigned ways = 0;
+            for (std::uint64_t i = begin; i < end; ++i) {
+                const Point2& a = layer_.points[i];
+                const Point2& b = layer_.points[i + 1 == end ? begin : i + 1];
+                const unsigned way =
+                    static_cast<unsigned>(b.x > a.x) | static_cast<unsigned>(b.x < a.x) << 1 |
+                    static_cast<unsigned>(b.y > a.y) << 2 | static_cast<unsigned>(b.y < a.y) << 3;
+                const unsigned both = ways | way;
+                const bool turns = (both & 3) == 3 || (both & 12) == 12;
+                if (turns || chain.segments == longest) {
+                    chain.goes_on = !turns;
+                    add(chain);
+                    chain = {ring, static_cast<std::uint32_t>(i), 0, false};
+                    ways = turns ? way : both;
+                } else {
+                    ways = both;
+                }
+                ++chain.segments;
+            }
+            add(chain);
+        }
+    }
+
+    void add(const Chain& chain) {
+        chains_.push_back(chain);
+        boxes_.push_back(Box::of(point(chain, 0), point(chain, chain.segments)));
+    }
+
+    /// False when it would take too long.
+    bool search_grid() {
+        const std::size_t n = chains_.size();
+        Box all = boxes_[0];
+        double sides = 0;
+        for (const Box& box : boxes_) {
+            all.add(box);
+            sides += (box.x1 - box.x0) + (box.y1 - box.y0);
+        }
+        const double width = all.x1 - all.x0;
+        const double height = all.y1 - all.y0;
+        const auto count = static_cast<double>(n);
+        const double size = std::max({sides / (2 * count), std::sqrt(width * height / count),
+                                      (width + height) / count, std::max(width, height) / 0x1p15});
+        if (!(size > 0 && std::isfinite(width) && std::isfinite(height) && std::isfinite(width / size) &&
+              std::isfinite(height / size)))
+            return false;
+        const double scale = 1 / size;
+        if (!std::isfinite(scale))
+            return false;
+        const auto columns = static_cast<std::size_t>(width * scale) + 1;
+        const auto rows = static_cast<std::size_t>(height * scale) + 1;
+        const auto cell = [scale](double x, double from, std::size_t cells) {
+            return std::min(cells - 1, static_cast<std::size_t>((x - from) * scale));
+        };
+        // Rounding keeps the order of numbers, so boxes that meet have a cell in common.
+        const auto for_cells = [&](const Box& box, auto visit) {
+            const std::size_t i1 = cell(box.x1, all.x0, columns);
+            const std::size_t j1 = cell(box.y1, all.y0, rows);
+            for (std::size_t j = cell(box.y0, all.y0, rows); j <= j1; ++j)
+                for (std::size_t i = cell(box.x0, all.x0, columns); i <= i1; ++i)
+                    visit(j * columns + i);
+        };
+        std::size_t entries = 0;
+        for (const Box& box : boxes_) {
+            entries += (cell(box.x1, all.x0, columns) - cell(box.x0, all.x0, columns) + 1) *
+                       (cell(box.y1, all.y0, rows) - cell(box.y0, all.y0, rows) + 1);
+            if (entries > 16 * n + 4096)
+                return false;
+        }
+        std::vector<std::uint32_t> ends(columns * rows + 1, 0);
+        for (const Box& box : boxes_)
+            for_cells(box, [&](std::size_t i) { ++ends[i]; });
+        std::uint32_t sum = 0;
+        for (std::uint32_t& end : ends)
+            end = sum += end;
+        std::vector<std::uint32_t> sorted(sum);
+        for (std::size_t k = n; k-- > 0;)
+            for_cells(boxes_[k], [&](std::size_t i) { sorted[--ends[i]] = static_cast<std::uint32_t>(k); });
+
+        patience_ = 64 * n + 4096;
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            const std::uint64_t m = ends[i + 1] - ends[i];
+            if (patience_ < m * m / 16)
+                return false;
+            patience_ -= m * m / 16;
+            for (std::uint32_t a = ends[i]; a < ends[i + 1]; ++a)
+                for (std::uint32_t b = a + 1; b < ends[i + 1]; ++b)
+                    if (boxes_[sorted[a]].meets(boxes_[sorted[b]]))
+                        look_into(sorted[a], sorted[b]);
+        }
+        return patience_ > 0;
+    }
+
+    void look_into(std::uint32_t i, std::uint32_t j) {
+        const Chain& a = chains_[i];
+        const Chain& b = chains_[j];
+        if (patience_ == 0 || !groups_.open(a.ring, b.ring) || (a.goes_on && j == i + 1))
+            return;
+        if (in_contact(a, 0, a.segments, b, 0, b.segments)) {
+            groups_.connect(a.ring, b.ring);
+            found_ = true;
+        }
+    }
+
+    /// Whether the segments [a0, a1) of chain a are in contact with the segments [b0, b1) of b.
+    bool in_contact(const Chain& a, std::uint32_t a0, std::uint32_t a1, const Chain& b, std::uint32_t b0,
+                    std::uint32_t b1) {
+        patience_ -= patience_ > 0 ? 1 : 0;
+        if (!Box::of(point(a, a0), point(a, a1)).meets(Box::of(point(b, b0), point(b, b1))))
+            return false;
+        if (a1 - a0 == 1 && b1 - b0 == 1)
+            return in_contact(a.ring, a.first + a0, b.ring, b.first + b0);
+        if (a1 - a0 >= b1 - b0) {
+            const std::uint32_t middle = a0 + (a1 - a0) / 2;
+            return in_contact(a, a0, middle, b, b0, b1) || in_contact(a, middle, a1, b, b0, b1);
+        }
+        const std::uint32_t middle = b0 + (b1 - b0) / 2;
+        return in_contact(a, a0, a1, b, b0, middle) || in_contact(a, a0, a1, b, middle, b1);
+    }
+
+    /// The segments that begin at the points of these numbers.
+    [[nodiscard]] bool in_contact(std::uint32_t ring_a, std::uint32_t i, std::uint32_t ring_b,
+                                  std::uint32_t j) const {
+        const Point2& a0 = layer_.points[i];
+        const Point2& a1 = layer_.points[following(ring_a, i)];
+        const Point2& b0 = layer_.points[j];
+        const Point2& b1 = layer_.points[following(ring_b, j)];
+        if (a0 == a1 || b0 == b1)
+            return false; // its point belongs to the segments beside it, too
+        if (ring_a == ring_b) {
+            if (follows(ring_a, i, j))
+                return folds(a0, a1, b1);
+            if (follows(ring_a, j, i))
+                return folds(b0, b1, a1);
+        }
+        return meet(ascending(a0, a1), ascending(b0, b1));
+    }
+
+    [[nodiscard]] std::uint32_t following(std::uint32_t ring, std::uint32_t i) const noexcept {
+        return static_cast<std::uint32_t>(i + 1 == layer_.offsets[ring + 1] ? layer_.offsets[ring] : i + 1);
+    }
+
+    /// Whether segment j comes next after segment i, points that repeat aside.
+    [[nodiscard]] bool follows(std::uint32_t ring, std::uint32_t i, std::uint32_t j) const noexcept {
+        const Point2& end = layer_.points[following(ring, i)];
+        for (std::uint32_t next = following(ring, i); next != i; next = following(ring, next)) {
+            if (next == j)
+                return true;
+            if (layer_.points[following(ring, next)] != end)
+                return false;
+        }
+        return false;
+    }
+
+    /// Whether the way from a to b goes back upon itself to c.
+    static bool folds(const Point2& a, const Point2& b, const Point2& c) noexcept {
+        return orientation(a, b, c) == 0 && (a < b) == (c < b);
+    }
+
+    /// A sweep from left to right (Shamos and Hoey): if any two segments are in contact, two that are
+    /// neighbours on the line of the sweep are found to be.
+    [[nodiscard]] bool free_of_contacts() const {
+        struct Line {
+            Segment line;
+            std::uint32_t ring;
+            std::uint32_t first;
+        };
+        struct Event {
+            Point2 at;
+            bool ends;
+            std::uint32_t i;
+        };
+        std::vector<Line> lines;
+        std::vector<Event> events;
+        for (std::uint32_t ring = 0; ring < layer_.rings; ++ring)
+            for (auto i = static_cast<std::uint32_t>(layer_.offsets[ring]); i < layer_.offsets[ring + 1];
+                 ++i) {
+                const Point2& a = layer_.points[i];
+                const Point2& b = layer_.points[following(ring, i)];
+                if (a == b)
+                    continue;
+                const auto number = static_cast<std::uint32_t>(lines.size());
+                lines.push_back({ascending(a, b), ring, i});
+                events.push_back({lines.back().line.lo, false, number});
+                events.push_back({lines.back().line.hi, true, number});
+            }
+        // Beginnings first: what begins where another one ends is in contact with it.
+        std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
+            return std::tie(a.at, a.ends, a.i) < std::tie(b.at, b.ends, b.i);
+        });
+        const auto lower = [&](std::uint32_t i, std::uint32_t j) {
+            const Segment& s = lines[i].line;
+            const Segment& t = lines[j].line;
+            const bool s_starts_later = t.lo < s.lo;
+            int s_side = s_starts_later ? side(t, s.lo) : -side(s, t.lo);
+            if (s_side == 0)
+                s_side = s_starts_later ? side(t, s.hi) : -side(s, t.hi);
+            return s_side != 0 ? s_side < 0 : i < j;
+        };
+        using Status = std::set<std::uint32_t, decltype(lower)>;
+        Status status(lower);
+        std::vector<Status::iterator> places(lines.size(), status.end());
+        const auto contact_below = [&](Status::iterator above) {
+            if (above == status.begin() || above == status.end())
+                return false;
+            const Line& s = lines[*std::prev(above)];
+            const Line& t = lines[*above];
+            return in_contact(s.ring, s.first, t.ring, t.first);
+        };
+        for (const Event& event : events) {
+            if (event.ends) {
+                if (contact_below(status.erase(places[event.i])))
+                    return false;
+            } else {
+                const auto place = status.insert(event.i).first;
+                places[event.i] = place;
+                if (contact_below(place) || contact_below(std::next(place)))
+                    return false;
+            }
+        }
+        return true;
+    }
+
+    /// Puts all rings in groups, connected by boxes that meet.
+    void group_by_boxes() {
+        std::vector<Box> boxes(layer_.rings, {0, 0, 0, 0});
+        std::vector<std::uint32_t> order;
+        for (std::size_t i = 0; i < chains_.size(); ++i) {
+            const std::uint32_t ring = chains_[i].ring;
+            if (order.empty() || order.back() != ring) {
+                boxes[ring] = boxes_[i];
+                order.push_back(ring);
+            } else {
+                boxes[ring].add(boxes_[i]);
+            }
+        }
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return std::tie(boxes[a].x0, a) < std::tie(boxes[b].x0, b);
+        });
+        // What is open at the sweep's abscissa, by the groups' intervals of y: disjoint, or they would be
+        // one.
+        struct Open {
+            double y0;
+            double y1;
+            double x1;
+            std::uint32_t ring;
+        };
+        const auto by_y = [](const Open& a, const Open& b) {
+            return a.y1 < b.y0;
+        };
+        std::set<Open, decltype(by_y)> open(by_y);
+        for (const std::uint32_t ring : order) {
+            Open here{boxes[ring].y0, boxes[ring].y1, boxes[ring].x1, ring};
+            groups_.connect(ring, ring);
+            for (auto other = open.find(here); other != open.end(); other = open.find(here)) {
+                if (other->x1 >= boxes[ring].x0) {
+                    groups_.connect(ring, other->ring);
+                    here = {std::min(here.y0, other->y0), std::max(here.y1, other->y1),
+                            std::max(here.x1, other->x1), ring};
+                }
+                open.erase(other);
+            }
+            open.insert(here);
+        }
+    }
+
+    static constexpr std::uint32_t longest = 16;
+
+    const Layer& layer_;
+    Groups groups_;
+    std::vector<Chain> chains_;
+    std::vector<Box> boxes_;     // of the chains
+    std::uint64_t patience_ = 0; // steps until the grid is given up
+    bool found_ = false;
+};
+
+} // namespace
+
+Contacts find_contacts(const Layer& layer) {
+    if (layer.points.size() >= Contacts::none)
+        throw Error(ErrorKind::limit,
+                    "a layer has more than 4294967294 points; contacts are found in smaller ones");
+    return Search(layer).run();
+}
+
+} // namespace lamella

@@ -1,0 +1,32 @@
+#pragma once
+
+// Which rings of a layer come into contact, with one another or with themselves.
+
+#include "lamella/contour/layer.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace lamella {
+
+/// The groups of rings in contact.
+struct Contacts {
+    static constexpr std::uint32_t none = 0xffffffff;
+
+    /// For each ring the group that it belongs to, `none` when it touches nothing, not even itself.
+    std::vector<std::uint32_t> group;
+    std::uint32_t groups = 0;
+};
+
+/// Two rings are in contact when they have a point in common: they cross, touch or run along each other. A
+/// ring is in contact with itself when two of its edges have more in common than the vertex between them.
+/// Groups are connected by contacts, and numbered by the first of their rings. Decided exactly. Open chains
+/// do not count; points that repeat the one before them do not either.
+///
+/// Meant for layers that are clean, at a few nanoseconds a point: rings are cut into short chains that go one
+/// way in x and in y; a grid tells which of their boxes overlap, and those alone are looked into. O(n log n)
+/// for layers that defeat the grid, such as long walls aslant side by side. Where such a layer has contacts,
+/// rings whose boxes overlap are put in one group: groups may be larger than contacts ask for, never smaller.
+[[nodiscard]] Contacts find_contacts(const Layer& layer);
+
+} // namespace lamella

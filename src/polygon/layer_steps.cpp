@@ -1,0 +1,100 @@
+#include "lamella/polygon/layer_steps.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/polygon/offset.hpp"
+#include "lamella/polygon/selection.hpp"
+#include "lamella/polygon/simplify.hpp"
+
+#include "core/executor.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+double area(const Layer& layer) noexcept {
+    double sum = 0;
+    for (std::size_t i = 0; i < layer.rings; ++i)
+        sum += ring_area(layer.contour(i));
+    return sum;
+}
+
+} // namespace
+
+LayerChanges& LayerChanges::operator+=(const LayerChanges& other) noexcept {
+    changed_layers += other.changed_layers;
+    groups_united += other.groups_united;
+    rings_united += other.rings_united;
+    rings_reversed += other.rings_reversed;
+    rings_dropped += other.rings_dropped;
+    points_dropped += other.points_dropped;
+    area_before_mm2 += other.area_before_mm2;
+    area_after_mm2 += other.area_after_mm2;
+    return *this;
+}
+
+Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
+    changes = {};
+    if (!steps.any())
+        return layer;
+    changes.area_before_mm2 = area(layer);
+    bool changed = false;
+    if (steps.fill != FillRule::none) {
+        Filled filled = fill(layer, steps.fill);
+        changes.groups_united = filled.groups_united;
+        changes.rings_united = filled.rings_united;
+        changes.rings_reversed = filled.rings_reversed;
+        changes.rings_dropped = filled.rings_dropped;
+        changed = filled.changed();
+        if (changed)
+            layer = std::move(filled.layer);
+    }
+    if (steps.offset_mm != 0 && layer.rings > 0) {
+        layer = offset(layer, steps.offset_mm);
+        changed = true;
+    }
+    const auto select = [&](Layer selected) {
+        changes.rings_dropped += layer.rings - selected.rings;
+        changed = changed || selected.rings < layer.rings;
+        layer = std::move(selected);
+    };
+    if (steps.largest_only)
+        select(largest_body(layer));
+    if (steps.min_area_mm2 > 0)
+        select(without_small_rings(layer, steps.min_area_mm2));
+    if (steps.simplify_mm > 0) {
+        Layer simplified = simplify(layer, steps.simplify_mm);
+        changes.points_dropped = layer.points.size() - simplified.points.size();
+        changed = changed || changes.points_dropped > 0;
+        layer = std::move(simplified);
+    }
+    changes.changed_layers = changed ? 1 : 0;
+    changes.area_after_mm2 = changed ? area(layer) : changes.area_before_mm2;
+    return layer;
+}
+
+LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
+                      const Execution& execution) {
+    changes = {};
+    if (!steps.any())
+        return layers;
+    std::vector<LayerChanges> each(layers.size());
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::polygon, layers.size());
+    executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            layers[i] = take_steps(steps, std::move(layers[i]), each[i]);
+            progress.add(1);
+        }
+    });
+    progress.finish();
+    for (const LayerChanges& one : each)
+        changes += one;
+    return layers;
+}
+
+} // namespace lamella

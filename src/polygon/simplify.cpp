@@ -1,0 +1,217 @@
+#include "lamella/polygon/simplify.hpp"
+
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/polygon/crossings.hpp"
+#include "lamella/polygon/nesting.hpp"
+
+#include "polygon/orientation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+double squared_distance(const Point2& p, const Point2& a, const Point2& b) noexcept {
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    const double px = p.x - a.x;
+    const double py = p.y - a.y;
+    const double square = dx * dx + dy * dy;
+    const double t = square > 0 ? std::clamp((px * dx + py * dy) / square, 0.0, 1.0) : 0.0;
+    const double ex = px - t * dx;
+    const double ey = py - t * dy;
+    return ex * ex + ey * ey;
+}
+
+/// Which points of a layer are kept, and how to put more of them back.
+class Thinned {
+  public:
+    Thinned(const Layer& layer, double tolerance)
+        : layer_(layer), square_(tolerance * tolerance), kept_(layer.points.size(), false) {
+        for (std::size_t c = 0; c < layer.contours(); ++c)
+            thin(c);
+    }
+
+    /// The layer of the kept points, contours in the same order.
+    [[nodiscard]] Layer layer() {
+        Layer result = layer_;
+        std::vector<Point2> points;
+        numbers_.clear();
+        result.offsets.assign(1, 0);
+        for (std::size_t c = 0; c < layer_.contours(); ++c) {
+            for (std::uint64_t i = layer_.offsets[c]; i < layer_.offsets[c + 1]; ++i)
+                if (kept_[i]) {
+                    points.push_back(layer_.points[i]);
+                    numbers_.push_back(i);
+                }
+            result.offsets.push_back(points.size());
+        }
+        result.points = PointArray(std::move(points));
+        return result;
+    }
+
+    /// Puts back the point farthest from a segment of the last layer; false when none was left out there.
+    bool refine(const Layer& thinned, std::uint64_t contour, std::uint64_t segment) {
+        const std::uint64_t first = thinned.offsets[contour] + segment;
+        const std::uint64_t next =
+            first + 1 < thinned.offsets[contour + 1] ? first + 1 : thinned.offsets[contour];
+        const std::uint64_t begin = numbers_[first];
+        std::uint64_t end = numbers_[next];
+        if (end <= begin)
+            end += layer_.offsets[contour + 1] - layer_.offsets[contour];
+        if (end - begin < 2)
+            return false;
+        const auto [farthest, square] = farthest_between(contour, begin, end);
+        kept_[wrapped(contour, farthest)] = true;
+        return true;
+    }
+
+    /// Puts back half of the points left out of a contour, at least one; false when there were none.
+    bool refine(const Layer& thinned, std::uint64_t contour) {
+        bool any = false;
+        for (std::uint64_t i = 0; i < thinned.offsets[contour + 1] - thinned.offsets[contour]; ++i)
+            any = refine(thinned, contour, i) || any;
+        return any;
+    }
+
+  private:
+    [[nodiscard]] std::uint64_t wrapped(std::size_t contour, std::uint64_t i) const noexcept {
+        const std::uint64_t end = layer_.offsets[contour + 1];
+        return i < end ? i : i - (end - layer_.offsets[contour]);
+    }
+
+    /// The point strictly between two that is farthest from the line between them; the middle one of all when
+    /// that is none.
+    [[nodiscard]] std::pair<std::uint64_t, double> farthest_between(std::size_t contour, std::uint64_t begin,
+                                                                    std::uint64_t end) const {
+        const Point2& a = layer_.points[wrapped(contour, begin)];
+        const Point2& b = layer_.points[wrapped(contour, end)];
+        std::uint64_t farthest = begin + (end - begin) / 2;
+        double most = 0;
+        for (std::uint64_t i = begin + 1; i < end; ++i) {
+            const double square = squared_distance(layer_.points[wrapped(contour, i)], a, b);
+            if (square > most) {
+                most = square;
+                farthest = i;
+            }
+        }
+        return {farthest, most};
+    }
+
+    void thin(std::size_t contour) {
+        const std::uint64_t begin = layer_.offsets[contour];
+        const std::uint64_t end = layer_.offsets[contour + 1];
+        const bool closed = layer_.closed(contour);
+        if (end - begin < (closed ? 4U : 3U)) {
+            std::fill(kept_.begin() + static_cast<std::ptrdiff_t>(begin),
+                      kept_.begin() + static_cast<std::ptrdiff_t>(end), true);
+            return;
+        }
+        // A ring is cut at its first point, the smallest in normal form, and at the one farthest from it.
+        std::uint64_t last = end - 1;
+        if (closed) {
+            last = end;
+            const std::uint64_t opposite = farthest_between(contour, begin, end).first;
+            kept_[opposite] = true;
+            thin(contour, begin, opposite);
+            thin(contour, opposite, end);
+        } else {
+            kept_[last] = true;
+            thin(contour, begin, last);
+        }
+        kept_[begin] = true;
+    }
+
+    void thin(std::size_t contour, std::uint64_t first, std::uint64_t last) {
+        std::vector<std::pair<std::uint64_t, std::uint64_t>> pending{{first, last}};
+        while (!pending.empty()) {
+            const auto [begin, end] = pending.back();
+            pending.pop_back();
+            if (end - begin < 2)
+                continue;
+            const auto [farthest, square] = farthest_between(contour, begin, end);
+            if (square_ > 0 ? square <= square_ : on_line(contour, begin, end))
+                continue;
+            kept_[wrapped(contour, farthest)] = true;
+            pending.emplace_back(begin, farthest);
+            pending.emplace_back(farthest, end);
+        }
+    }
+
+    /// Whether all points between two lie exactly on the segment between them.
+    [[nodiscard]] bool on_line(std::size_t contour, std::uint64_t begin, std::uint64_t end) const {
+        const Point2& a = layer_.points[wrapped(contour, begin)];
+        const Point2& b = layer_.points[wrapped(contour, end)];
+        const Point2& low = std::min(a, b);
+        const Point2& high = std::max(a, b);
+        for (std::uint64_t i = begin + 1; i < end; ++i) {
+            const Point2& p = layer_.points[wrapped(contour, i)];
+            if (p < low || high < p || orientation(a, b, p) != 0)
+                return false;
+        }
+        return true;
+    }
+
+    const Layer& layer_;
+    double square_;
+    std::vector<bool> kept_;
+    std::vector<std::uint64_t> numbers_; // of the kept points in the layer
+};
+
+/// Puts points back where segments cross. False when none do that did not cross before.
+bool refine_crossings(Thinned& thinned, const Layer& layer) {
+    constexpr std::size_t at_once = 4096;
+    bool any = false;
+    for (const Crossing& crossing : find_crossings(layer, at_once).first) {
+        any = thinned.refine(layer, crossing.contour_a, crossing.segment_a) || any;
+        any = thinned.refine(layer, crossing.contour_b, crossing.segment_b) || any;
+    }
+    return any;
+}
+
+/// Puts points back in rings that have turned over, vanished or moved past others, and around those.
+bool refine_nesting(Thinned& thinned, const Layer& layer, const Nesting& before) {
+    const Nesting after = nesting(layer);
+    std::vector<bool> moved(layer.rings, false);
+    const auto mark = [&](std::uint32_t ring) {
+        if (ring != Nesting::none)
+            moved[ring] = true;
+    };
+    for (std::uint32_t i = 0; i < layer.rings; ++i)
+        if (after.parent[i] != before.parent[i] || after.kind[i] != before.kind[i]) {
+            mark(i);
+            mark(after.parent[i]);
+            mark(before.parent[i]);
+        }
+    bool any = false;
+    for (std::uint32_t i = 0; i < layer.rings; ++i)
+        if (moved[i])
+            any = thinned.refine(layer, i) || any;
+    return any;
+}
+
+} // namespace
+
+Layer simplify(const Layer& layer, double tolerance) {
+    if (!(tolerance >= 0))
+        throw Error(ErrorKind::usage, "contours can be simplified within a distance of 0 or more only");
+    Thinned thinned(layer, tolerance);
+    Layer result = thinned.layer();
+    if (result.points.size() == layer.points.size())
+        return layer;
+    const Nesting before = nesting(layer);
+    // Every round puts back a point at least, so this ends, with the layer as it was if need be.
+    while (refine_crossings(thinned, result) || refine_nesting(thinned, result, before))
+        result = thinned.layer();
+    return normal_form(std::move(result));
+}
+
+} // namespace lamella

@@ -1,0 +1,244 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/polygon/crossings.hpp"
+#include "lamella/polygon/fill.hpp"
+#include "lamella/polygon/nesting.hpp"
+
+#include "fixtures/layers.hpp"
+#include "polygon/winding_areas.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <set>
+
+namespace lamella {
+namespace {
+
+using test::Contour;
+using test::diamond;
+using test::layer_of;
+using test::Random;
+using test::rectangle;
+using test::reversed;
+
+constexpr std::array<FillRule, 3> rules{FillRule::nonzero, FillRule::evenodd, FillRule::positive};
+
+bool is_material(FillRule rule, int winding) {
+    return rule == FillRule::nonzero   ? winding != 0
+           : rule == FillRule::evenodd ? winding % 2 != 0
+                                       : winding > 0;
+}
+
+Layer normal_layer(const std::vector<Contour>& rings, const std::vector<Contour>& chains = {}) {
+    return normal_form(layer_of(rings, chains));
+}
+
+std::vector<Contour> contours(const Layer& layer) {
+    std::vector<Contour> result;
+    for (std::size_t i = 0; i < layer.contours(); ++i)
+        result.emplace_back(layer.contour(i).begin(), layer.contour(i).end());
+    return result;
+}
+
+Layer united(const std::vector<Contour>& rings, FillRule rule = FillRule::nonzero) {
+    return fill(normal_layer(rings), rule).layer;
+}
+
+TEST(Fill, LeavesBoundariesOfMaterialAlone) {
+    const std::vector<std::vector<Contour>> layers{
+        {},
+        {rectangle(0, 0, 9, 9)},
+        {rectangle(0, 0, 9, 9), reversed(rectangle(1, 1, 8, 8)), rectangle(2, 2, 7, 7),
+         rectangle(10, 0, 12, 5)},
+        // Corner on corner, corner on edge, back to back, a hole that touches its body, a ring that touches
+        // itself, and a body that fills a hole.
+        {rectangle(0, 0, 2, 2), rectangle(2, 2, 4, 4)},
+        {rectangle(0, 0, 2, 2), diamond(3, 1, 1)},
+        {rectangle(0, 0, 2, 2), rectangle(2, 1, 4, 9)},
+        {rectangle(0, 0, 8, 8), reversed(diamond(4, 4, 4))},
+        {{{0, 0}, {4, 0}, {2, 2}, {4, 4}, {0, 4}, {2, 2}}},
+        {rectangle(0, 0, 8, 8), reversed(rectangle(2, 2, 4, 4)), rectangle(2, 2, 4, 4)},
+    };
+    for (const FillRule rule : rules)
+        for (const auto& rings : layers) {
+            const Layer layer = normal_layer(rings, {{{0, 1}, {7, 7}}});
+            const Filled filled = fill(layer, rule);
+            EXPECT_FALSE(filled.changed());
+            EXPECT_EQ(filled.layer.points.data(), layer.points.data()); // not even copied
+            EXPECT_TRUE(same_contours(filled.layer, layer));
+        }
+}
+
+TEST(Fill, UnitesBodiesThatCross) {
+    const Layer layer = normal_layer({rectangle(0, 0, 4, 4), rectangle(2, 2, 6, 6), rectangle(8, 0, 9, 1)});
+    const Filled filled = fill(layer, FillRule::nonzero);
+    EXPECT_EQ(filled.groups_united, 1U);
+    EXPECT_EQ(filled.rings_united, 2U);
+    EXPECT_EQ(contours(filled.layer),
+              (std::vector<Contour>{{{0, 0}, {4, 0}, {4, 2}, {6, 2}, {6, 6}, {2, 6}, {2, 4}, {0, 4}},
+                                    rectangle(8, 0, 9, 1)}));
+    EXPECT_EQ(measure(fill(layer, FillRule::evenodd).layer).area_mm2, 25);
+}
+
+TEST(Fill, DropsOrTurnsRingsWithinOthersAsTheyAre) {
+    const Contour outer = rectangle(0, 0, 9, 9);
+    const Contour inner = diamond(4, 4, 0.3);
+    EXPECT_EQ(contours(united({outer, inner})), (std::vector<Contour>{outer}));
+    EXPECT_EQ(contours(united({outer, inner}, FillRule::evenodd)),
+              contours(normal_layer({outer, reversed(inner)})));
+    EXPECT_EQ(contours(united({reversed(outer)})), (std::vector<Contour>{outer}));
+    EXPECT_EQ(contours(united({reversed(outer)}, FillRule::positive)), std::vector<Contour>{});
+    const Filled turned = fill(normal_layer({reversed(outer), inner}), FillRule::nonzero);
+    EXPECT_EQ(turned.groups_united, 0U);
+    EXPECT_EQ(turned.rings_reversed, 2U);
+    EXPECT_EQ(contours(turned.layer), contours(normal_layer({outer, reversed(inner)})));
+}
+
+TEST(Fill, UnitesWhatOverlapsAlsoWithoutCrossingProperly) {
+    // Along common edges, through each other's corners, and one body stored twice.
+    EXPECT_EQ(contours(united({rectangle(0, 0, 4, 4), rectangle(2, 0, 6, 4)})).size(), 1U);
+    EXPECT_EQ(measure(united({rectangle(0, 0, 4, 4), rectangle(2, 0, 6, 4)})).area_mm2, 24);
+    const Contour lying{{-4, 0}, {-1, -1}, {1, -1}, {4, 0}, {1, 1}, {-1, 1}};
+    const Contour standing{{0, -4}, {1, -1}, {1, 1}, {0, 4}, {-1, 1}, {-1, -1}};
+    EXPECT_EQ(find_crossings(layer_of({lying, standing})).count, 0U);
+    EXPECT_EQ(measure(united({lying, standing})).area_mm2, 4 + 4 * 3);
+    EXPECT_EQ(contours(united({diamond(0, 0, 3), diamond(0, 0, 3)})),
+              (std::vector<Contour>{diamond(0, 0, 3)}));
+}
+
+TEST(Fill, CountsTheMaterialAroundAGroup) {
+    // Two bodies that cross, in a body, in a hole, in one turned inside out, and in two bodies.
+    const Contour a = rectangle(2, 2, 4, 4);
+    const Contour b = rectangle(3, 3, 5, 5);
+    const Contour frame = rectangle(0, 0, 9, 9);
+    EXPECT_EQ(contours(united({a, b, frame})), (std::vector<Contour>{frame}));
+    EXPECT_EQ(measure(united({a, b, reversed(frame), rectangle(-1, -1, 10, 10)})).area_mm2, 121 - 81 + 7);
+    EXPECT_EQ(measure(united({a, b, reversed(frame)})).area_mm2, 81 - 6); // w = -1 + 2 in the middle is 1
+    EXPECT_EQ(measure(united({reversed(a), reversed(b), frame})).area_mm2, 81 - 6);
+    EXPECT_EQ(measure(united({reversed(a), reversed(b), frame}, FillRule::positive)).area_mm2, 81 - 7);
+    EXPECT_EQ(measure(united({a, b, frame}, FillRule::evenodd)).area_mm2, 81 - 6);
+    EXPECT_EQ(measure(united({a, b, frame, rectangle(1, 1, 8, 8)}, FillRule::evenodd)).area_mm2, 81 - 49 + 6);
+    std::vector<Contour> many(9, frame);
+    for (std::size_t i = 0; i < many.size(); ++i)
+        many[i] = rectangle(-1.0 * static_cast<double>(i), -1, 9 + 1.0 * static_cast<double>(i), 9);
+    many.push_back(a);
+    many.push_back(b);
+    EXPECT_EQ(measure(united(many)).area_mm2, 250);
+}
+
+TEST(Fill, KeepsChainsAndDropsFlatRings) {
+    const Contour chain{{1, 1}, {20, 3}};
+    const Filled filled = fill(normal_layer({rectangle(0, 0, 9, 9), {{20, 20}, {25, 25}, {22, 22}}}, {chain}),
+                               FillRule::nonzero);
+    EXPECT_EQ(filled.rings_dropped, 1U);
+    EXPECT_EQ(contours(filled.layer), (std::vector<Contour>{rectangle(0, 0, 9, 9), chain}));
+}
+
+/// Rings of a few corners here and there, some of them turned, some of them twice.
+std::vector<Contour> random_rings(Random& random, double range, double size, std::int64_t most,
+                                  bool integers) {
+    std::vector<Contour> rings;
+    for (std::int64_t c = random.integer(1, most); c > 0; --c) {
+        const double x = random.real(0, range);
+        const double y = random.real(0, range);
+        Contour ring;
+        for (std::int64_t i = random.integer(3, 8); i > 0; --i) {
+            Point2 p{x + random.real(0, size), y + random.real(0, size)};
+            if (integers)
+                p = {std::round(p.x), std::round(p.y)};
+            ring.push_back(p);
+        }
+        const double area = ring_area(ring);
+        if (area < 0 && random.integer(0, 3) != 0)
+            ring = reversed(ring);
+        rings.push_back(ring);
+        if (random.integer(0, 9) == 0)
+            rings.push_back(ring);
+    }
+    return rings;
+}
+
+void expect_filled(const Layer& layer, FillRule rule, double extent) {
+    const Filled filled = fill(layer, rule);
+    const double expected =
+        test::winding_area(layer, [&](int winding) { return is_material(rule, winding); });
+    const double perimeter = measure(layer).perimeter_mm;
+    const double tolerance = 4 * perimeter * extent * 0x1p-35 + 1e-12 * extent * extent;
+    EXPECT_NEAR(measure(filled.layer).area_mm2, expected, tolerance);
+    EXPECT_TRUE(in_normal_form(filled.layer));
+    EXPECT_EQ(find_crossings(filled.layer).count, 0U);
+    // Its winding number is 0 or 1: what is more, or less, has no area.
+    EXPECT_NEAR(test::winding_area(filled.layer, [](int winding) { return winding > 1; }), 0, tolerance);
+    EXPECT_NEAR(test::winding_area(filled.layer, [](int winding) { return winding < 0; }), 0, tolerance);
+    const Filled again = fill(filled.layer, rule);
+    EXPECT_FALSE(again.changed());
+    EXPECT_TRUE(same_contours(again.layer, filled.layer));
+}
+
+TEST(Fill, GivesTheAreaOfItsRuleForRandomRings) {
+    Random random(31);
+    for (int round = 0; round < 1500; ++round) {
+        const bool integers = round % 2 == 0; // touches and common edges, or crossings in general position
+        const double size = integers ? 8 : round % 3 == 0 ? 60 : 25;
+        const Layer layer =
+            normal_form(layer_of(random_rings(random, integers ? 16 : 100, size, 12, integers)));
+        for (const FillRule rule : rules) {
+            expect_filled(layer, rule, 200);
+            if (testing::Test::HasFailure())
+                FAIL() << "round " << round << ' ' << fill_rule_name(rule);
+        }
+    }
+}
+
+TEST(Fill, KeepsWhatDoesNotOverlapBitForBit) {
+    Random random(32);
+    std::size_t kept = 0;
+    for (int round = 0; round < 300; ++round) {
+        std::vector<Contour> rings = random_rings(random, 100, 8, 40, false);
+        const Layer layer = normal_form(layer_of(rings));
+        const Nesting nest = nesting(layer);
+        const std::vector<Contour> filled = contours(fill(layer, FillRule::nonzero).layer);
+        const std::set<Contour> result(filled.begin(), filled.end());
+        const std::vector<Contour> before = contours(layer);
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            bool apart = nest.kind[i] == RingKind::outer && find_crossings(layer_of({before[i]})).count == 0;
+            for (std::size_t j = 0; apart && j < before.size(); ++j)
+                apart = i == j || (find_crossings(layer_of({before[i], before[j]})).count ==
+                                       find_crossings(layer_of({before[j]})).count &&
+                                   before[i] != before[j]);
+            if (!apart)
+                continue;
+            EXPECT_TRUE(result.contains(before[i])) << round;
+            ++kept;
+        }
+    }
+    EXPECT_GT(kept, 1000U);
+}
+
+TEST(Fill, DoesNotDependOnPlaceAndScaleBeyondRounding) {
+    Random random(33);
+    const std::vector<Contour> rings = random_rings(random, 100, 40, 30, false);
+    const Layer layer = normal_layer(rings);
+    const double area = measure(fill(layer, FillRule::nonzero).layer).area_mm2;
+    for (const double scale : {0x1p-400, 1e-6, 1e3, 0x1p400})
+        for (const double shift : {0.0, 1000.0}) {
+            std::vector<Contour> moved = rings;
+            for (Contour& ring : moved)
+                for (Point2& p : ring)
+                    p = {(p.x + shift) * scale, (p.y - shift) * scale};
+            const Layer result = united(moved);
+            EXPECT_NEAR(measure(result).area_mm2 / scale / scale, area, 1e-6 * area) << scale << ' ' << shift;
+        }
+}
+
+TEST(Fill, OfAnEmptyLayerIsEmpty) {
+    EXPECT_EQ(fill(Layer{}, FillRule::nonzero).layer.contours(), 0U);
+    EXPECT_EQ(fill(layer_of({{}, {{1, 1}}}), FillRule::nonzero).layer.contours(), 0U);
+}
+
+} // namespace
+} // namespace lamella

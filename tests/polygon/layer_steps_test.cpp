@@ -1,0 +1,56 @@
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/polygon/layer_steps.hpp"
+
+#include "fixtures/layers.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lamella {
+namespace {
+
+using test::layer_of;
+using test::rectangle;
+using test::reversed;
+
+TEST(LayerSteps, NoneChangesNothing) {
+    const Layer layer = layer_of({rectangle(0, 0, 4, 4), rectangle(2, 2, 6, 6)});
+    LayerChanges changes;
+    EXPECT_EQ(take_steps({}, layer, changes).points.data(), layer.points.data());
+    EXPECT_EQ(changes.changed_layers, 0U);
+}
+
+TEST(LayerSteps, AreTakenInOrderAndToldAbout) {
+    const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(2, 0, 6, 4),
+                                              reversed(rectangle(0.5, 0.5, 1, 1)), rectangle(20, 0, 22, 2)}));
+    LayerSteps steps;
+    steps.fill = FillRule::nonzero;
+    steps.offset_mm = 1;
+    steps.largest_only = true;
+    steps.simplify_mm = 0.01;
+    LayerChanges changes;
+    const Layer result = take_steps(steps, layer, changes);
+    EXPECT_TRUE(same_contours(result, layer_of({rectangle(-1, -1, 7, 5)})));
+    EXPECT_EQ(changes.changed_layers, 1U);
+    EXPECT_EQ(changes.groups_united, 1U);
+    EXPECT_EQ(changes.rings_united, 2U);
+    EXPECT_EQ(changes.rings_dropped, 1U); // the body beside; the hole was closed by growing
+    EXPECT_DOUBLE_EQ(changes.area_before_mm2, 16 + 16 - 0.25 + 4);
+    EXPECT_DOUBLE_EQ(changes.area_after_mm2, 48);
+    LayerChanges sum = changes;
+    sum += changes;
+    EXPECT_EQ(sum.rings_united, 4U);
+    EXPECT_DOUBLE_EQ(sum.area_after_mm2, 96);
+}
+
+TEST(LayerSteps, SmallRingsAreDroppedWhenAskedFor) {
+    const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), reversed(rectangle(1, 1, 2, 2))}));
+    LayerSteps steps;
+    steps.min_area_mm2 = 2;
+    LayerChanges changes;
+    EXPECT_TRUE(same_contours(take_steps(steps, layer, changes), layer_of({rectangle(0, 0, 4, 4)})));
+    EXPECT_EQ(changes.rings_dropped, 1U);
+    EXPECT_DOUBLE_EQ(changes.area_after_mm2 - changes.area_before_mm2, 1);
+}
+
+} // namespace
+} // namespace lamella
