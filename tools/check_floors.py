@@ -14,7 +14,7 @@ from pathlib import Path
 FLOORS = [
     ["core"],
     ["mesh", "contour", "container"],
-    ["read", "slicing", "polygon"],
+    ["read", "slicing", "polygon", "raster"],
     ["write"],
     ["pipeline"],
 ]
@@ -28,8 +28,9 @@ ROOMS = {
     "read": ["core", "container", "mesh", "contour"],
     "slicing": ["core", "mesh", "contour"],  # not container: engines never touch files
     "polygon": ["core", "contour"],  # not mesh: layers, whoever made them
-    "write": ["core", "container", "mesh", "contour", "polygon"],  # not slicing, not read: any layers
-    "pipeline": ["core", "container", "mesh", "contour", "read", "slicing", "polygon", "write"],
+    "raster": ["core", "contour"],  # not container: what becomes of pixels is another matter
+    "write": ["core", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
+    "pipeline": ["core", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "write"],
 }
 
 # Third-party headers of the library: each is visible in one source (zlib in one that packs and one that unpacks),

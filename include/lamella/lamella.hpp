@@ -1,6 +1,6 @@
 #pragma once
 
-// The door. In calling order: read, weld, inspect, plan, slice, measure, check, write.
+// The door. In calling order: read, weld, inspect, plan, slice, measure, check, write or paint.
 //
 //     #include <lamella/lamella.hpp>
 //
@@ -38,6 +38,7 @@
 #include "lamella/polygon/offset.hpp"
 #include "lamella/polygon/selection.hpp"
 #include "lamella/polygon/simplify.hpp"
+#include "lamella/raster/picture.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/slicing/plan.hpp"

@@ -1,0 +1,113 @@
+#include "fixtures/random.hpp"
+#include "raster/coverage_row.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+using test::Random;
+
+std::vector<double> values(CoverageRow& row) {
+    std::vector<double> all;
+    for (const PixelRun& run : row.take())
+        all.resize(run.end, run.value);
+    return all;
+}
+
+/// The part of a slope that lies in a column, by the integral of min(max(t, 0), 1).
+double slope_in_column(double from, double to, double column) {
+    const auto integral = [](double t) {
+        return t <= 0 ? 0 : t >= 1 ? t - 0.5 : 0.5 * t * t;
+    };
+    const double length = to - from;
+    return length * (integral((column + 1 - from) / length) - integral((column - from) / length));
+}
+
+TEST(CoverageRow, IsEmptyToBeginWithAndAfterItWasTaken) {
+    CoverageRow row(100, 4, 1);
+    EXPECT_EQ(values(row), std::vector<double>(100, 0));
+    row.begin_at(10, 4);
+    EXPECT_EQ(row.take().size(), 2U);
+    EXPECT_EQ(row.covered(), 90);
+    EXPECT_EQ(values(row), std::vector<double>(100, 0));
+    EXPECT_EQ(row.covered(), 0);
+}
+
+TEST(CoverageRow, HoldsRunsThatDiffer) {
+    CoverageRow row(70, 2, 1);
+    row.begin_at(0, 2);
+    row.begin_at(64, -1);
+    row.begin_at(65, 0);
+    row.begin_at(69, -1);
+    row.begin_at(200, -1); // beyond the row
+    const auto runs = row.take();
+    EXPECT_EQ(std::vector(runs.begin(), runs.end()), (std::vector<PixelRun>{{64, 255}, {69, 128}, {70, 0}}));
+    EXPECT_EQ(row.covered(), 64 + 2.5);
+}
+
+TEST(CoverageRow, CoversEachColumnOfASlopeAsTheIntegralSays) {
+    Random random(1);
+    constexpr std::uint32_t width = 24;
+    CoverageRow row(width, 1, 1);
+    for (int round = 0; round < 20000; ++round) {
+        double from = random.real(-12, 36);
+        double to = random.real(-12, 36);
+        if (round % 4 == 0)
+            from = std::floor(from);
+        if (round % 5 == 0)
+            to = std::floor(to);
+        if (to < from)
+            std::swap(from, to);
+        row.begin_along(from, to, 1);
+        const std::vector<double> found = values(row);
+        double covered = 0;
+        for (std::uint32_t c = 0; c < width; ++c) {
+            const double expected =
+                from == to ? std::clamp(c + 1 - from, 0.0, 1.0) : slope_in_column(from, to, c);
+            covered += expected;
+            ASSERT_NEAR(found[c], 255 * expected, 0.5 + 1e-9) << from << " to " << to << ", column " << c;
+        }
+        ASSERT_NEAR(row.covered(), covered, 1e-9) << from << " to " << to;
+    }
+}
+
+TEST(CoverageRow, IsFullBetweenSlopesOfManyWeights) {
+    Random random(2);
+    for (int strips = 1; strips <= 64; ++strips) {
+        CoverageRow row(50, strips, 1);
+        for (int i = 0; i < strips; ++i) {
+            row.begin_along(random.real(2, 5), random.real(5, 9), 1);
+            row.begin_along(random.real(40, 43), random.real(43, 48), -1);
+        }
+        const std::vector<double> found = values(row);
+        EXPECT_EQ(std::count(found.begin() + 9, found.begin() + 40, 255), 31) << strips;
+        EXPECT_EQ(found[0] + found[1] + found[48] + found[49], 0) << strips;
+    }
+}
+
+TEST(CoverageRow, StaysWithinItsValues) {
+    CoverageRow row(4, 1, 1);
+    row.begin_at(0, -3);
+    row.begin_at(1, 7);
+    EXPECT_EQ(values(row), (std::vector<double>{0, 255, 255, 255}));
+    EXPECT_EQ(row.covered(), 3);
+}
+
+TEST(CoverageRow, BendsValuesByGamma) {
+    for (const double gamma : {0.5, 1.0, 2.2}) {
+        for (int part = 0; part <= 255; ++part) {
+            CoverageRow row(1, 255, gamma);
+            row.begin_at(0, part);
+            EXPECT_NEAR(values(row).front(), 255 * std::pow(part / 255.0, gamma), 0.5 + 1e-9);
+        }
+    }
+}
+
+} // namespace
+} // namespace lamella
