@@ -1,0 +1,98 @@
+#include "write/png.hpp"
+
+#include "container/deflate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace lamella {
+
+namespace {
+
+// The byte before each row: its bytes are the pixels themselves, or what they are more than those above them.
+constexpr std::uint8_t as_it_is = 0;
+constexpr std::uint8_t more_than_above = 2;
+
+std::array<char, 4> big_endian(std::uint32_t n) {
+    return {static_cast<char>(n >> 24 & 0xff), static_cast<char>(n >> 16 & 0xff),
+            static_cast<char>(n >> 8 & 0xff), static_cast<char>(n & 0xff)};
+}
+
+void append(std::uint32_t n, ByteBuffer& out) {
+    const std::array<char, 4> bytes = big_endian(n);
+    out.append({bytes.data(), bytes.size()});
+}
+
+void append_chunk(std::string_view name, std::string_view content, ByteBuffer& out) {
+    append(static_cast<std::uint32_t>(content.size()), out);
+    const std::size_t begin = out.view().size();
+    out.append(name);
+    out.append(content);
+    append(crc32_of(out.view().substr(begin)), out);
+}
+
+} // namespace
+
+void PngEncoder::find_differences(std::span<const PixelRun> row) {
+    differences_.clear();
+    auto up = above_.begin();
+    for (std::size_t i = 0; i < row.size();) {
+        const PixelRun both{std::min(row[i].end, up->end),
+                            static_cast<std::uint8_t>(row[i].value - up->value)};
+        if (!differences_.empty() && differences_.back().value == both.value)
+            differences_.back().end = both.end;
+        else
+            differences_.push_back(both);
+        i += row[i].end == both.end ? 1 : 0;
+        up += up->end == both.end ? 1 : 0;
+    }
+}
+
+void PngEncoder::add_row(std::span<const PixelRun> row) {
+    std::span<const PixelRun> shown = row;
+    std::uint8_t kind = as_it_is;
+    if (!above_.empty()) {
+        find_differences(row);
+        if (differences_.size() < row.size()) {
+            shown = differences_;
+            kind = more_than_above;
+        }
+    }
+    deflater_.put(kind, 1);
+    std::uint32_t from = 0;
+    for (const PixelRun& run : shown) {
+        deflater_.put(run.value, run.end - from);
+        from = run.end;
+    }
+}
+
+void PngEncoder::add(std::span<const PixelRun> row, std::uint32_t times) {
+    add_row(row);
+    above_.assign(row.begin(), row.end());
+    if (row.size() == 1 && row.front().value == 0) {
+        deflater_.put(0, (std::uint64_t{width_} + 1) * (times - 1));
+        return;
+    }
+    for (std::uint32_t i = 1; i < times; ++i) {
+        deflater_.put(more_than_above, 1);
+        deflater_.put(0, width_);
+    }
+}
+
+void PngEncoder::finish(ByteBuffer& out) {
+    out.append(std::string_view("\x89PNG\r\n\x1a\n", 8));
+    const std::array<char, 4> width = big_endian(width_);
+    const std::array<char, 4> height = big_endian(height_);
+    std::array<char, 13> head{};
+    std::copy(width.begin(), width.end(), head.begin());
+    std::copy(height.begin(), height.end(), head.begin() + 4);
+    head[8] = 8; // bits; the rest is 0: grey, Deflate, the usual filters, not interlaced
+    append_chunk("IHDR", {head.data(), head.size()}, out);
+    append_chunk("IDAT", deflater_.finish(), out);
+    append_chunk("IEND", {}, out);
+    above_.clear();
+}
+
+} // namespace lamella

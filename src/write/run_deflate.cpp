@@ -1,0 +1,317 @@
+#include "write/run_deflate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+// The names and numbers are those of RFC 1951.
+
+constexpr std::size_t literals = 256;
+constexpr std::size_t end_of_block = 256;
+constexpr std::size_t symbols = 286;
+constexpr unsigned longest_code = 15;
+constexpr unsigned longest_code_of_lengths = 7;
+constexpr std::uint64_t longest_copy = 258;
+constexpr std::uint64_t shortest_copy = 3;
+constexpr std::size_t longest_copy_symbol = 285;
+
+struct CopyCode {
+    std::uint16_t symbol = 0;
+    std::uint8_t extra = 0; ///< how many bits follow
+    std::uint8_t bits = 0;
+};
+
+/// For each length of a copy. Eight lengths have a symbol of their own; from there on each four symbols stand
+/// for twice as many lengths as the four before.
+constexpr std::array<CopyCode, longest_copy + 1> copy_codes = [] {
+    std::array<CopyCode, longest_copy + 1> codes{};
+    for (unsigned length = shortest_copy; length < longest_copy; ++length) {
+        const auto n = static_cast<unsigned>(length - shortest_copy);
+        const unsigned extra = n < 8 ? 0 : static_cast<unsigned>(std::bit_width(n)) - 3;
+        codes[length] = {static_cast<std::uint16_t>(257 + 4 * extra + (n >> extra)),
+                         static_cast<std::uint8_t>(extra),
+                         static_cast<std::uint8_t>(n & ((1U << extra) - 1))};
+    }
+    codes[longest_copy] = {longest_copy_symbol, 0, 0};
+    return codes;
+}();
+
+/// A run as symbols: so many literals, then so many copies of full length, then one of length `rest`, if not
+/// 0, all of distance 1.
+struct Parts {
+    std::uint64_t literals;
+    std::uint64_t full;
+    std::uint64_t rest;
+};
+
+Parts parts_of(std::uint64_t count) noexcept {
+    if (count <= shortest_copy)
+        return {count, 0, 0};
+    const std::uint64_t full = (count - 1) / longest_copy;
+    const std::uint64_t rest = (count - 1) % longest_copy;
+    return rest < shortest_copy ? Parts{1 + rest, full, 0} : Parts{1, full, rest};
+}
+
+struct Code {
+    std::uint16_t bits = 0; ///< first bit lowest
+    std::uint8_t length = 0;
+};
+
+/// Huffman codes of at most `longest` bits for how often each symbol occurs; none for those that do not.
+template <std::size_t n>
+std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencies, unsigned longest) {
+    std::array<std::uint16_t, n> order; // of the symbols that occur: rare ones first
+    std::size_t used = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        if (frequencies[i] > 0)
+            order[used++] = static_cast<std::uint16_t>(i);
+    const std::span<std::uint16_t> leaves(order.data(), used);
+    std::stable_sort(leaves.begin(), leaves.end(),
+                     [&](auto a, auto b) { return frequencies[a] < frequencies[b]; });
+
+    // Joins the two rarest until one is left. Inner nodes come into being in ascending order, so two queues
+    // do.
+    std::array<std::uint64_t, 2 * n> weight{};
+    std::array<std::uint16_t, 2 * n> parent{};
+    for (std::size_t i = 0; i < used; ++i)
+        weight[i] = frequencies[leaves[i]];
+    std::size_t leaf = 0;
+    std::size_t inner = used;
+    std::size_t nodes = used;
+    const auto rarest = [&] {
+        return leaf < used && (inner == nodes || weight[leaf] <= weight[inner]) ? leaf++ : inner++;
+    };
+    for (; nodes + 1 < 2 * used; ++nodes) {
+        const std::size_t a = rarest();
+        const std::size_t b = rarest();
+        weight[nodes] = weight[a] + weight[b];
+        parent[a] = parent[b] = static_cast<std::uint16_t>(nodes);
+    }
+
+    // How many codes there are of each length, then made to fit: one that is too long moves up beside a
+    // shorter one, which becomes longer by a bit.
+    std::array<std::uint16_t, 2 * n> depth{};
+    std::array<std::uint32_t, longest_code + 2> of_length{};
+    for (std::size_t i = nodes - 1; i-- > 0;) {
+        depth[i] = static_cast<std::uint16_t>(depth[parent[i]] + 1);
+        if (i < used)
+            ++of_length[std::min<unsigned>(depth[i], longest)];
+    }
+    std::uint64_t taken = 0;
+    for (unsigned length = 1; length <= longest; ++length)
+        taken += std::uint64_t{of_length[length]} << (longest - length);
+    for (; taken > std::uint64_t{1} << longest; --taken) {
+        unsigned shorter = longest - 1;
+        while (of_length[shorter] == 0)
+            --shorter;
+        --of_length[shorter];
+        of_length[shorter + 1] += 2;
+        --of_length[longest];
+    }
+
+    std::array<Code, n> codes{};
+    std::size_t next = 0;
+    for (unsigned length = longest; length > 0; --length)
+        for (std::uint32_t i = 0; i < of_length[length]; ++i)
+            codes[leaves[next++]].length = static_cast<std::uint8_t>(length);
+    unsigned value = 0;
+    for (unsigned length = 1; length <= longest; ++length, value <<= 1)
+        for (Code& code : codes)
+            if (code.length == length) {
+                for (unsigned bit = 0; bit < length; ++bit)
+                    code.bits =
+                        static_cast<std::uint16_t>(code.bits | ((value >> bit & 1) << (length - 1 - bit)));
+                ++value;
+            }
+    return codes;
+}
+
+/// Writes bits to memory that is large enough.
+class BitWriter {
+  public:
+    BitWriter(char* out, std::uint64_t bits, unsigned count) : out_(out), bits_(bits), count_(count) {}
+
+    /// Up to 32 bits.
+    void put(std::uint64_t bits, unsigned count) {
+        bits_ |= bits << count_;
+        count_ += count;
+        if (count_ >= 32) {
+            for (int i = 0; i < 4; ++i)
+                *out_++ = static_cast<char>(bits_ >> 8 * i & 0xff);
+            bits_ >>= 32;
+            count_ -= 32;
+        }
+    }
+    void put(const Code& code) { put(code.bits, code.length); }
+    /// The same bits (at most 16) many times.
+    void put_repeated(std::uint64_t bits, unsigned count, std::uint64_t times) {
+        std::uint64_t pattern = bits;
+        std::uint64_t repeated = 1;
+        for (; (repeated + 1) * count <= 32; ++repeated)
+            pattern |= bits << repeated * count;
+        for (; times >= repeated; times -= repeated)
+            put(pattern, static_cast<unsigned>(repeated) * count);
+        for (; times > 0; --times)
+            put(bits, count);
+    }
+
+    [[nodiscard]] char* out() const noexcept { return out_; }
+    [[nodiscard]] std::uint64_t bits() const noexcept { return bits_; }
+    [[nodiscard]] unsigned count() const noexcept { return count_; }
+
+  private:
+    char* out_;
+    std::uint64_t bits_;
+    unsigned count_;
+};
+
+/// The code lengths of a block as they stand in its head: 0 to 15, or 18 for as many zeros as `bits` say.
+struct LengthSymbol {
+    std::uint8_t symbol;
+    std::uint8_t bits;
+};
+constexpr std::size_t length_symbols = 19;
+constexpr unsigned zeros_symbol = 18; // of 11 to 138 zeros, in 7 bits
+constexpr std::array<std::uint8_t, length_symbols> order_of_lengths{16, 17, 18, 0, 8,  7, 9,  6, 10, 5,
+                                                                    11, 4,  12, 3, 13, 2, 14, 1, 15};
+
+std::vector<LengthSymbol> length_symbols_of(std::span<const std::uint8_t> lengths) {
+    std::vector<LengthSymbol> result;
+    for (std::size_t i = 0; i < lengths.size();) {
+        std::size_t zeros = 0;
+        while (i + zeros < lengths.size() && zeros < 138 && lengths[i + zeros] == 0)
+            ++zeros;
+        if (zeros >= 11) {
+            result.push_back({zeros_symbol, static_cast<std::uint8_t>(zeros - 11)});
+            i += zeros;
+        } else {
+            result.push_back({lengths[i], 0});
+            ++i;
+        }
+    }
+    return result;
+}
+
+void put_lengths(const std::array<Code, symbols>& codes, BitWriter& out) {
+    std::size_t used = symbols;
+    while (codes[used - 1].length == 0)
+        --used;
+    std::array<std::uint8_t, symbols + 1> lengths{};
+    for (std::size_t i = 0; i < used; ++i)
+        lengths[i] = codes[i].length;
+    lengths[used] = 1; // the one distance
+    const std::vector<LengthSymbol> coded = length_symbols_of(std::span(lengths).first(used + 1));
+    std::array<std::uint64_t, length_symbols> frequencies{};
+    for (const LengthSymbol& length : coded)
+        ++frequencies[length.symbol];
+    const auto length_codes = huffman_codes(frequencies, longest_code_of_lengths);
+
+    out.put(used - 257, 5);
+    out.put(0, 5); // one distance
+    std::size_t shown = length_symbols;
+    while (shown > 4 && length_codes[order_of_lengths[shown - 1]].length == 0)
+        --shown;
+    out.put(shown - 4, 4);
+    for (std::size_t i = 0; i < shown; ++i)
+        out.put(length_codes[order_of_lengths[i]].length, 3);
+    for (const LengthSymbol& length : coded) {
+        out.put(length_codes[length.symbol]);
+        if (length.symbol == zeros_symbol)
+            out.put(length.bits, 7);
+    }
+}
+
+constexpr std::size_t most_head_bytes = 600; // 3 + 14 bits, 19 lengths, 287 lengths of 7 + 7 bits at most
+
+} // namespace
+
+// Adler-32 of n equal bytes v: the sum grows by n v, the sum of sums by n times the old sum and n (n + 1) / 2
+// times v.
+void RunDeflater::add_to_checksum(std::uint8_t value, std::uint64_t count) noexcept {
+    constexpr std::uint64_t prime = 65521;
+    const std::uint64_t n = count % (2 * prime); // so that half of n (n + 1) is right, too
+    sum_of_sums_ = static_cast<std::uint32_t>(
+        (sum_of_sums_ + n % prime * sum_ + n * (n + 1) / 2 % prime * value) % prime);
+    sum_ = static_cast<std::uint32_t>((sum_ + n * value) % prime);
+}
+
+void RunDeflater::begin_stream() {
+    stream_.clear();
+    stream_.append(std::string_view("\x78\x01", 2)); // Deflate, window of 32 KB, the fastest kind
+    begun_ = true;
+}
+
+void RunDeflater::write_block(bool last) {
+    if (!begun_)
+        begin_stream();
+    std::array<std::uint64_t, symbols> frequencies{};
+    frequencies[end_of_block] = 1;
+    for (const Run& run : runs_) {
+        const Parts parts = parts_of(run.count);
+        frequencies[run.value] += parts.literals;
+        frequencies[longest_copy_symbol] += parts.full;
+        if (parts.rest > 0)
+            ++frequencies[copy_codes[parts.rest].symbol];
+    }
+    if (runs_.empty()) // a code needs two symbols
+        frequencies[0] = 1;
+    const auto codes = huffman_codes(frequencies, longest_code);
+
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < symbols; ++i)
+        bits += frequencies[i] * (codes[i].length + (i < literals ? 0U : 6U)); // 5 more bits, and a distance
+    char* const room = stream_.room(bits / 8 + most_head_bytes);
+    BitWriter out(room, bits_, bit_count_);
+    out.put(last ? 1 : 0, 1);
+    out.put(2, 2); // with codes of its own
+    put_lengths(codes, out);
+    for (const Run& run : runs_) {
+        const Parts parts = parts_of(run.count);
+        for (std::uint64_t i = 0; i < parts.literals; ++i)
+            out.put(codes[run.value]);
+        if (parts.full > 0) {
+            const Code& code = codes[longest_copy_symbol];
+            out.put_repeated(code.bits, code.length + 1U, parts.full);
+        }
+        if (parts.rest > 0) {
+            const CopyCode& copy = copy_codes[parts.rest];
+            out.put(codes[copy.symbol]);
+            out.put(copy.bits, copy.extra + 1U); // and the bit 0 for distance 1
+        }
+    }
+    out.put(codes[end_of_block]);
+    stream_.end_at(out.out());
+    bits_ = out.bits();
+    bit_count_ = out.count();
+    runs_.clear();
+}
+
+std::string_view RunDeflater::finish() {
+    if (run_.count > 0)
+        runs_.push_back(std::exchange(run_, {}));
+    write_block(true);
+    for (; bit_count_ > 0; bit_count_ -= std::min(bit_count_, 8U), bits_ >>= 8) {
+        const char byte = static_cast<char>(bits_ & 0xff);
+        stream_.append({&byte, 1});
+    }
+    const std::uint32_t checksum = sum_of_sums_ << 16 | sum_;
+    std::array<char, 4> ending;
+    for (unsigned i = 0; i < 4; ++i)
+        ending[i] = static_cast<char>(checksum >> (24 - 8 * i) & 0xff);
+    stream_.append({ending.data(), ending.size()});
+    bits_ = 0;
+    sum_ = 1;
+    sum_of_sums_ = 0;
+    begun_ = false;
+    return stream_.view();
+}
+
+} // namespace lamella
