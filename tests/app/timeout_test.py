@@ -14,7 +14,7 @@ class Timeout(ProgramTest):
         self.succeed("make", "rook")
         for engine in ENGINES:
             with self.subTest(engine):
-                self.fail_with(5, r"rook\.stl: stopped after 0\.3 s \(--timeout\) in the stage (weld|link|slice), of which "
+                self.fail_with(5, r"rook\.stl: stopped after 0\.3 s \(--timeout\) in the stage (read|weld|link|slice), of which "
                                   r"\d+ % was done; nothing was written", "slice", "rook.stl", "-o", "rook.cli",
                                "--layer-height", "0.0001", "--engine", engine, "--timeout", "0.3")
 
