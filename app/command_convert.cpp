@@ -117,8 +117,8 @@ Command convert_command() {
                           [arguments](const std::string& text) {
                               arguments->output = text;
                           }}},
-        .groups = {output_options(*arguments), layer_step_options(arguments->making),
-                   run_options(arguments->run), common_options(true)},
+        .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
+                   layer_step_options(arguments->making), run_options(arguments->run), common_options(true)},
         .examples = {{"lamella convert part.cli part.svg", "to look at it"},
                      {"lamella convert part.svg part.cli --units-mm 0.005", "for a machine with 5 um steps"}},
         .run = [arguments](const Context& context) {

@@ -341,11 +341,13 @@ Command slice_command() {
                           [arguments](const std::string& text) {
                               add_input(*arguments, text);
                           }}},
-        .groups = {output_options(*arguments), plan_options(*arguments),
-                   layer_step_options(arguments->making), input_options(*arguments),
+        .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
+                   plan_options(*arguments), layer_step_options(arguments->making), input_options(*arguments),
                    checking_options(*arguments), timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},
+                     {"lamella slice part.stl -o part.sl1 --layer-height 0.05 --exposure 8",
+                      "a job for an Original Prusa SL1"},
                      {"lamella slice part.stl -o part.svg --unit inch --rotate-x 90",
                       "a part drawn in inches, stood up, as SVG"},
                      {"lamella slice a.stl --copies 4 b.stl --translate 60,0,0 -o plate.cli",

@@ -231,6 +231,7 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) con
     LayerWriteOptions options;
     options.units_mm = units_mm.value_or(options.units_mm);
     options.short_form = short_form;
+    picture.apply(with, options);
     return options;
 }
 

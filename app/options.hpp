@@ -9,6 +9,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "command.hpp"
+#include "picture_options.hpp"
 
 #include <array>
 #include <cstdint>
@@ -82,6 +83,7 @@ struct LayerOutputOptions {
     std::string format = {};
     std::optional<double> units_mm = {};
     bool short_form = false;
+    PictureArguments picture = {};
 
     /// Throws Error{usage} where options do not go with the format.
     [[nodiscard]] LayerWriteOptions write_options(const LayerFormat& with) const;

@@ -4,6 +4,8 @@
 
 #include "write/common_layer.hpp"
 #include "write/layered_svg.hpp"
+#include "write/picture_stack.hpp"
+#include "write/sl1.hpp"
 
 #include <fmt/format.h>
 
@@ -22,6 +24,10 @@ constexpr std::array formats{
     LayerFormat{"cli-ascii", "", "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm"},
     LayerFormat{"svg", ".svg", "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm"},
     LayerFormat{"svg-layers", "", "a folder with one SVG picture per layer; coordinates to 0.001 mm", true},
+    LayerFormat{"png", "", "a folder with one PNG picture per layer; as fine as its pixels", true},
+    LayerFormat{"png-zip", ".zip", "the same pictures in a zip archive"},
+    LayerFormat{"sl1", ".sl1", "a job for the resin printer Original Prusa SL1; as fine as its pixels"},
+    LayerFormat{"sl1s", ".sl1s", "the same for the SL1S"},
 };
 
 std::string names() {
@@ -88,6 +94,12 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
         return open_layered_svg(path, info, options);
     if (format.name == "svg-layers")
         return open_svg_layers(path, info);
+    if (format.name == "png")
+        return open_picture_folder(path, info, options);
+    if (format.name == "png-zip")
+        return open_picture_archive(path, info, options);
+    if (format.name == "sl1" || format.name == "sl1s")
+        return open_sl1(path, info, options, format.name);
     throw Error(ErrorKind::usage,
                 fmt::format("there is no format '{}'; choose from {}", format.name, names()));
 }

@@ -53,7 +53,7 @@ TEST(LayerFormat, ListsWhatThereIsWhenItIsUnknown) {
 
 TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
     const LayerStack layers = random_layers(1, 40, 30, {10, -5}, true);
-    for (const char* name : {"cli", "cli-ascii", "svg"}) {
+    for (const char* name : {"cli", "cli-ascii", "svg", "png-zip"}) {
         const TemporaryFolder folder;
         const LayerFormat& format = layer_format(name, "");
         write_layers(folder.file("expected"), format, layers, info_of(layers));

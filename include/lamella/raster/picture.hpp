@@ -33,7 +33,7 @@ struct RasterOptions {
     ///
     /// 1 is no anti-aliasing: a pixel is covered, or not, as its centre is. A centre on a contour counts when
     /// the material lies to its right or, on a level line, below it: bodies side by side share no pixel.
-    unsigned antialias = 4;
+    unsigned antialias = 8;
     /// A pixel's value is 255 coverage^gamma, rounded.
     double gamma = 1;
 };

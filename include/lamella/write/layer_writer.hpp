@@ -1,9 +1,10 @@
 #pragma once
 
-// Writing slice files: Common Layer Interface and SVG.
+// Writing slice files: Common Layer Interface, SVG, pictures.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
+#include "lamella/write/picture_options.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -37,6 +38,10 @@ struct LayerWriteOptions {
     bool short_form = false;
     /// Layered SVG: write slic3r:z as Slic3r 1.x does (slicing height times 1e-6).
     bool slic3r_legacy_z = false;
+    /// png, png-zip, sl1, sl1s.
+    PictureOptions picture = {};
+    /// sl1, sl1s.
+    ExposureOptions exposure = {};
 };
 
 struct LayerFormat {
@@ -46,7 +51,7 @@ struct LayerFormat {
     bool directory = false;     ///< writes one file per layer into a directory
 };
 
-/// cli, cli-ascii, svg, svg-layers.
+/// cli, cli-ascii, svg, svg-layers, png, png-zip, sl1, sl1s.
 [[nodiscard]] std::span<const LayerFormat> layer_formats() noexcept;
 
 /// By name; by extension of the path where the name is empty. Throws Error{usage} that lists what there is.

@@ -1,0 +1,156 @@
+#include "picture_options.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "numbers.hpp"
+#include "options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
+
+namespace lamella::app {
+namespace {
+
+constexpr std::array picture_formats{"png", "png-zip", "sl1", "sl1s"};
+constexpr std::array job_formats{"sl1", "sl1s"};
+
+/// "F" or "X,Y".
+AlongXY<double> parse_lengths(const std::string& text) {
+    const std::vector<double> numbers = parse_numbers(text);
+    if (numbers.size() > 2 || std::ranges::any_of(numbers, [](double n) { return !(n > 0); }))
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" is not a length or two, such as 0.05 or 120,68", text));
+    return {numbers.front(), numbers.back()};
+}
+
+/// "WxH".
+AlongXY<std::uint32_t> parse_pixels(const std::string& text) {
+    const auto refuse = [&] {
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" is not a number of columns and of rows up to {}, such "
+                                "as 2560x1440",
+                                text, most_pixels));
+    };
+    const auto cross = text.find('x');
+    if (cross == std::string::npos)
+        refuse();
+    std::array<std::uint64_t, 2> sides{};
+    try {
+        sides = {parse_count(text.substr(0, cross)), parse_count(text.substr(cross + 1))};
+    } catch (const Error&) {
+        refuse();
+    }
+    if (std::ranges::any_of(sides, [](std::uint64_t n) { return n < 1 || n > most_pixels; }))
+        refuse();
+    return {static_cast<std::uint32_t>(sides[0]), static_cast<std::uint32_t>(sides[1])};
+}
+
+Option lengths(std::string name, std::string placeholder, std::string help,
+               std::optional<AlongXY<double>>& target) {
+    return row(std::move(name), ValueKind::numbers, std::move(placeholder), std::move(help),
+               [&target](const std::string& text) { target = parse_lengths(text); });
+}
+
+Option positive(std::string name, std::string placeholder, std::string help, std::optional<double>& target) {
+    return row(std::move(name), ValueKind::number, std::move(placeholder), std::move(help),
+               [&target](const std::string& text) { target = parse_positive(text); });
+}
+
+/// The time that builds agree upon, so that results can be compared (reproducible-builds.org).
+std::int64_t source_date() {
+    const char* const text = std::getenv("SOURCE_DATE_EPOCH");
+    if (text == nullptr || *text == '\0')
+        return 0;
+    constexpr std::uint64_t last = 253402300799; // of the year 9999
+    std::uint64_t seconds = last + 1;
+    try {
+        seconds = parse_count(text);
+    } catch (const Error&) { // told below
+    }
+    if (seconds > last)
+        throw Error(ErrorKind::usage,
+                    fmt::format("SOURCE_DATE_EPOCH is \"{}\", and not a number of seconds since 1970", text));
+    return static_cast<std::int64_t>(seconds);
+}
+
+std::uint32_t limited(std::uint64_t value) {
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(value, std::numeric_limits<std::uint32_t>::max()));
+}
+
+} // namespace
+
+OptionGroup picture_options(PictureArguments& target) {
+    Option antialias = count("antialias", "N",
+                             "strips per row of pixels, 1 to 64: how finely covered parts of pixels become "
+                             "grey; 1 is black and white, by the middles of pixels",
+                             target.antialias);
+    antialias.preset = std::to_string(RasterOptions{}.antialias);
+    Option gamma =
+        positive("gamma", "G", "grey becomes 255 times the covered part to this power", target.gamma);
+    gamma.preset = exact(RasterOptions{}.gamma);
+    Option fade = count("fade-layers", "N", "sl1: layers in which the first exposure fades to the normal one",
+                        target.fade_layers);
+    fade.preset = std::to_string(ExposureOptions{}.fade_layers);
+    return {"Pictures (png, png-zip, sl1, sl1s)",
+            {lengths("pixel-size", "MM|X,Y", "of a pixel; for png and png-zip 0.05 unless given",
+                     target.pixel_mm),
+             row("resolution", ValueKind::text, "WxH",
+                 "pixels of the display along x and y; for png and png-zip as many as the part needs",
+                 [&target](const std::string& text) { target.pixels = parse_pixels(text); }),
+             lengths("display-size", "X,Y", "of the display, in place of pixel size or resolution",
+                     target.display_mm),
+             choice("orientation", "HOW", "whether x runs along the columns of a picture or along its rows",
+                    {"landscape", "portrait"}, target.orientation),
+             choice("mirror", "AXES", "mirror the display, as PrusaSlicer does", {"none", "x", "y", "xy"},
+                    target.mirror),
+             std::move(antialias), std::move(gamma),
+             positive("exposure", "SECONDS",
+                      "sl1: of a layer; 7.5 for the SL1 and 2 for the SL1S unless given", target.exposure_s),
+             positive("first-exposure", "SECONDS", "sl1: of the first three layers; 35 and 25 unless given",
+                      target.first_exposure_s),
+             std::move(fade)}};
+}
+
+void PictureArguments::apply(const LayerFormat& format, LayerWriteOptions& options) const {
+    const auto check = [&format](bool given, std::string_view option, const auto& formats) {
+        if (given && std::ranges::find(formats, format.name) == formats.end())
+            throw Error(ErrorKind::usage, fmt::format("--{} goes with the formats {}, not with {}", option,
+                                                      fmt::join(formats, ", "), format.name));
+    };
+    check(pixel_mm.has_value(), "pixel-size", picture_formats);
+    check(pixels.has_value(), "resolution", picture_formats);
+    check(display_mm.has_value(), "display-size", picture_formats);
+    check(!orientation.empty(), "orientation", picture_formats);
+    check(!mirror.empty(), "mirror", picture_formats);
+    check(antialias.has_value(), "antialias", picture_formats);
+    check(gamma.has_value(), "gamma", picture_formats);
+    check(exposure_s.has_value(), "exposure", job_formats);
+    check(first_exposure_s.has_value(), "first-exposure", job_formats);
+    check(fade_layers.has_value(), "fade-layers", job_formats);
+
+    PictureOptions& picture = options.picture;
+    picture.pixel_mm = pixel_mm;
+    picture.pixels = pixels;
+    picture.display_mm = display_mm;
+    if (!orientation.empty())
+        picture.portrait = orientation == "portrait";
+    if (!mirror.empty()) {
+        picture.mirror_x = mirror.starts_with('x');
+        picture.mirror_y = mirror.ends_with('y');
+    }
+    picture.raster.antialias = limited(antialias.value_or(picture.raster.antialias));
+    picture.raster.gamma = gamma.value_or(picture.raster.gamma);
+    options.exposure.normal_s = exposure_s;
+    options.exposure.first_s = first_exposure_s;
+    options.exposure.fade_layers = limited(fade_layers.value_or(options.exposure.fade_layers));
+    if (std::ranges::find(job_formats, format.name) != job_formats.end())
+        options.exposure.created_s = source_date();
+}
+
+} // namespace lamella::app

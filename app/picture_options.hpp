@@ -1,0 +1,35 @@
+#pragma once
+
+// Options of the formats that are pictures.
+
+#include "lamella/write/layer_writer.hpp"
+
+#include "command.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella::app {
+
+struct PictureArguments {
+    std::optional<AlongXY<double>> pixel_mm = {};
+    std::optional<AlongXY<std::uint32_t>> pixels = {};
+    std::optional<AlongXY<double>> display_mm = {};
+    std::string orientation = {};
+    std::string mirror = {};
+    std::optional<std::uint64_t> antialias = {};
+    std::optional<double> gamma = {};
+    std::optional<double> exposure_s = {};
+    std::optional<double> first_exposure_s = {};
+    std::optional<std::uint64_t> fade_layers = {};
+
+    /// Throws Error{usage} where options do not go with the format, and for a SOURCE_DATE_EPOCH that is no
+    /// time.
+    void apply(const LayerFormat& format, LayerWriteOptions& options) const;
+};
+
+[[nodiscard]] OptionGroup picture_options(PictureArguments& target);
+
+} // namespace lamella::app

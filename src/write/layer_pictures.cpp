@@ -1,0 +1,23 @@
+#include "write/layer_pictures.hpp"
+
+#include "container/deflate.hpp"
+#include "write/png.hpp"
+
+namespace lamella {
+
+// Options that make no picture show before the first layer does.
+LayerPictures::LayerPictures(const PixelGrid& grid, const RasterOptions& options)
+    : grid_(grid), options_(options) {
+    static_cast<void>(picture({}));
+}
+
+LayerPicture LayerPictures::picture(std::span<const Layer> parts) const {
+    PngEncoder encoder(grid_.width, grid_.height);
+    const double covered =
+        rasterise(parts, grid_, options_, [&](auto row, auto times) { encoder.add(row, times); });
+    const std::shared_ptr<ByteBuffer> file = buffers_->take();
+    encoder.finish(*file);
+    return {file, crc32_of(file->view()), covered};
+}
+
+} // namespace lamella

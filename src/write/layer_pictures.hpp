@@ -1,0 +1,40 @@
+#pragma once
+
+// Layers as PNG files, in memory.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/raster/picture.hpp"
+
+#include "write/byte_buffer.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace lamella {
+
+/// A layer as a PNG file.
+struct LayerPicture {
+    std::shared_ptr<const ByteBuffer> file;
+    std::uint32_t crc = 0; ///< of the file
+    double covered = 0;    ///< pixels
+};
+
+/// Makes pictures of one kind. For any number of threads.
+class LayerPictures {
+  public:
+    LayerPictures(const PixelGrid& grid, const RasterOptions& options);
+
+    /// All parts in one picture.
+    [[nodiscard]] LayerPicture picture(std::span<const Layer> parts) const;
+
+    [[nodiscard]] const PixelGrid& grid() const noexcept { return grid_; }
+    [[nodiscard]] const RasterOptions& options() const noexcept { return options_; }
+
+  private:
+    PixelGrid grid_;
+    RasterOptions options_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+};
+
+} // namespace lamella

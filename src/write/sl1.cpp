@@ -1,0 +1,222 @@
+#include "write/sl1.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/zip_writer.hpp"
+#include "write/display.hpp"
+#include "write/layer_pictures.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+// The displays are those of Prusa's printers; the exposures are Prusa's for its Orange Tough resin in layers
+// of 0.05 mm.
+constexpr PicturePrinter original_sl1{.name = "SL1",
+                                      .model = "SL1",
+                                      .pixels = {2560, 1440},
+                                      .display_mm = {120.96, 68.04},
+                                      .portrait = true,
+                                      .mirror_x = true,
+                                      .normal_s = 7.5,
+                                      .first_s = 35,
+                                      .large_area = 0.5,
+                                      .small_pause_s = 5,
+                                      .large_pause_s = 8};
+constexpr PicturePrinter speed_sl1s{.name = "SL1S",
+                                    .model = "SL1S",
+                                    .pixels = {2560, 1620},
+                                    .display_mm = {128, 81},
+                                    .portrait = true,
+                                    .mirror_x = true,
+                                    .normal_s = 2,
+                                    .first_s = 25,
+                                    .large_area = 0.45,
+                                    .small_pause_s = 2.5,
+                                    .large_pause_s = 5};
+
+constexpr std::uint64_t first_layers = 3;
+
+/// `key = value` lines in the order of the keys.
+using Settings = std::map<std::string, std::string>;
+
+std::string text_of(const Settings& settings) {
+    std::string text;
+    for (const auto& [key, value] : settings)
+        text += fmt::format("{} = {}\n", key, value);
+    return text;
+}
+
+std::string number(double value) {
+    return fmt::format("{:.9g}", value);
+}
+
+/// What pictures and job are called: the name of the file, in letters that every reader knows.
+std::string job_name(const std::string& path) {
+    std::string name = path == "-" ? "" : std::filesystem::path(path).stem().string();
+    for (char& c : name) {
+        const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+        c = plain || c == '-' || c == '.' ? c : '_';
+    }
+    return name.empty() ? "layers" : name;
+}
+
+std::string time_text(std::int64_t seconds) {
+    using namespace std::chrono;
+    const sys_seconds time{std::chrono::seconds(seconds)};
+    const sys_days day = floor<days>(time);
+    const year_month_day date(day);
+    const hh_mm_ss clock(time - day);
+    return fmt::format("{:04}-{:02}-{:02} at {:02}:{:02}:{:02} UTC", static_cast<int>(date.year()),
+                       static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                       clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+}
+
+double exposure(const std::optional<double>& given, double common, std::string_view what) {
+    const double seconds = given.value_or(common);
+    if (!(seconds > 0) || !std::isfinite(seconds))
+        throw Error(ErrorKind::usage, fmt::format("{} of {} s: choose a positive number", what, seconds));
+    return seconds;
+}
+
+class Sl1Writer final : public LayerWriter {
+  public:
+    Sl1Writer(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options,
+              const PicturePrinter& printer)
+        : printer_(printer), display_(display_for(info.box, options.picture, printer)), order_(info),
+          pictures_(display_.grid(info.box), options.picture.raster),
+          normal_s_(exposure(options.exposure.normal_s, printer.normal_s, "an exposure")),
+          first_s_(exposure(options.exposure.first_s, printer.first_s, "a first exposure")),
+          fade_layers_(options.exposure.fade_layers), created_(time_text(options.exposure.created_s)),
+          job_(job_name(path)), archive_(path) {}
+
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
+        const Layer& layer = parts.front();
+        return [this, picture = pictures_.picture(parts), z = layer.z, thickness = layer.thickness()] {
+            order_.next(z);
+            count(picture.covered * display_.pixel_mm2(), thickness);
+            archive_.add_ready(fmt::format("{}{:05}.png", job_, order_.count() - 1), ZipMethod::stored,
+                               {picture.file->view(), picture.file->view().size(), picture.crc});
+        };
+    }
+
+    void finish() override {
+        order_.end();
+        archive_.add("config.ini", text_of(job()), ZipMethod::deflated);
+        archive_.add("prusaslicer.ini", text_of(profile()), ZipMethod::deflated);
+        archive_.finish();
+    }
+
+    std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
+
+  private:
+    /// Counts the layer that `order_` has just let through.
+    void count(double area_mm2, double thickness) {
+        const std::uint64_t position = order_.count() - 1;
+        if (position == 0)
+            first_thickness_ = thickness;
+        if (position <= 1)
+            thickness_ = thickness;
+        // Heights are products of a decimal fraction and differ in their last digits.
+        if (std::abs(thickness - thickness_) > 1e-6)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("an SL1 job has one layer height, but for the first layer: layer {} is {:.6g} "
+                            "mm thick, the one before {:.6g} mm",
+                            position, thickness, thickness_));
+        volume_mm3_ += area_mm2 * thickness;
+        const bool large = area_mm2 > printer_.large_area * display_.width_mm() * display_.height_mm();
+        ++(large ? large_layers_ : small_layers_);
+        const double faded = position < first_layers ? 0 : static_cast<double>(position - first_layers + 1);
+        const double to_normal = std::min(1.0, faded / (fade_layers_ + 1.0));
+        time_s_ += first_s_ + to_normal * (normal_s_ - first_s_) +
+                   (large ? printer_.large_pause_s : printer_.small_pause_s);
+    }
+
+    /// What the printer reads.
+    [[nodiscard]] Settings job() const {
+        return {{"action", "print"},
+                {"expTime", number(normal_s_)},
+                {"expTimeFirst", number(first_s_)},
+                {"expUserProfile", "0"},
+                {"fileCreationTimestamp", created_},
+                {"hollow", "0"},
+                {"jobDir", job_},
+                {"layerHeight", number(thickness_)},
+                {"materialName", ""},
+                {"numFade", fmt::to_string(fade_layers_)},
+                {"numFast", fmt::to_string(small_layers_)},
+                {"numSlow", fmt::to_string(large_layers_)},
+                {"printProfile", ""},
+                {"printTime", fmt::format("{:.6f}", time_s_)},
+                {"printerModel", std::string(printer_.model)},
+                {"printerProfile", fmt::format("Original Prusa {}", printer_.name)},
+                {"printerVariant", "default"},
+                {"prusaSlicerVersion", "Lamella"},
+                {"usedMaterial", fmt::format("{:.6f}", volume_mm3_ / 1000)}};
+    }
+
+    /// What programs read that show the job or take the layers out again.
+    [[nodiscard]] Settings profile() const {
+        const auto flag = [](bool on) {
+            return std::string(on ? "1" : "0");
+        };
+        return {{"area_fill", number(printer_.large_area * 100)},
+                {"display_height", number(display_.height_mm())},
+                {"display_mirror_x", flag(display_.mirror_x)},
+                {"display_mirror_y", flag(display_.mirror_y)},
+                {"display_orientation", display_.portrait ? "portrait" : "landscape"},
+                {"display_pixels_x", fmt::to_string(display_.pixels.x)},
+                {"display_pixels_y", fmt::to_string(display_.pixels.y)},
+                {"display_width", number(display_.width_mm())},
+                {"exposure_time", number(normal_s_)},
+                {"faded_layers", fmt::to_string(fade_layers_)},
+                {"fast_tilt_time", number(printer_.small_pause_s)},
+                {"gamma_correction", number(pictures_.options().gamma)},
+                {"initial_exposure_time", number(first_s_)},
+                {"initial_layer_height", number(first_thickness_)},
+                {"layer_height", number(thickness_)},
+                {"printer_model", std::string(printer_.model)},
+                {"printer_technology", "SLA"},
+                {"printer_variant", "default"},
+                {"slow_tilt_time", number(printer_.large_pause_s)}};
+    }
+
+    PicturePrinter printer_;
+    Display display_;
+    LayerOrder order_;
+    LayerPictures pictures_;
+    double normal_s_;
+    double first_s_;
+    std::uint32_t fade_layers_;
+    std::string created_;
+    std::string job_;
+    double first_thickness_ = 0;
+    double thickness_ = 0; ///< of the second layer, once there is one
+    double volume_mm3_ = 0;
+    double time_s_ = 0;
+    std::uint64_t small_layers_ = 0;
+    std::uint64_t large_layers_ = 0;
+    ZipWriter archive_;
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_sl1(const std::string& path, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options, std::string_view printer) {
+    return std::make_unique<Sl1Writer>(path, info, options, printer == "sl1s" ? speed_sl1s : original_sl1);
+}
+
+} // namespace lamella
