@@ -17,10 +17,11 @@ namespace lamella {
 
 namespace {
 
-// The rows are cut into strips, and an edge counts in the strips whose middle it crosses. Down the strips
-// runs a list of the edges that are crossed, in the order of their crossings; along it the winding number
-// says where material begins and ends. There the coverage rises (or falls) along the piece of the edge that
-// lies in the strip, which is exact as long as the order is the same throughout the strip.
+// The rows are cut into strips, also where a long edge lies level, so that flat sides are exact. An edge
+// counts in the strips whose middle it crosses. Down the strips runs a list of the edges that are crossed, in
+// the order of their crossings; along it the winding number says where material begins and ends. There the
+// coverage rises (or falls) along the piece of the edge that lies in the strip, which is exact as long as the
+// order is the same throughout the strip.
 
 /// A coordinate beyond these many pixels is taken for this many: far outside, and still a number to count
 /// with.
@@ -32,7 +33,7 @@ constexpr double most_rounding = 1e-6;
 
 struct Edge {
     double u;     ///< in the middle of the first strip
-    double slope; ///< columns per strip
+    double slope; ///< columns per row
     double low;   ///< what u lies between
     double high;
     std::uint32_t first; ///< strip
@@ -66,10 +67,72 @@ void check(const PixelGrid& grid, const RasterOptions& options) {
                     fmt::format("a gamma of {} makes no values; choose a positive number", options.gamma));
 }
 
+/// The strips of all rows, from the top down.
+class Strips {
+  public:
+    /// `levels`, in ascending order, are heights where strips end, too.
+    Strips(std::uint32_t rows, unsigned per_row, const std::vector<double>& levels) {
+        const std::size_t most = std::size_t{rows} * per_row + levels.size();
+        middles_.reserve(most);
+        heights_.reserve(most);
+        begins_.reserve(std::size_t{rows} + 1);
+        auto level = std::upper_bound(levels.begin(), levels.end(), 0.0);
+        double from = 0;
+        for (std::uint32_t row = 0; row < rows; ++row) {
+            begins_.push_back(size());
+            for (unsigned i = 1; i <= per_row; ++i) {
+                const double to = row + static_cast<double>(i) / per_row;
+                for (; level != levels.end() && *level < to; ++level)
+                    if (*level - from > least_height && to - *level > least_height)
+                        from = add(from, *level);
+                from = add(from, to);
+            }
+        }
+        begins_.push_back(size());
+    }
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(middles_.size()); }
+    [[nodiscard]] double middle(std::uint32_t strip) const noexcept { return middles_[strip]; }
+    [[nodiscard]] double height(std::uint32_t strip) const noexcept { return heights_[strip]; }
+    /// The first strip of a row, or of the one after the last.
+    [[nodiscard]] std::uint32_t begin(std::uint32_t row) const noexcept { return begins_[row]; }
+    /// The row of a strip, or of the one after the last.
+    [[nodiscard]] std::uint32_t row(std::uint32_t strip) const noexcept {
+        return strip < size() ? static_cast<std::uint32_t>(middles_[strip]) : rows();
+    }
+    /// The first strip whose middle is not above v.
+    [[nodiscard]] std::uint32_t at(double v) const noexcept {
+        if (!(v < rows()))
+            return size();
+        std::uint32_t strip = v <= 0 ? 0 : begins_[static_cast<std::uint32_t>(v)];
+        while (strip < size() && middles_[strip] < v)
+            ++strip;
+        return strip;
+    }
+
+  private:
+    /// Less than this is rounding.
+    static constexpr double least_height = 1e-9;
+
+    [[nodiscard]] std::uint32_t rows() const noexcept {
+        return static_cast<std::uint32_t>(begins_.size() - 1);
+    }
+
+    double add(double from, double to) {
+        middles_.push_back(0.5 * (from + to));
+        heights_.push_back(to - from);
+        return to;
+    }
+
+    std::vector<double> middles_;
+    std::vector<double> heights_;
+    std::vector<std::uint32_t> begins_;
+};
+
 class Edges {
   public:
     Edges(std::span<const Layer> parts, const PixelGrid& grid, unsigned strips_per_row)
-        : grid_(grid), per_row_(strips_per_row), strips_(grid.height * strips_per_row) {
+        : grid_(grid), strips_(grid.height, strips_per_row, levels(parts, strips_per_row)) {
         for (const Layer& layer : parts)
             for (std::size_t i = 0; i < layer.rings; ++i)
                 add_ring(layer.contour(i));
@@ -79,16 +142,40 @@ class Edges {
     [[nodiscard]] const Edge& operator[](std::uint32_t i) const noexcept { return edges_[i]; }
     /// Edges in the order of their first strips.
     [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
-    [[nodiscard]] std::uint32_t strips() const noexcept { return strips_; }
+    [[nodiscard]] const Strips& strips() const noexcept { return strips_; }
 
   private:
-    /// In columns and strips.
+    /// Where edges lie level for a pixel or more, each height once. Nothing without anti-aliasing, and where
+    /// there are more of them than rows.
+    [[nodiscard]] std::vector<double> levels(std::span<const Layer> parts, unsigned strips_per_row) const {
+        std::vector<double> found;
+        if (strips_per_row == 1)
+            return found;
+        for (const Layer& layer : parts) {
+            for (std::size_t i = 0; i < layer.rings; ++i) {
+                const auto ring = layer.contour(i);
+                for (std::size_t k = 0; k < ring.size(); ++k) {
+                    const Point2 from = place(ring[k]);
+                    const Point2 to = place(ring[k + 1 < ring.size() ? k + 1 : 0]);
+                    if (from.y == to.y && std::abs(to.x - from.x) >= 1)
+                        found.push_back(from.y);
+                }
+            }
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        if (found.size() > grid_.height)
+            found.clear();
+        return found;
+    }
+
+    /// In columns and rows.
     [[nodiscard]] Point2 place(const Point2& p) const noexcept {
         const auto near = [](double c) { // a number also for what overflowed
             return c < far ? (c > -far ? c : -far) : far;
         };
         return {near(grid_.ux * p.x + grid_.uy * p.y + grid_.u0),
-                near((grid_.vx * p.x + grid_.vy * p.y + grid_.v0) * per_row_)};
+                near(grid_.vx * p.x + grid_.vy * p.y + grid_.v0)};
     }
 
     void add_ring(std::span<const Point2> ring) {
@@ -102,12 +189,6 @@ class Edges {
         }
     }
 
-    /// The first strip whose middle is not above v.
-    [[nodiscard]] std::uint32_t strip_at(double v) const noexcept {
-        const double strip = std::ceil(v - 0.5);
-        return static_cast<std::uint32_t>(std::clamp(strip, 0.0, static_cast<double>(strips_)));
-    }
-
     void add_edge(const Point2& from, const Point2& to) {
         // Computed from its upper end whichever way it runs: a border that two bodies share is one line.
         const bool down = from.y < to.y;
@@ -117,8 +198,8 @@ class Edges {
                   .slope = 0,
                   .low = std::min(from.x, to.x),
                   .high = std::max(from.x, to.x),
-                  .first = strip_at(upper.y),
-                  .end = strip_at(lower.y),
+                  .first = strips_.at(upper.y),
+                  .end = strips_.at(lower.y),
                   .winding = down ? 1 : -1};
         if (edge.first >= edge.end || edge.low >= grid_.width)
             return;
@@ -127,13 +208,13 @@ class Edges {
             edge.low = edge.high = edge.u = -far;
         } else {
             edge.slope = (lower.x - upper.x) / (lower.y - upper.y);
-            edge.u = upper.x + (edge.first + 0.5 - upper.y) * edge.slope;
+            edge.u = upper.x + (strips_.middle(edge.first) - upper.y) * edge.slope;
         }
         edges_.push_back(edge);
     }
 
     void order_by_first_strip() {
-        std::vector<std::uint32_t> ends(std::size_t{strips_} + 1);
+        std::vector<std::uint32_t> ends(std::size_t{strips_.size()} + 1);
         for (const Edge& edge : edges_)
             ++ends[edge.first + 1];
         for (std::size_t i = 1; i < ends.size(); ++i)
@@ -144,8 +225,7 @@ class Edges {
     }
 
     PixelGrid grid_;
-    unsigned per_row_;
-    std::uint32_t strips_;
+    Strips strips_;
     std::vector<Edge> edges_;
     std::vector<std::uint32_t> order_;
 };
@@ -160,7 +240,7 @@ class Crossings {
 
     /// The strip where the next edge begins, or the number of strips.
     [[nodiscard]] std::uint32_t next_begin() const noexcept {
-        return begun_ < edges_.order().size() ? edges_[edges_.order()[begun_]].first : edges_.strips();
+        return begun_ < edges_.order().size() ? edges_[edges_.order()[begun_]].first : edges_.strips().size();
     }
 
     /// Up to where nothing changes: no edge begins, ends or slopes. `strip` itself when something does.
@@ -193,7 +273,8 @@ class Crossings {
   private:
     [[nodiscard]] Crossing at(std::uint32_t index, std::uint32_t strip) const noexcept {
         const Edge& edge = edges_[index];
-        const double u = edge.u + (strip - edge.first) * edge.slope;
+        const Strips& strips = edges_.strips();
+        const double u = edge.u + (strips.middle(strip) - strips.middle(edge.first)) * edge.slope;
         return {std::clamp(u, edge.low, edge.high), index};
     }
 
@@ -237,8 +318,9 @@ class Crossings {
 class Rasteriser {
   public:
     Rasteriser(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options)
-        : grid_(grid), per_row_(options.antialias), edges_(parts, grid, per_row_), crossings_(edges_),
-          row_(grid.width, per_row_, options.gamma), no_gap_(per_row_ > 1 ? most_rounding : 0) {}
+        : grid_(grid), centres_only_(options.antialias == 1), edges_(parts, grid, options.antialias),
+          crossings_(edges_), row_(grid.width, 1, options.gamma), no_gap_(centres_only_ ? 0 : most_rounding) {
+    }
 
     double run(const RowSink& sink) {
         double covered = 0;
@@ -255,57 +337,60 @@ class Rasteriser {
   private:
     /// Draws a row, and says how many rows from there on look the same.
     std::uint32_t draw(std::uint32_t row) {
-        const std::uint32_t strip = row * per_row_;
-        if (crossings_.empty() && crossings_.next_begin() >= strip + per_row_)
-            return crossings_.next_begin() / per_row_ - row;
-        crossings_.advance(strip);
-        const std::uint32_t unchanged = crossings_.unchanged_until(strip) / per_row_;
+        const Strips& strips = edges_.strips();
+        const std::uint32_t begin = strips.begin(row);
+        const std::uint32_t end = strips.begin(row + 1);
+        if (crossings_.empty() && crossings_.next_begin() >= end)
+            return strips.row(crossings_.next_begin()) - row;
+        crossings_.advance(begin);
+        const std::uint32_t unchanged = strips.row(crossings_.unchanged_until(begin));
         if (unchanged > row) {
-            draw_strip(per_row_);
+            draw_strip(1);
             return unchanged - row;
         }
-        draw_strip(1);
-        for (std::uint32_t i = 1; i < per_row_; ++i) {
-            crossings_.advance(strip + i);
-            draw_strip(1);
+        draw_strip(strips.height(begin));
+        for (std::uint32_t strip = begin + 1; strip < end; ++strip) {
+            crossings_.advance(strip);
+            draw_strip(strips.height(strip));
         }
         return 1;
     }
 
-    void draw_strip(double weight) {
+    void draw_strip(double height) {
         int winding = 0;
         const Crossing* end = nullptr; // of material, if no more begins there
         for (const Crossing& crossing : crossings_.span()) {
             const int left = std::exchange(winding, winding + edges_[crossing.edge].winding);
             if (left == 0) {
                 if (end != nullptr && crossing.u - end->u > no_gap_)
-                    border(*std::exchange(end, nullptr), -weight);
+                    border(*std::exchange(end, nullptr), -height);
                 if (end == nullptr)
-                    border(crossing, weight);
+                    border(crossing, height);
                 end = nullptr;
             } else if (winding == 0) {
                 end = &crossing;
             }
         }
         if (end != nullptr)
-            border(*end, -weight);
+            border(*end, -height);
     }
 
-    void border(const Crossing& crossing, double weight) {
-        if (per_row_ == 1) {
+    /// Where material begins in a strip, or with a negative height ends.
+    void border(const Crossing& crossing, double height) {
+        if (centres_only_) {
             row_.begin_at(static_cast<std::uint32_t>(
                               std::clamp(std::ceil(crossing.u - 0.5), 0.0, static_cast<double>(grid_.width))),
-                          weight);
+                          height);
             return;
         }
         const Edge& edge = edges_[crossing.edge];
         const double half =
-            std::min({0.5 * std::abs(edge.slope), crossing.u - edge.low, edge.high - crossing.u});
-        row_.begin_along(crossing.u - half, crossing.u + half, weight);
+            std::min({0.5 * std::abs(height * edge.slope), crossing.u - edge.low, edge.high - crossing.u});
+        row_.begin_along(crossing.u - half, crossing.u + half, height);
     }
 
     PixelGrid grid_;
-    std::uint32_t per_row_;
+    bool centres_only_;
     Edges edges_;
     Crossings crossings_;
     CoverageRow row_;

@@ -201,6 +201,22 @@ TEST(Picture, IsExactWhereNoCornerLiesInTheRow) {
     EXPECT_GT(checked, 50000U);
 }
 
+TEST(Picture, IsExactForSidesAlongThePixels) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        Random random(seed);
+        const double x = random.real(-2, 10);
+        const double y = random.real(-2, 10);
+        const Contour ring = rectangle(x, y, x + random.real(1, 12), y + random.real(0.01, 12));
+        for (const unsigned antialias : {2U, 8U}) {
+            const GreyPicture picture = paint_one(layer_of({ring}), plain(16, 16), antialias);
+            for (std::uint32_t r = 0; r < 16; ++r)
+                for (std::uint32_t c = 0; c < 16; ++c)
+                    ASSERT_NEAR(picture.row(r)[c], 255 * clipped_area(ring, c, r), 0.5 + 1e-6)
+                        << "seed " << seed << ", column " << c << ", row " << r;
+        }
+    }
+}
+
 TEST(Picture, HasTheAreaOfTheLayer) {
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
         Random random(seed);
