@@ -21,31 +21,10 @@ namespace lamella::bench {
 
 namespace {
 
-struct Opened {
-    Mesh mesh;
-    Box3 box;
-    Plan plan;
-};
-
-Opened open_part(const Part& part, const Execution& execution) {
-    Opened opened{read_mesh(part.path, {}, execution).mesh(), {}, {}};
-    opened.box = bounding_box(opened.mesh, execution);
-    opened.plan = plan_uniform(opened.box.min.z, opened.box.max.z, {.layer_height = part.layer_height});
-    return opened;
-}
-
-double into_memory(const Part& part, unsigned threads) {
-    const auto start = Clock::now();
-    const Execution execution{.threads = threads};
-    const Opened opened = open_part(part, execution);
-    const LayerStack layers = slice(opened.mesh, opened.plan, execution);
-    return seconds_since(start);
-}
-
 double into_file(const Part& part, const LayerFormat& format, const std::string& path, unsigned threads) {
     const auto start = Clock::now();
     const Execution execution{.threads = threads};
-    const Opened opened = open_part(part, execution);
+    const OpenedPart opened = open_part(part, execution);
     const auto writer = open_layer_writer(path, format,
                                           {.box = opened.box,
                                            .layers = opened.plan.layers.size(),
@@ -80,13 +59,13 @@ double copy_of(const std::string& path) {
 /// Whether the file, read back, has the layers of the part: as many, closed, of the right area at its
 /// resolution.
 bool right(const Part& part, const std::string& path) {
-    const Opened opened = open_part(part, {});
+    const OpenedPart opened = open_part(part, {});
     const LayerStack back = read_layers(path).merged();
     const std::vector<double> areas = section_areas(opened.mesh, opened.plan);
-    if (back.layers.size() != areas.size())
+    if (back.size() != areas.size())
         return false;
     for (std::size_t i = 0; i < areas.size(); ++i) {
-        const LayerMeasure found = measure(back.layers[i]);
+        const LayerMeasure found = measure(back[i]);
         const double moved = 0.001; // no format here moves a point by more, in mm
         if (found.open_chains != 0 || std::abs(found.area_mm2 - areas[i]) > moved * found.perimeter_mm)
             return false;
@@ -113,7 +92,8 @@ int report(int argc, char** argv) {
             std::vector<double> added;
             std::uint64_t peak = 0;
             for (int round = 0; round < rounds; ++round) {
-                memory.push_back(measure_in_child<double>([&] { return into_memory(part, threads); }).result);
+                memory.push_back(
+                    measure_in_child<double>([&] { return seconds_into_memory(part, threads); }).result);
                 std::filesystem::remove(path); // to free the last one's blocks is no part of writing the next
                 const auto run =
                     measure_in_child<double>([&] { return into_file(part, format, path, threads); });

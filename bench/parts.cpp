@@ -1,5 +1,7 @@
 #include "parts.hpp"
 
+#include "experiment.hpp"
+
 #include <algorithm>
 #include <filesystem>
 
@@ -27,6 +29,21 @@ std::vector<Part> standard_parts() {
         make_part("rook", 0.1, [] { return make_rook(); }),
         make_part("lattice", 0.1, [] { return make_lattice({}); }),
     };
+}
+
+OpenedPart open_part(const Part& part, const Execution& execution) {
+    OpenedPart opened{read_mesh(part.path, {}, execution).mesh(), {}, {}};
+    opened.box = bounding_box(opened.mesh, execution);
+    opened.plan = plan_uniform(opened.box.min.z, opened.box.max.z, {.layer_height = part.layer_height});
+    return opened;
+}
+
+double seconds_into_memory(const Part& part, unsigned threads) {
+    const auto start = Clock::now();
+    const Execution execution{.threads = threads};
+    const OpenedPart opened = open_part(part, execution);
+    const LayerStack layers = slice(opened.mesh, opened.plan, execution);
+    return seconds_since(start);
 }
 
 } // namespace lamella::bench

@@ -19,6 +19,17 @@ struct Part {
 /// the first call, reused as long as the files are there.
 [[nodiscard]] std::vector<Part> standard_parts();
 
+/// A part as an experiment slices it: one plan for all measurements.
+struct OpenedPart {
+    Mesh mesh;
+    Box3 box;
+    Plan plan;
+};
+[[nodiscard]] OpenedPart open_part(const Part& part, const Execution& execution);
+
+/// How long it takes from the file to all layers in memory.
+[[nodiscard]] double seconds_into_memory(const Part& part, unsigned threads);
+
 /// Writes a part unless its file is already there.
 [[nodiscard]] Part make_part(const std::string& name, double layer_height,
                              const std::function<TriangleSoup()>& make);

@@ -24,36 +24,15 @@ namespace {
 constexpr std::uint32_t width = 2560;
 constexpr std::uint32_t height = 1620;
 
-struct Opened {
-    Mesh mesh;
-    Box3 box;
-    Plan plan;
-};
-
-Opened open_part(const Part& part, const Execution& execution) {
-    Opened opened{read_mesh(part.path, {}, execution).mesh(), {}, {}};
-    opened.box = bounding_box(opened.mesh, execution);
-    opened.plan = plan_uniform(opened.box.min.z, opened.box.max.z, {.layer_height = part.layer_height});
-    return opened;
-}
-
 /// Square pixels, as small as lets the part fill the display.
 double pixel_mm(const Box3& box) {
     return std::max((box.max.x - box.min.x) / width, (box.max.y - box.min.y) / height);
 }
 
-double into_memory(const Part& part, unsigned threads) {
-    const auto start = Clock::now();
-    const Execution execution{.threads = threads};
-    const Opened opened = open_part(part, execution);
-    const LayerStack layers = slice(opened.mesh, opened.plan, execution);
-    return seconds_since(start);
-}
-
 double into_job(const Part& part, const std::string& path, unsigned antialias, unsigned threads) {
     const auto start = Clock::now();
     const Execution execution{.threads = threads};
-    const Opened opened = open_part(part, execution);
+    const OpenedPart opened = open_part(part, execution);
     const double mm = pixel_mm(opened.box);
     const LayerFileInfo info{
         .box = opened.box, .layers = opened.plan.layers.size(), .bottom = opened.plan.layers.front().bottom};
@@ -83,7 +62,7 @@ double touching(std::size_t layers) {
 /// Whether each layer's picture covers the area of the section: the middles of strips speak for them, so
 /// each point of a contour may be wrong by a strip of a pixel or two.
 bool right(const Part& part, unsigned antialias) {
-    const Opened opened = open_part(part, {});
+    const OpenedPart opened = open_part(part, {});
     const double mm = pixel_mm(opened.box);
     const PixelGrid grid{.width = width,
                          .height = height,
@@ -128,7 +107,8 @@ int report(int argc, char** argv) {
             std::vector<double> added;
             std::uint64_t peak = 0;
             for (int round = 0; round < rounds; ++round) {
-                memory.push_back(measure_in_child<double>([&] { return into_memory(part, threads); }).result);
+                memory.push_back(
+                    measure_in_child<double>([&] { return seconds_into_memory(part, threads); }).result);
                 std::filesystem::remove(path);
                 const auto run =
                     measure_in_child<double>([&] { return into_job(part, path, antialias, threads); });
