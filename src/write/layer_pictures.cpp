@@ -1,6 +1,7 @@
 #include "write/layer_pictures.hpp"
 
 #include "container/deflate.hpp"
+#include "container/inflate.hpp"
 #include "write/png.hpp"
 
 namespace lamella {

@@ -1,6 +1,7 @@
 #include "write/png.hpp"
 
 #include "container/deflate.hpp"
+#include "container/inflate.hpp"
 
 #include <algorithm>
 #include <array>
