@@ -83,7 +83,8 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
         info.parts.push_back({std::move(label), box_of(part.layers)});
         stacks.push_back(part.layers);
     }
-    write_layers(arguments.output, format, stacks, info, options);
+    for (const std::string& warning : write_layers(arguments.output, format, stacks, info, options))
+        context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
 
     const std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(arguments.output),

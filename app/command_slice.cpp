@@ -261,7 +261,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
     return text;
 }
 
-/// What the layers say about the mesh.
+/// What the layers say about the mesh, and what of them the format has no place for.
 std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& result) {
     const auto where = [&](const FileResult::Affected& affected) {
         return fmt::format("in {} of {}, first at z = {} mm", grouped(affected.layers),
@@ -279,6 +279,8 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
             fmt::format("{}: inside out {}: outer contours run clockwise, as around holes, because "
                         "triangles face inwards; see lamella info {}",
                         name, where(result.inside_out), name));
+    for (const std::string& warning : result.warnings)
+        warnings.push_back(fmt::format("{}: {}", one_line(job.output), warning));
     return warnings;
 }
 

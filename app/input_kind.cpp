@@ -12,8 +12,9 @@
 namespace lamella::app {
 namespace {
 
-/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag; of files of
-/// meshes only AMF does.
+/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag, SLC files with
+/// a keyword, JSON with a bracket; NumPy arrays are entries of a zip archive. Of files of meshes only AMF
+/// begins with a tag, and 3MF with an archive.
 bool holds_layers(std::string_view head) {
     if (head.starts_with("\xEF\xBB\xBF"))
         head.remove_prefix(3);
@@ -21,8 +22,10 @@ bool holds_layers(std::string_view head) {
     if (first == std::string_view::npos)
         return false;
     head.remove_prefix(first);
-    return head.starts_with("$$") || head.starts_with("//") ||
-           (head.starts_with("<") && head.find("<amf") == std::string_view::npos);
+    if (head.starts_with("PK\3\4"))
+        return head.find(".npy") != std::string_view::npos;
+    return head.starts_with("-SLC") || head.starts_with("{") || head.starts_with("$$") ||
+           head.starts_with("//") || (head.starts_with("<") && head.find("<amf") == std::string_view::npos);
 }
 
 std::string head_of(const std::string& path) {

@@ -113,11 +113,13 @@ Error output_error(const std::string& path, int system_error) {
     }
 }
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+AtomicFile::AtomicFile(std::string path, Overwriting overwriting) : path_(std::move(path)) {
     buffer_ = std::make_unique<char[]>(buffer_size);
     if (path_ == "-") {
         descriptor_ = STDOUT_FILENO;
         owns_descriptor_ = false;
+        if (overwriting == Overwriting::yes)
+            spool();
         return;
     }
     if (path_.empty())
@@ -133,10 +135,13 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
     } catch (int system_error) {
         fail(system_error);
     }
-    if (target_.empty() || (exists && !S_ISREG(status.st_mode)))
-        open_in_place();
-    else
+    if (!target_.empty() && (!exists || S_ISREG(status.st_mode))) {
         open_temporary();
+        return;
+    }
+    open_in_place();
+    if (overwriting == Overwriting::yes)
+        spool();
 }
 
 AtomicFile::~AtomicFile() {
@@ -149,6 +154,19 @@ void AtomicFile::open_in_place() {
     while (descriptor_ < 0 && errno == EINTR); // opening a FIFO waits for its reader
     if (descriptor_ < 0)
         fail(errno);
+}
+
+void AtomicFile::spool() {
+    std::error_code error;
+    std::string pattern = (fs::temp_directory_path(error) / "lamella-XXXXXX").string();
+    const int number = error ? -1 : ::mkostemp(pattern.data(), O_CLOEXEC);
+    if (number < 0) {
+        const int system_error = error ? error.value() : errno;
+        discard();
+        throw output_error(pattern, system_error);
+    }
+    ::unlink(pattern.c_str());
+    spool_ = number;
 }
 
 void AtomicFile::open_temporary() {
@@ -210,9 +228,46 @@ void AtomicFile::flush() {
     write_out({buffer_.get(), std::exchange(buffered_, 0)});
 }
 
+void AtomicFile::overwrite(std::uint64_t place, std::string_view bytes) {
+    flush();
+    while (!bytes.empty()) {
+        const int descriptor = spool_ >= 0 ? spool_ : descriptor_;
+        const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (written >= 0) {
+            bytes.remove_prefix(static_cast<std::size_t>(written));
+            place += static_cast<std::uint64_t>(written);
+        } else if (errno != EINTR) {
+            fail(errno);
+        }
+    }
+}
+
+// The spool becomes an ordinary source of bytes; from here on writing goes to where they belong.
+void AtomicFile::copy_spool() {
+    const int from = std::exchange(spool_, -1);
+    off_t place = 0;
+    ssize_t got = 0;
+    do {
+        got = ::pread(from, buffer_.get(), buffer_size, place);
+        if (got > 0) {
+            try {
+                write_out({buffer_.get(), static_cast<std::size_t>(got)});
+            } catch (...) {
+                ::close(from);
+                throw;
+            }
+            place += got;
+        }
+    } while (got > 0 || (got < 0 && errno == EINTR));
+    const int system_error = errno;
+    ::close(from);
+    if (got < 0)
+        fail(system_error);
+}
+
 void AtomicFile::write_out(std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+        const ssize_t written = ::write(spool_ >= 0 ? spool_ : descriptor_, bytes.data(), bytes.size());
         if (written >= 0) {
             bytes.remove_prefix(static_cast<std::size_t>(written));
         } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
@@ -228,6 +283,8 @@ void AtomicFile::commit() {
     if (descriptor_ < 0)
         throw Error(ErrorKind::internal, fmt::format("'{}' was ended twice", path_));
     flush();
+    if (spool_ >= 0)
+        copy_spool();
     const int descriptor = std::exchange(descriptor_, -1);
     // An interrupted close has closed all the same on Linux.
     if (owns_descriptor_ && ::close(descriptor) != 0 && errno != EINTR)
@@ -244,6 +301,8 @@ void AtomicFile::discard() noexcept {
     const int descriptor = std::exchange(descriptor_, -1);
     if (descriptor >= 0 && owns_descriptor_)
         ::close(descriptor);
+    if (const int spooled = std::exchange(spool_, -1); spooled >= 0)
+        ::close(spooled);
     if (!temporary_.empty())
         ::unlink(temporary_.c_str());
     temporary_.clear();

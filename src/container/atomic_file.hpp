@@ -19,6 +19,9 @@ namespace lamella {
 /// about it, in one line.
 [[nodiscard]] Error output_error(const std::string& path, int system_error);
 
+/// Whether bytes that were appended will be replaced by others later.
+enum class Overwriting : std::uint8_t { no, yes };
+
 /// A file that gets its name when it is complete. Until then its bytes are in a file with another name in the
 /// same folder, which is removed with this object. A file of that name that is there already is replaced (and
 /// keeps its permissions); through a symbolic link, the file that the link points to is.
@@ -30,13 +33,17 @@ namespace lamella {
 /// behind and the file takes no more.
 class AtomicFile {
   public:
-    explicit AtomicFile(std::string path);
+    /// What is written in place and has to be overwritten waits in a nameless temporary file until `commit`.
+    explicit AtomicFile(std::string path, Overwriting overwriting = Overwriting::no);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     /// Small pieces are collected, large ones are written at once without being copied.
     void append(std::string_view bytes);
+
+    /// Puts other bytes in the place of some that were appended before. With Overwriting::yes.
+    void overwrite(std::uint64_t place, std::string_view bytes);
 
     /// Writes what is left and gives the file its name. To be called once, at the end.
     void commit();
@@ -49,6 +56,8 @@ class AtomicFile {
   private:
     void open_in_place();
     void open_temporary();
+    void spool();
+    void copy_spool();
     void write_out(std::string_view bytes);
     void flush();
     void discard() noexcept;
@@ -59,6 +68,7 @@ class AtomicFile {
     std::string temporary_; ///< empty when written in place
     UnfinishedName unfinished_;
     int descriptor_ = -1;
+    int spool_ = -1; ///< the nameless temporary file, when bytes wait in one
     bool owns_descriptor_ = true;
     std::unique_ptr<char[]> buffer_;
     std::size_t buffered_ = 0;

@@ -55,13 +55,23 @@ unsigned flags(std::string_view name, bool sizes_behind) {
     return (plain ? 0U : flag_utf8_name) | (sizes_behind ? flag_sizes_behind : 0U);
 }
 
+// In front of a stored entry of any size.
+std::string large_head(std::string_view name, std::uint64_t size, std::uint32_t crc) {
+    Record head;
+    head.u32(0x04034b50).u16(version_zip64).u16(flags(name, false));
+    head.u16(static_cast<std::uint64_t>(ZipMethod::stored)).u16(midnight).u16(first_of_january_1980);
+    head.u32(crc).u32(full32).u32(full32).u16(name.size()).u16(20).text(name);
+    head.u16(zip64_extra).u16(16).u64(size).u64(size);
+    return std::string(head.view());
+}
+
 std::uint64_t capped(std::uint64_t value) {
     return std::min(value, full32);
 }
 
 } // namespace
 
-ZipWriter::ZipWriter(std::string path) : file_(std::move(path)) {}
+ZipWriter::ZipWriter(std::string path, Overwriting overwriting) : file_(std::move(path), overwriting) {}
 
 void ZipWriter::add(std::string_view name, std::string_view content, ZipMethod method) {
     const std::uint32_t crc = crc32_of(content);
@@ -136,6 +146,24 @@ void ZipWriter::end() {
     else
         descriptor.u32(entry.stored_size).u32(entry.size);
     file_.append(descriptor.view());
+}
+
+void ZipWriter::begin_headed(std::string_view name, std::size_t head_size) {
+    if (open_)
+        throw Error(ErrorKind::internal, fmt::format("zip entry '{}' begins within another", name));
+    open_ = true;
+    entries_.push_back({std::string(name), ZipMethod::stored, false, 0, 0, 0, file_.bytes()});
+    file_.append(large_head(name, 0, 0));
+    file_.append(std::string(head_size, '\0'));
+}
+
+void ZipWriter::end_headed(std::string_view head) {
+    open_ = false;
+    Entry& entry = entries_.back();
+    entry.crc = crc32_joined(crc32_of(head), entry.crc, entry.size);
+    entry.size += head.size();
+    entry.stored_size = entry.size;
+    file_.overwrite(entry.place, large_head(entry.name, entry.size, entry.crc) + std::string(head));
 }
 
 void ZipWriter::append_directory() {

@@ -31,7 +31,7 @@ struct ZipPiece {
 /// For one thread at a time, but for `bytes`. Failures are Error{output}.
 class ZipWriter {
   public:
-    explicit ZipWriter(std::string path);
+    explicit ZipWriter(std::string path, Overwriting overwriting = Overwriting::no);
 
     /// One entry, whole. Deflating happens here.
     void add(std::string_view name, std::string_view content, ZipMethod method = ZipMethod::stored);
@@ -44,6 +44,11 @@ class ZipWriter {
     void append(const ZipPiece& piece);
     void append_stored(std::string_view content);
     void end();
+
+    /// Begins a stored entry of which the first `head_size` bytes are only known at its end, and gives those.
+    /// Sizes stand in front of it, in the form for large ones. With Overwriting::yes.
+    void begin_headed(std::string_view name, std::size_t head_size);
+    void end_headed(std::string_view head);
 
     /// Writes the directory and gives the file its name. To be called once, after the last entry.
     void finish();

@@ -330,6 +330,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
         writer->finish();
         result.seconds.write += writing.seconds();
         result.bytes = writer->bytes();
+        result.warnings = writer->warnings();
     }
     result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;

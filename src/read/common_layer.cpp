@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <optional>
 
 namespace lamella {
@@ -36,7 +37,7 @@ struct Header {
     bool binary = false;
     double units_mm = 0;
     bool aligned = false;
-    std::string label;
+    std::map<std::int64_t, std::string> labels;     ///< of the parts, by their numbers
     std::optional<std::array<double, 6>> dimension; ///< mm
     std::optional<std::uint64_t> layers;
     std::size_t end = 0; ///< the byte behind $$HEADEREND
@@ -130,6 +131,17 @@ std::string_view unquoted(std::string_view text) {
     return text;
 }
 
+/// The part's number in "/1,name".
+std::optional<std::int64_t> label_number(std::string_view line) {
+    if (!line.starts_with('/'))
+        return std::nullopt;
+    line.remove_prefix(1);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+    return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
 Header read_header(std::string_view bytes, const std::string& name) {
     Header header;
     Text text(bytes, bytes.find(header_start) + header_start.size(), name);
@@ -176,8 +188,8 @@ Header read_header(std::string_view bytes, const std::string& name) {
         } else if (command == "LABEL") {
             const std::string_view line = bytes.substr(text.at(), line_end - text.at());
             const std::size_t comma = line.find(',');
-            if (header.label.empty() && comma != std::string_view::npos)
-                header.label = std::string(unquoted(line.substr(comma + 1)));
+            if (const auto part = label_number(line); part && comma != std::string_view::npos)
+                header.labels.try_emplace(*part, unquoted(line.substr(comma + 1)));
             text.move_to(line_end);
         } else if (command == "USERDATA") {
             // $$USERDATA/uid,length,bytes: the bytes may hold anything.
@@ -207,50 +219,67 @@ Header read_header(std::string_view bytes, const std::string& name) {
 /// Collects what the geometry section says, however it is coded.
 class Collector {
   public:
-    Collector(const Header& header, const std::string& name) : units_(header.units_mm), name_(name) {}
+    Collector(const Header& header, const std::string& name) : units_(header.units_mm), name_(name) {
+        for (const auto& [number, label] : header.labels)
+            part_slot(number);
+    }
 
     void start_layer(double units, std::string place) {
         const double z = in_mm(units, place);
-        layers_.push_back({z, std::move(place), {}, {}});
+        layers_.emplace_back();
+        layers_.back().z = z;
+        layers_.back().place = std::move(place);
     }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
     void add_point(double x, double y) {
         RawLayer& layer = layers_.back();
         layer.points.push_back({in_mm(x, layer.place) + 0.0, in_mm(y, layer.place) + 0.0});
     }
-    void add_hatches(std::uint64_t count) { hatches_ += count; }
+    void add_hatch_point(double x, double y) {
+        RawLayer& layer = layers_.back();
+        layer.hatches.push_back({in_mm(x, layer.place), in_mm(y, layer.place)});
+    }
+    void end_hatches(std::int64_t part) { layers_.back().end_hatches(part_slot(part)); }
 
     /// Ends a polyline of the direction given: 0 clockwise, 1 counter-clockwise, 2 open.
     template <class Place>
-    void end_polyline(int direction, const Place& place) {
+    void end_polyline(std::int64_t part, int direction, const Place& place) {
         RawLayer& layer = layers_.back();
-        const std::size_t begin = layer.ends.empty() ? 0 : layer.ends.back().first;
-        const auto contour = layer.points.begin() + static_cast<std::ptrdiff_t>(begin);
-        auto end = std::unique(contour, layer.points.end());
-        if (direction == 2) {
-            layer.points.erase(end, layer.points.end());
-            if (layer.points.size() - begin < 2)
-                drop(layer, begin, place);
-            else
-                layer.end_contour(false);
+        const std::size_t begin = layer.ends.empty() ? 0 : layer.ends.back().end;
+        const bool closed = direction != 2;
+        const bool returns = layer.points.size() > begin && layer.points.back() == layer.points[begin];
+        if (!layer.end_clean_contour(begin, closed, part_slot(part))) {
+            dropped_.note(place);
             return;
         }
-        if (end - contour > 1 && *(end - 1) == *contour)
-            --end;
-        else if (end - contour > 2)
+        if (!closed)
+            return;
+        if (!returns)
             unclosed_.note(place);
-        layer.points.erase(end, layer.points.end());
-        if (layer.points.size() - begin < 3) {
-            drop(layer, begin, place);
-            return;
-        }
         // Where the points run the other way, the stated direction holds.
         const double area = twice_area(layer, begin);
         if (direction == 1 ? area < 0 : area > 0) {
             std::reverse(layer.points.begin() + static_cast<std::ptrdiff_t>(begin), layer.points.end());
             turned_.note(place);
         }
-        layer.end_contour(true);
+    }
+
+    /// Puts the parts into `file` in the order of their numbers.
+    void number_parts(const Header& header, LayerFile& file) {
+        if (slots_.empty())
+            part_slot(1);
+        std::vector<std::uint32_t> places(slots_.size());
+        for (const auto& [number, slot] : slots_) {
+            places[slot] = static_cast<std::uint32_t>(file.parts.size());
+            const auto label = header.labels.find(number);
+            file.parts.push_back({label == header.labels.end() ? std::string() : label->second, {}});
+        }
+        for (RawLayer& layer : layers_) {
+            for (auto& contour : layer.ends)
+                contour.part = places[contour.part];
+            for (auto& hatches : layer.hatch_ends)
+                hatches.part = places[hatches.part];
+        }
     }
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
@@ -259,8 +288,6 @@ class Collector {
         unclosed_.say(warnings);
         turned_.say(warnings);
         dropped_.say(warnings);
-        if (hatches_ != 0)
-            warnings.push_back(fmt::format("{} hatch lines were left out: layers hold contours", hatches_));
     }
 
   private:
@@ -276,10 +303,11 @@ class Collector {
         return mm;
     }
 
-    template <class Place>
-    void drop(RawLayer& layer, std::size_t begin, const Place& place) {
-        layer.points.resize(begin);
-        dropped_.note(place);
+    /// Which of the parts met so far has this number.
+    std::uint32_t part_slot(std::int64_t number) {
+        if (last_slot_ == slots_.end() || last_slot_->first != number)
+            last_slot_ = slots_.try_emplace(number, static_cast<std::uint32_t>(slots_.size())).first;
+        return last_slot_->second;
     }
 
     static double twice_area(const RawLayer& layer, std::size_t begin) {
@@ -296,7 +324,8 @@ class Collector {
     double units_;
     const std::string& name_;
     std::vector<RawLayer> layers_;
-    std::uint64_t hatches_ = 0;
+    std::map<std::int64_t, std::uint32_t> slots_; ///< of parts, by their numbers
+    std::map<std::int64_t, std::uint32_t>::iterator last_slot_ = slots_.end();
     Oddity unclosed_{"closed contours did not return to their first point; they were closed"};
     Oddity turned_{"contours ran against their stated direction; they were turned round"};
     Oddity dropped_{"contours had too few different points; they were dropped"};
@@ -352,7 +381,7 @@ void read_ascii(std::string_view bytes, const std::string& name, const Header& h
                 text.fail(fmt::format("$${} before the first $$LAYER", command),
                           "contours belong to a layer");
             text.expect('/', "the part's number");
-            static_cast<void>(integer(text, "the part's number"));
+            const std::int64_t part = integer(text, "the part's number");
             text.expect(',', "the next parameter");
             const bool polyline = command == "POLYLINE";
             std::int64_t direction = 2;
@@ -374,18 +403,22 @@ void read_ascii(std::string_view bytes, const std::string& name, const Header& h
                     text.expect(',', "the next coordinate");
                     value[k] = text.number("a coordinate");
                 }
-                if (polyline)
+                if (polyline) {
                     collector.add_point(value[0], value[1]);
+                } else {
+                    collector.add_hatch_point(value[0], value[1]);
+                    collector.add_hatch_point(value[2], value[3]);
+                }
             }
             text.skip_blanks();
             if (!text.done() && !text.rest().starts_with("$$"))
                 text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 12), 24)),
                           fmt::format("the count of {} says that the coordinates end here", count));
             if (polyline)
-                collector.end_polyline(static_cast<int>(direction),
+                collector.end_polyline(part, static_cast<int>(direction),
                                        [&] { return fmt::format("line {}", line_at(bytes, command_at)); });
             else
-                collector.add_hatches(static_cast<std::uint64_t>(count));
+                collector.end_hatches(part);
         } else {
             // Extensions such as $$POWER/100.0 stand between polylines.
             text.move_to(std::min(bytes.find_first_of("\r\n", text.at()), bytes.size()));
@@ -488,6 +521,17 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
     }
     Bytes in(bytes, std::min(begin, bytes.size()), header.aligned, name);
     const ShortNumbers short_number(header);
+    const auto take_point = [&](const char* from, bool is_long, std::size_t at, const auto& take) {
+        if (is_long) {
+            std::array<float, 2> p{};
+            std::memcpy(p.data(), from, sizeof p);
+            if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+                in.fail(at, "a point that is not finite", "coordinates must be numbers");
+            take(static_cast<double>(p[0]), static_cast<double>(p[1]));
+        } else {
+            take(short_number(from), short_number(from + 2));
+        }
+    };
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
     std::size_t reported = 0;
@@ -521,7 +565,7 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
                 return is_long ? std::int64_t{in.take<std::int32_t>("a polyline")}
                                : std::int64_t{in.take<std::uint16_t>("a polyline")};
             };
-            static_cast<void>(parameter()); // the part
+            const std::int64_t part = parameter();
             const std::int64_t direction = parameter();
             if (direction < 0 || direction > 2)
                 in.fail(at, fmt::format("a polyline of direction {}", direction),
@@ -529,19 +573,9 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
             const std::int64_t count = parameter();
             const std::size_t size = is_long ? 8 : 4;
             const char* first = in.take_records(count, size, "points");
-            for (std::int64_t i = 0; i < count; ++i, first += size) {
-                if (is_long) {
-                    std::array<float, 2> p{};
-                    std::memcpy(p.data(), first, sizeof p);
-                    if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
-                        in.fail(at, fmt::format("point {} of a polyline that is not finite", i + 1),
-                                "coordinates must be numbers");
-                    collector.add_point(static_cast<double>(p[0]), static_cast<double>(p[1]));
-                } else {
-                    collector.add_point(short_number(first), short_number(first + 2));
-                }
-            }
-            collector.end_polyline(static_cast<int>(direction), place);
+            for (std::int64_t i = 0; i < count; ++i, first += size)
+                take_point(first, is_long, at, [&](double x, double y) { collector.add_point(x, y); });
+            collector.end_polyline(part, static_cast<int>(direction), place);
             break;
         }
         case Command::hatches_short:
@@ -552,10 +586,13 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
                 return is_long ? std::int64_t{in.take<std::int32_t>("hatches")}
                                : std::int64_t{in.take<std::uint16_t>("hatches")};
             };
-            static_cast<void>(parameter()); // the part
+            const std::int64_t part = parameter();
             const std::int64_t count = parameter();
-            static_cast<void>(in.take_records(count, is_long ? 16 : 8, "hatches"));
-            collector.add_hatches(static_cast<std::uint64_t>(count));
+            const std::size_t size = is_long ? 8 : 4;
+            const char* first = in.take_records(count, 2 * size, "hatches");
+            for (std::int64_t i = 0; i < 2 * count; ++i, first += size)
+                take_point(first, is_long, at, [&](double x, double y) { collector.add_hatch_point(x, y); });
+            collector.end_hatches(part);
             break;
         }
         default:
@@ -568,12 +605,12 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
 
 /// Heights are tops of layers, and an empty layer before the first one tells where that begins. Exports exist
 /// whose first layer lies on the bottom of the part and has contours: there heights are bottoms.
-void make_layers(std::vector<RawLayer>& raw, const Header& header, LayerFile& file) {
+void make_layers(std::vector<RawLayer>& raw, const Header& header, std::uint64_t bytes, LayerFile& file) {
     sort_by_height(raw, file.warnings);
     if (raw.empty())
         return;
     const std::size_t n = raw.size();
-    const bool has_zero_layer = raw.front().ends.empty() && n > 1;
+    const bool has_zero_layer = raw.front().ends.empty() && raw.front().hatch_ends.empty() && n > 1;
     const double lowest = header.dimension ? (*header.dimension)[2] : 0.0;
     // A single layer below the bottom of the part has no thickness that could be told.
     const double first_step = n > 1 ? raw[1].z - raw[0].z : std::max(0.0, raw[0].z - lowest);
@@ -584,8 +621,7 @@ void make_layers(std::vector<RawLayer>& raw, const Header& header, LayerFile& fi
                         "are taken for the bottoms of layers",
                         raw.front().z));
     const std::size_t begin = has_zero_layer ? 1 : 0;
-    LayerStack& layers = file.parts.front().layers;
-    layers.reserve(n - begin);
+    check_part_planes(file, n - begin, bytes);
     for (std::size_t i = begin; i < n; ++i) {
         double bottom = 0;
         double top = 0;
@@ -596,11 +632,7 @@ void make_layers(std::vector<RawLayer>& raw, const Header& header, LayerFile& fi
             top = raw[i].z;
             bottom = i > 0 ? raw[i - 1].z : top - first_step;
         }
-        // The heights of later layers are still needed as neighbours, so only the contours are taken away.
-        RawLayer contours;
-        contours.points = std::move(raw[i].points);
-        contours.ends = std::move(raw[i].ends);
-        layers.push_back(make_layer(contours, i - begin, bottom + (top - bottom) / 2, bottom, top));
+        add_layer(file, raw[i], i - begin, bottom + (top - bottom) / 2, bottom, top);
     }
 }
 
@@ -616,7 +648,6 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, con
     LayerFile file;
     file.path = name;
     file.format = header.binary ? "cli" : "cli-ascii";
-    file.parts.push_back({header.label, {}});
     file.units_mm = header.units_mm;
 
     Collector collector(header, name);
@@ -633,7 +664,8 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, con
         file.warnings.push_back(
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
     collector.say(file.warnings);
-    make_layers(collector.layers(), header, file);
+    collector.number_parts(header, file);
+    make_layers(collector.layers(), header, bytes.size(), file);
     return file;
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 
-// From contours at heights, as slice files hold them, to layers.
+// From contours at heights, as slice files hold them, to the layers of parts.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -34,17 +34,39 @@ class Oddity {
 
 /// The contours of one height of the file, in millimetres.
 struct RawLayer {
+    struct Contour {
+        std::size_t end; ///< in `points`
+        bool closed;
+        std::uint32_t part; ///< in LayerFile::parts
+    };
+    struct Hatches {
+        std::size_t end; ///< in `hatches`
+        std::uint32_t part;
+    };
+
     double z = 0;      ///< as the file has it
     std::string place; ///< for error texts
     std::vector<Point2> points;
-    std::vector<std::pair<std::size_t, bool>>
-        ends; ///< the end of each contour in `points`, and whether it is closed
+    std::vector<Contour> ends;
+    std::vector<Point2> hatches; ///< two points each
+    std::vector<Hatches> hatch_ends;
 
-    void end_contour(bool closed) { ends.emplace_back(points.size(), closed); }
+    void end_contour(bool closed, std::uint32_t part = 0) { ends.push_back({points.size(), closed, part}); }
+
+    /// Ends the contour that begins at points[begin]. Points equal to the one before are dropped, and so is a
+    /// ring's last point that repeats its first one. False when fewer than three points (of a chain: two)
+    /// were left, and none is kept then.
+    bool end_clean_contour(std::size_t begin, bool closed, std::uint32_t part = 0);
+
+    void end_hatches(std::uint32_t part) { hatch_ends.push_back({hatches.size(), part}); }
 };
 
-/// A layer in normal form; `raw` is left empty.
-[[nodiscard]] Layer make_layer(RawLayer& raw, std::uint64_t index, double z, double bottom, double top);
+/// Appends a layer in normal form to each part; `raw` loses its contours and hatches.
+void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top);
+
+/// Throws Error{input} when so many parts on so many planes cannot be meant in a file of so many bytes:
+/// layers take memory even where they are empty.
+void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes);
 
 /// Puts heights in ascending order and joins equal ones; warns when it had to.
 void sort_by_height(std::vector<RawLayer>& layers, std::vector<std::string>& warnings);

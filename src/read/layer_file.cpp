@@ -4,8 +4,13 @@
 
 #include "container/byte_source.hpp"
 #include "container/text_place.hpp"
+#include "container/zip_reader.hpp"
 #include "read/common_layer.hpp"
 #include "read/layered_svg.hpp"
+#include "read/layers_json.hpp"
+#include "read/npz.hpp"
+#include "read/slc.hpp"
+#include "read/slices_3mf.hpp"
 
 #include <fmt/format.h>
 
@@ -17,14 +22,35 @@ namespace {
 
 LayerFile read_source(const ByteSource& source, const Execution& execution) {
     const std::string_view bytes(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    if (is_zip(bytes)) {
+        const OpcPackage package(source, 0);
+        if (is_npz(package.zip()))
+            return read_npz(package.zip(), execution);
+        if (is_3mf(package.zip()))
+            return read_slices_3mf(package, execution);
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found a zip archive that holds no layers; of archives, 3MF with slice "
+                                "stacks and NumPy arrays are read",
+                                source.name));
+    }
+    if (is_slc(bytes))
+        return read_slc(bytes, source.name, execution);
+    if (is_json(bytes))
+        return read_layers_json(bytes, source.name, execution);
     if (is_common_layer(bytes))
         return read_common_layer(bytes, source.name, execution);
     if (is_svg(bytes))
         return read_layered_svg(bytes, source.name, execution);
+    if (const std::string_view other = other_slc(bytes); !other.empty())
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found {}; of the formats that go by this name, that of 3D Systems is "
+                                "read (-SLCVER)",
+                                source.name, other));
     throw Error(
         ErrorKind::input,
         fmt::format("{}: found '{}' at its beginning; a slice file is expected: Common Layer Interface "
-                    "($$HEADERSTART) or layered SVG (<svg)",
+                    "($$HEADERSTART), layered SVG (<svg), SLC (-SLCVER), 3MF with slice stacks, NumPy "
+                    "arrays or JSON of layers",
                     source.name, printable(bytes.substr(0, 16), 48)));
 }
 

@@ -78,7 +78,10 @@ struct Group {
 
 class SvgReader {
   public:
-    SvgReader(const std::string& name, LayerFile& file) : name_(name), file_(file) {}
+    SvgReader(const std::string& name, std::uint64_t bytes, LayerFile& file)
+        : name_(name), bytes_(bytes), file_(file) {
+        file_.parts.emplace_back();
+    }
 
     void start(std::string_view element, const XmlAttributes& attributes, std::size_t line) {
         if (depth_++ == 0) {
@@ -99,7 +102,9 @@ class SvgReader {
                 add_points(attributes, kind == "polygon", line);
             else if (kind == "path")
                 add_path(attributes, line);
-            else if (kind != "g" && kind != "title" && kind != "desc")
+            else if (kind == "g")
+                start_part(attributes, line);
+            else if (kind != "title" && kind != "desc")
                 other_.note([&] { return fmt::format("line {}", line); });
         }
     }
@@ -107,6 +112,8 @@ class SvgReader {
     void end() {
         if (--depth_ == 1)
             in_layer_ = false;
+        if (depth_ == 2)
+            part_ = 0;
     }
 
     void finish() {
@@ -152,6 +159,21 @@ class SvgReader {
         if (group.height && *group.height < 0)
             fail(line, fmt::format("found a layer height of {}; it must not be below 0", *group.height));
         groups_.push_back(std::move(group));
+    }
+
+    /// Our own files put each of several parts into a group, numbered from 1.
+    void start_part(const XmlAttributes& attributes, std::size_t line) {
+        const auto part = depth_ == 3 ? number(attributes, "data-lamella-part", line) : std::nullopt;
+        if (!part)
+            return;
+        const std::size_t known = file_.parts.size();
+        if (!(*part >= 1 && *part <= static_cast<double>(known + 1)) || *part != std::floor(*part))
+            fail(line, fmt::format("found part {}; parts are numbered, and {} came so far", *part, known));
+        part_ = static_cast<std::uint32_t>(*part) - 1;
+        if (part_ == known)
+            file_.parts.emplace_back();
+        if (std::string& label = file_.parts[part_].label; label.empty())
+            label = attributes.find("data-lamella-label");
     }
 
     void add_points(const XmlAttributes& attributes, bool closed, std::size_t line) {
@@ -224,18 +246,9 @@ class SvgReader {
 
     void end_contour(std::size_t begin, bool closed, std::size_t line) {
         RawLayer& layer = groups_.back().contours;
-        const auto contour = layer.points.begin() + static_cast<std::ptrdiff_t>(begin);
-        auto end = std::unique(contour, layer.points.end());
-        while (closed && end - contour > 1 && *(end - 1) == *contour)
-            --end;
-        layer.points.erase(end, layer.points.end());
-        if (layer.points.size() - begin < (closed ? 3U : 2U)) {
-            if (layer.points.size() != begin)
-                dropped_.note([&] { return fmt::format("line {}", line); });
-            layer.points.resize(begin);
-            return;
-        }
-        layer.end_contour(closed);
+        const bool empty = layer.points.size() == begin;
+        if (!layer.end_clean_contour(begin, closed, part_) && !empty)
+            dropped_.note([&] { return fmt::format("line {}", line); });
     }
 
     /// Slic3r 1.x writes the cut in its scaled units, a millionth of the millimetres; later ones the top in
@@ -284,15 +297,16 @@ class SvgReader {
         // Layers are listed by their cuts, which need not lie as their tops do.
         std::stable_sort(places.begin(), places.end(),
                          [](const Place& a, const Place& b) { return a.z < b.z; });
-        LayerStack& layers = file_.parts.emplace_back().layers;
-        layers.reserve(n);
+        check_part_planes(file_, n, bytes_);
         for (std::size_t i = 0; i < n; ++i)
-            layers.push_back(make_layer(groups_[places[i].group].contours, i, places[i].z, places[i].bottom,
-                                        places[i].top));
+            add_layer(file_, groups_[places[i].group].contours, i, places[i].z, places[i].bottom,
+                      places[i].top);
     }
 
     const std::string& name_;
+    std::uint64_t bytes_;
     LayerFile& file_;
+    std::uint32_t part_ = 0;
     int depth_ = 0;
     bool in_layer_ = false;
     double height_ = 0;
@@ -315,7 +329,7 @@ LayerFile read_layered_svg(std::string_view bytes, const std::string& name, cons
     file.path = name;
     file.format = "svg";
     file.units_mm = 1;
-    SvgReader reader(name, file);
+    SvgReader reader(name, bytes.size(), file);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
     parse_xml(bytes, name,

@@ -3,8 +3,8 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
-#include "core/vector_clones.hpp"
 #include "write/decimal.hpp"
+#include "write/float_contour.hpp"
 #include "write/grid.hpp"
 #include "write/sequential_writer.hpp"
 
@@ -28,6 +28,7 @@ enum Direction : std::uint8_t { clockwise = 0, counter_clockwise = 1, open_line 
 
 constexpr double least_units = 1e-9;
 constexpr double most_units = 1e3;
+constexpr Holds holds{.open_chains = true, .hatches = true};
 constexpr int first_part = 1;
 
 void check_units(double units) {
@@ -125,7 +126,7 @@ class AsciiWriter final : public SequentialWriter {
         : SequentialWriter(path, info,
                            header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
                                height_text(info.bottom, options.units_mm) + '\n',
-                           "$$GEOMETRYEND\n"),
+                           holds),
           units_(options.units_mm), grid_(options.units_mm) {}
 
   private:
@@ -138,35 +139,53 @@ class AsciiWriter final : public SequentialWriter {
             for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
                 put_polyline(part, points, direction, out);
             });
+            if (!layer.hatches.empty())
+                put_hatches(part, grid_.snap_points(layer.hatches.span(), layer.index), out);
         });
     }
+
+    std::string tail() override { return "$$GEOMETRYEND\n"; }
 
     static void put_polyline(int part, std::span<const GridPoint> points, Direction direction,
                              ByteBuffer& out) {
         const bool closed = direction != open_line;
-        constexpr std::string_view command = "$$POLYLINE/";
-        // A comma or the end, sign, digits and ".0".
-        constexpr std::size_t per_number = most_integer_digits + 4;
-        char* at = out.room(command.size() + (points.size() + 3) * 2 * per_number);
-        at = std::copy(command.begin(), command.end(), at);
-        at = put_integer(at, static_cast<std::uint64_t>(part));
+        char* at = put_command("$$POLYLINE/", part, points.size() + 1, out);
         *at++ = ',';
         *at++ = static_cast<char>('0' + direction);
         *at++ = ',';
         at = put_integer(at, std::uint64_t{points.size() + (closed ? 1 : 0)});
-        // A real number has a decimal point.
-        const auto put = [&](const GridPoint& p) {
-            *at = ',';
-            at = put_integer(at + 1, p.x);
-            at = put_integer(std::copy_n(".0,", 3, at), p.y);
-            at = std::copy_n(".0", 2, at);
-        };
         for (const GridPoint& p : points)
-            put(p);
+            at = put_point(at, p);
         if (closed)
-            put(points.front());
+            at = put_point(at, points.front());
         *at++ = '\n';
         out.end_at(at);
+    }
+
+    static void put_hatches(int part, std::span<const GridPoint> points, ByteBuffer& out) {
+        char* at = put_command("$$HATCHES/", part, points.size(), out);
+        *at++ = ',';
+        at = put_integer(at, std::uint64_t{points.size() / 2});
+        for (const GridPoint& p : points)
+            at = put_point(at, p);
+        *at++ = '\n';
+        out.end_at(at);
+    }
+
+    // With room for so many points, a direction and a count.
+    static char* put_command(std::string_view command, int part, std::size_t points, ByteBuffer& out) {
+        // A comma or the end, sign, digits and ".0".
+        constexpr std::size_t per_number = most_integer_digits + 4;
+        char* const at = out.room(command.size() + (points + 2) * 2 * per_number);
+        return put_integer(std::copy(command.begin(), command.end(), at), static_cast<std::uint64_t>(part));
+    }
+
+    // A real number has a decimal point.
+    static char* put_point(char* at, const GridPoint& p) {
+        *at = ',';
+        at = put_integer(at + 1, p.x);
+        at = put_integer(std::copy_n(".0,", 3, at), p.y);
+        return std::copy_n(".0", 2, at);
     }
 
     double units_;
@@ -177,73 +196,15 @@ enum class Command : std::uint16_t {
     layer_long = 127,
     layer_short = 128,
     polyline_short = 129,
-    polyline_long = 130
+    polyline_long = 130,
+    hatches_short = 131,
+    hatches_long = 132
 };
 
 template <class T>
 char* put(char* out, T value) {
     std::memcpy(out, &value, sizeof value);
     return out + sizeof value;
-}
-
-struct FloatPoint {
-    float x;
-    float y;
-};
-
-struct FloatBox {
-    FloatPoint least;
-    FloatPoint most;
-};
-
-// Writes points, scaled and in single precision, and tells their box. What a large file spends its time in.
-LAMELLA_VECTOR_CLONES FloatBox to_floats(std::span<const Point2> points, double scale, char* out) {
-    // Of eight points at a time: x, y, x, y, ...
-    constexpr std::size_t lanes = 16;
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    std::array<float, lanes> low;
-    std::array<float, lanes> high;
-    low.fill(infinity);
-    high.fill(-infinity);
-    const double* from = &points.front().x;
-    const auto convert = [&](std::size_t n) {
-        std::array<float, lanes> values{};
-        for (std::size_t k = 0; k < n; ++k) {
-            // Adding zero turns a rounded -0 into +0.
-            values[k] = static_cast<float>(from[k] * scale) + 0.0F;
-            low[k] = values[k] < low[k] ? values[k] : low[k];
-            high[k] = values[k] > high[k] ? values[k] : high[k];
-        }
-        std::memcpy(out, values.data(), n * sizeof(float));
-        from += n;
-        out += n * sizeof(float);
-    };
-    const std::size_t doubles = 2 * points.size();
-    for (std::size_t i = 0; i + lanes <= doubles; i += lanes)
-        convert(lanes);
-    convert(doubles % lanes);
-    FloatBox box{{low[0], low[1]}, {high[0], high[1]}};
-    for (std::size_t k = 2; k < lanes; k += 2) {
-        box.least = {std::min(box.least.x, low[k]), std::min(box.least.y, low[k + 1])};
-        box.most = {std::max(box.most.x, high[k]), std::max(box.most.y, high[k + 1])};
-    }
-    return box;
-}
-
-FloatPoint load(const char* points, std::size_t i) {
-    FloatPoint p;
-    std::memcpy(&p, points + i * sizeof p, sizeof p);
-    return p;
-}
-
-// The signed area of a ring of such points.
-double area_of_floats(const char* points, std::size_t count) {
-    std::vector<Point2> ring(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const FloatPoint p = load(points, i);
-        ring[i] = {p.x, p.y};
-    }
-    return ring_area(ring);
 }
 
 constexpr std::size_t long_head = 14;
@@ -259,13 +220,24 @@ char* put_long_head(char* out, int part, Direction direction, std::size_t points
     return put(out, static_cast<std::int32_t>(points));
 }
 
+constexpr std::size_t hatches_head = 10;
+
+char* put_hatches_head(char* out, int part, std::size_t hatches, std::uint64_t layer) {
+    if (hatches > std::size_t{std::numeric_limits<std::int32_t>::max()})
+        throw Error(ErrorKind::limit,
+                    fmt::format("layer {} has {} hatch lines; the format ends at 2^31 - 1", layer, hatches));
+    out = put(out, Command::hatches_long);
+    out = put(out, std::int32_t{part});
+    return put(out, static_cast<std::int32_t>(hatches));
+}
+
 class LongWriter final : public SequentialWriter {
   public:
     LongWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : SequentialWriter(
               path, info,
-              header("BINARY", info, options.units_mm) + layer_start(info.bottom, options.units_mm), {}),
-          units_(options.units_mm), per_unit_(1 / options.units_mm) {}
+              header("BINARY", info, options.units_mm) + layer_start(info.bottom, options.units_mm), holds),
+          units_(options.units_mm), floats_(1 / options.units_mm) {}
 
   private:
     static std::string layer_start(double z, double units) {
@@ -279,97 +251,45 @@ class LongWriter final : public SequentialWriter {
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for_each_part(parts, [&](const Layer& layer, int part) {
             // All room at once: most layers lose no point.
-            static_cast<void>(out.room(layer.contours() * (long_head + sizeof(FloatPoint)) +
-                                       layer.points.size() * sizeof(FloatPoint)));
+            static_cast<void>(out.room(layer.contours() * (long_head + float_point_size) +
+                                       layer.points.size() * float_point_size));
             for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
                 put_polyline(part, contour, closed, layer.index, out);
             });
+            put_hatches(part, layer, out);
         });
+    }
+
+    void put_hatches(int part, const Layer& layer, ByteBuffer& out) const {
+        if (layer.hatches.empty())
+            return;
+        char* const head = out.room(hatches_head + layer.hatches.size() * float_point_size);
+        char* const points = put_hatches_head(head, part, layer.hatches.size() / 2, layer.index);
+        floats_.put_points(layer.hatches.span(), layer.index, points);
+        out.end_at(points + layer.hatches.size() * float_point_size);
     }
 
     void put_polyline(int part, std::span<const Point2> contour, bool closed, std::uint64_t layer,
                       ByteBuffer& out) const {
-        char* const head = out.room(long_head + (contour.size() + 1) * sizeof(FloatPoint));
-        char* const points = head + long_head;
-        const double moved_area = convert(contour, points, layer);
-        const std::size_t count = without_repeats(points, contour.size(), closed);
-        if (count < (closed ? 3U : 2U))
+        char* const head = out.room(long_head + (contour.size() + 1) * float_point_size);
+        const FloatContour listed = floats_.put(contour, closed, layer, head + long_head);
+        if (listed.points == 0)
             return;
-        Direction direction = open_line;
-        if (closed) {
-            const double area = ring_area(contour);
-            direction = direction_of(area);
-            // Only of a thin ring can rounding have turned the area over.
-            const bool thin = !(std::abs(area) * per_unit_ * per_unit_ > moved_area);
-            if (thin && area * area_of_floats(points, count) < 0)
-                reverse(points, count);
-            std::memcpy(points + count * sizeof(FloatPoint), points, sizeof(FloatPoint));
-        }
-        const std::size_t listed = count + (closed ? 1 : 0);
-        put_long_head(head, part, direction, listed, layer);
-        out.end_at(points + listed * sizeof(FloatPoint));
-    }
-
-    // Writes the contour in units and single precision. Returns a bound on how much that changes the area of
-    // a ring, in square units.
-    double convert(std::span<const Point2> contour, char* out, std::uint64_t layer) const {
-        constexpr float infinity = std::numeric_limits<float>::infinity();
-        const FloatBox box = to_floats(contour, per_unit_, out);
-        if (!(box.least.x > -infinity && box.least.y > -infinity && box.most.x < infinity &&
-              box.most.y < infinity))
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
-        // Each point moves by half a unit in the last place at most, and a term of the area with it by that
-        // times the lengths of its two edges. Twice is for the rounding of this and of the area itself.
-        const double extent =
-            (double{box.most.x} - double{box.least.x}) + (double{box.most.y} - double{box.least.y});
-        const double largest =
-            std::max({-double{box.least.x}, -double{box.least.y}, double{box.most.x}, double{box.most.y}});
-        const double moved = largest * double{std::numeric_limits<float>::epsilon()};
-        return 2 * static_cast<double>(contour.size()) * moved * (extent + moved);
-    }
-
-    // Removes points that rounding made equal to the one before; returns how many stay.
-    static std::size_t without_repeats(char* points, std::size_t count, bool closed) {
-        const auto bits = [&](std::size_t i) {
-            std::uint64_t b = 0;
-            std::memcpy(&b, points + i * sizeof b, sizeof b);
-            return b;
-        };
-        std::size_t repeats = 0;
-        for (std::size_t i = 1; i < count; ++i)
-            repeats += bits(i) == bits(i - 1) ? 1 : 0;
-        std::size_t kept = count;
-        if (repeats != 0) {
-            kept = 1;
-            for (std::size_t i = 1; i < count; ++i) {
-                const std::uint64_t b = bits(i);
-                if (b != bits(kept - 1))
-                    std::memcpy(points + kept++ * sizeof b, &b, sizeof b);
-            }
-        }
-        while (closed && kept > 1 && bits(kept - 1) == bits(0))
-            --kept;
-        return kept;
-    }
-
-    static void reverse(char* points, std::size_t count) {
-        for (std::size_t i = 0, j = count - 1; i < j; ++i, --j) {
-            const FloatPoint a = load(points, i);
-            const FloatPoint b = load(points, j);
-            std::memcpy(points + i * sizeof b, &b, sizeof b);
-            std::memcpy(points + j * sizeof a, &a, sizeof a);
-        }
+        put_long_head(head, part, closed ? direction_of(listed.area_mm2) : open_line, listed.points, layer);
+        out.end_at(head + long_head + listed.points * float_point_size);
     }
 
     double units_;
-    double per_unit_;
+    FloatContours floats_;
 };
 
 // 16-bit numbers are unsigned by the standard and signed in some readers and writers: only those that mean
 // the same in both are written.
 constexpr std::int64_t most_short = 32767;
+
+// More points or hatches, or a part of a larger number, than 16 bits count are written in the long form; a
+// file may hold both.
+constexpr std::size_t most_counted = std::numeric_limits<std::uint16_t>::max();
 
 // The next of 1, 2, 5, 10, 20, 50 ... that is not below `needed`.
 double round_units(double needed) {
@@ -385,7 +305,7 @@ double round_units(double needed) {
 class ShortWriter final : public SequentialWriter {
   public:
     ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : SequentialWriter(path, info, checked_head(info, options.units_mm), {}), units_(options.units_mm),
+        : SequentialWriter(path, info, checked_head(info, options.units_mm), holds), units_(options.units_mm),
           grid_(options.units_mm), last_height_(whole_units(info.bottom, options.units_mm)) {}
 
   private:
@@ -450,11 +370,12 @@ class ShortWriter final : public SequentialWriter {
             for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
                 put_polyline(part, points, direction, layer.index, out);
             });
+            if (!layer.hatches.empty())
+                put_hatches(part, grid_.snap_points(layer.hatches.span(), layer.index), layer.index, out);
         });
     }
 
-    void put_polyline(int part, std::span<const GridPoint> points, Direction direction, std::uint64_t layer,
-                      ByteBuffer& out) const {
+    void check_short(std::span<const GridPoint> points, std::uint64_t layer) const {
         for (const GridPoint& p : points) {
             if (((p.x | p.y) & ~most_short) != 0) {
                 const std::string what = fmt::format("layer {}", layer);
@@ -462,12 +383,40 @@ class ShortWriter final : public SequentialWriter {
                 check_short(what, "y", p.y, units_);
             }
         }
+    }
+
+    static char* put_short(char* at, const GridPoint& p) {
+        return put(put(at, static_cast<std::uint16_t>(p.x)), static_cast<std::uint16_t>(p.y));
+    }
+
+    static char* put_long(char* at, const GridPoint& p) {
+        return put(put(at, static_cast<float>(p.x)), static_cast<float>(p.y));
+    }
+
+    void put_hatches(int part, std::span<const GridPoint> points, std::uint64_t layer,
+                     ByteBuffer& out) const {
+        check_short(points, layer);
+        char* at = out.room(hatches_head + points.size() * float_point_size);
+        const bool counted =
+            points.size() / 2 <= most_counted && static_cast<std::size_t>(part) <= most_counted;
+        if (counted) {
+            at = put(at, Command::hatches_short);
+            at = put(at, static_cast<std::uint16_t>(part));
+            at = put(at, static_cast<std::uint16_t>(points.size() / 2));
+        } else {
+            at = put_hatches_head(at, part, points.size() / 2, layer);
+        }
+        for (const GridPoint& p : points)
+            at = counted ? put_short(at, p) : put_long(at, p);
+        out.end_at(at);
+    }
+
+    void put_polyline(int part, std::span<const GridPoint> points, Direction direction, std::uint64_t layer,
+                      ByteBuffer& out) const {
+        check_short(points, layer);
         const std::size_t listed = points.size() + (direction != open_line ? 1 : 0);
-        char* at = out.room(long_head + listed * sizeof(FloatPoint));
-        // A contour of more points or a part of a larger number than 16 bits count is written in the long
-        // form; a file may hold both.
-        constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
-        const bool counted = listed <= most && static_cast<std::size_t>(part) <= most;
+        char* at = out.room(long_head + listed * float_point_size);
+        const bool counted = listed <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted) {
             at = put(at, Command::polyline_short);
             at = put(at, static_cast<std::uint16_t>(part));
@@ -478,10 +427,7 @@ class ShortWriter final : public SequentialWriter {
         }
         for (std::size_t i = 0; i < listed; ++i) {
             const GridPoint& p = points[i < points.size() ? i : 0];
-            if (counted)
-                at = put(put(at, static_cast<std::uint16_t>(p.x)), static_cast<std::uint16_t>(p.y));
-            else
-                at = put(put(at, static_cast<float>(p.x)), static_cast<float>(p.y));
+            at = counted ? put_short(at, p) : put_long(at, p);
         }
         out.end_at(at);
     }

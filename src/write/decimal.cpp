@@ -26,6 +26,10 @@ std::string decimal_text(double value, int most, int least) {
     return text;
 }
 
+char* put_shortest(char* out, double value) noexcept {
+    return std::to_chars(out, out + most_double_digits, value).ptr;
+}
+
 std::string exact_decimal_text(double value) {
     std::array<char, longest> buffer{};
     const auto result =

@@ -83,9 +83,26 @@ inline char* put_thousandths(char* out, std::int64_t n) noexcept {
     return out + kept;
 }
 
+/// The same with at least one decimal, as formats want it that tell real numbers from whole ones: "7.0".
+inline char* put_real_thousandths(char* out, std::int64_t n) noexcept {
+    char* const end = put_thousandths(out, n);
+    if (n % 1000 != 0)
+        return end;
+    end[0] = '.';
+    end[1] = '0';
+    return end + 2;
+}
+
 /// `value` rounded to `most` decimals, trailing zeros removed down to `least`; zero without a sign. For
 /// headings, not for points.
 [[nodiscard]] std::string decimal_text(double value, int most, int least);
+
+/// The longest text of a double that `put_shortest` writes.
+inline constexpr std::size_t most_double_digits = 24;
+
+/// Writes the shortest text that reads back as the same number, with an exponent where that is shorter, and
+/// returns the end.
+char* put_shortest(char* out, double value) noexcept;
 
 /// The shortest text that reads back as the same number, without an exponent and with at least one decimal.
 [[nodiscard]] std::string exact_decimal_text(double value);

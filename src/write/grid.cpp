@@ -40,27 +40,31 @@ double grid_area(std::span<const GridPoint> ring) noexcept {
 
 Grid::Grid(double step_mm) : step_(step_mm), per_step_(1 / step_mm) {}
 
-std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool closed, double area,
-                                      std::uint64_t layer, std::vector<GridPoint>& scratch) const {
-    if (scratch.size() < contour.size())
-        scratch.resize(contour.size());
-    GridPoint* const points = scratch.data();
+void Grid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const {
     std::size_t beyond = 0;
     const auto whole = [](double v) {
         // Unsigned, because values that are refused below may wrap around.
         return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(v + round_to_whole) -
                                          std::bit_cast<std::uint64_t>(round_to_whole));
     };
-    for (std::size_t i = 0; i < contour.size(); ++i) {
-        const double x = contour[i].x * per_step_;
-        const double y = contour[i].y * per_step_;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double x = points[i].x * per_step_;
+        const double y = points[i].y * per_step_;
         beyond += std::abs(x) <= largest && std::abs(y) <= largest ? 0 : 1;
-        points[i] = {whole(x), whole(y)};
+        out[i] = {whole(x), whole(y)};
     }
     if (beyond != 0)
         throw Error(ErrorKind::usage,
                     fmt::format("layer {} has coordinates beyond 2^51 steps of {} mm; use larger units",
                                 layer, step_));
+}
+
+std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool closed, double area,
+                                      std::uint64_t layer, std::vector<GridPoint>& scratch) const {
+    if (scratch.size() < contour.size())
+        scratch.resize(contour.size());
+    GridPoint* const points = scratch.data();
+    round(contour, layer, points);
 
     GridPoint* end = std::unique(points, points + contour.size());
     while (closed && end - points > 1 && end[-1] == points[0])
@@ -71,6 +75,12 @@ std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool clos
     if (closed && area * grid_area(kept) < 0)
         std::reverse(kept.begin(), kept.end());
     return kept;
+}
+
+std::vector<GridPoint> Grid::snap_points(std::span<const Point2> points, std::uint64_t layer) const {
+    std::vector<GridPoint> snapped(points.size());
+    round(points, layer, snapped.data());
+    return snapped;
 }
 
 } // namespace lamella

@@ -18,6 +18,9 @@ struct GridPoint {
     friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
+/// What text formats round coordinates to that have no unit of their own.
+inline constexpr double text_step_mm = 0.001;
+
 /// Signed area of a ring in square steps.
 [[nodiscard]] double grid_area(std::span<const GridPoint> ring) noexcept;
 
@@ -36,7 +39,13 @@ class Grid {
     std::span<const GridPoint> snap(std::span<const Point2> contour, bool closed, double area,
                                     std::uint64_t layer, std::vector<GridPoint>& scratch) const;
 
+    /// The nearest points, each for itself. The same error.
+    [[nodiscard]] std::vector<GridPoint> snap_points(std::span<const Point2> points,
+                                                     std::uint64_t layer) const;
+
   private:
+    void round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const;
+
     double step_;
     double per_step_;
 };

@@ -3,9 +3,14 @@
 #include "lamella/core/error.hpp"
 
 #include "write/common_layer.hpp"
+#include "write/dxf.hpp"
 #include "write/layered_svg.hpp"
+#include "write/layers_json.hpp"
+#include "write/npz.hpp"
 #include "write/picture_stack.hpp"
 #include "write/sl1.hpp"
+#include "write/slc.hpp"
+#include "write/slices_3mf.hpp"
 
 #include <fmt/format.h>
 
@@ -23,6 +28,11 @@ constexpr std::array formats{
                 "Common Layer Interface, binary; single precision, or 16 bits in the short form"},
     LayerFormat{"cli-ascii", "", "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm"},
     LayerFormat{"svg", ".svg", "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm"},
+    LayerFormat{"slc", ".slc", "SLC of 3D Systems, binary; single precision; closed contours only"},
+    LayerFormat{"3mf", ".3mf", "3MF with slice stacks; coordinates to 0.001 mm; closed contours only"},
+    LayerFormat{"dxf", ".dxf", "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm"},
+    LayerFormat{"json", ".json", "all that layers have as JSON; exact"},
+    LayerFormat{"npz", ".npz", "NumPy arrays; exact"},
     LayerFormat{"svg-layers", "", "a folder with one SVG picture per layer; coordinates to 0.001 mm", true},
     LayerFormat{"png", "", "a folder with one PNG picture per layer; as fine as its pixels", true},
     LayerFormat{"png-zip", ".zip", "the same pictures in a zip archive"},
@@ -92,6 +102,16 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
         return open_common_layer_ascii(path, info, options);
     if (format.name == "svg")
         return open_layered_svg(path, info, options);
+    if (format.name == "slc")
+        return open_slc(path, info);
+    if (format.name == "3mf")
+        return open_slices_3mf(path, info);
+    if (format.name == "dxf")
+        return open_dxf(path, info);
+    if (format.name == "json")
+        return open_layers_json(path, info);
+    if (format.name == "npz")
+        return open_npz(path, info);
     if (format.name == "svg-layers")
         return open_svg_layers(path, info);
     if (format.name == "png")
@@ -104,16 +124,19 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
                 fmt::format("there is no format '{}'; choose from {}", format.name, names()));
 }
 
-void write_layers(const std::string& path, const LayerFormat& format, std::span<const Layer> layers,
-                  const LayerFileInfo& info, const LayerWriteOptions& options) {
+std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
+                                      std::span<const Layer> layers, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options) {
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
     for (const Layer& layer : layers)
         writer->prepare(layer)();
     writer->finish();
+    return writer->warnings();
 }
 
-void write_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
-                  const LayerFileInfo& info, const LayerWriteOptions& options) {
+std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
+                                      std::span<const LayerStack> parts, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options) {
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
     const std::size_t planes = parts.empty() ? 0 : parts.front().size();
     if (std::any_of(parts.begin(), parts.end(),
@@ -126,6 +149,7 @@ void write_layers(const std::string& path, const LayerFormat& format, std::span<
         writer->prepare(plane)();
     }
     writer->finish();
+    return writer->warnings();
 }
 
 } // namespace lamella

@@ -6,6 +6,7 @@
 #include "container/atomic_file.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
+#include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
@@ -23,14 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double step_mm = 0.001;
-// Sign, digits, point and three decimals, a separator.
 constexpr std::size_t per_number = most_integer_digits + 6;
 
 // The grid point at or below a coordinate; relative coordinates are then on the same grid as absolute ones.
 std::int64_t steps_below(double mm) {
     constexpr double most = 1e15;
-    return static_cast<std::int64_t>(std::clamp(std::floor(mm / step_mm + 1e-6), -most, most));
+    return static_cast<std::int64_t>(std::clamp(std::floor(mm / text_step_mm + 1e-6), -most, most));
 }
 
 GridPoint steps_below(const Point3& p) {
@@ -57,15 +56,19 @@ std::string height_text(double mm) {
 class LayeredSvgWriter final : public SequentialWriter {
   public:
     LayeredSvgWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : SequentialWriter(path, info, head(info), "</svg>\n"), origin_(steps_below(info.box.min)),
-          legacy_z_(options.slic3r_legacy_z) {}
+        : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = false}),
+          origin_(steps_below(info.box.min)), legacy_z_(options.slic3r_legacy_z) {
+        for (const PartInfo& part : info.parts)
+            part_heads_.push_back(fmt::format("    <g data-lamella-part=\"{}\" data-lamella-label=\"{}\">\n",
+                                              part_heads_.size() + 1, xml_escaped(part.label)));
+    }
 
   private:
     // Width and height are plain millimetres without a viewBox: importers know Slic3r's files by that.
     static std::string head(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const auto mm = [](std::int64_t steps) {
-            return decimal_text(static_cast<double>(steps) * step_mm, 3, 0);
+            return decimal_text(static_cast<double>(steps) * text_step_mm, 3, 0);
         };
         const GridPoint origin = steps_below(box.min);
         return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>\n"
@@ -88,8 +91,13 @@ class LayeredSvgWriter final : public SequentialWriter {
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for (const Layer& layer : parts)
-            format_part(layer, out);
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            if (parts.size() > 1)
+                out.append(part_heads_[part]);
+            format_part(parts[part], out);
+            if (parts.size() > 1)
+                out.append("    </g>\n");
+        }
         out.append("  </g>\n");
     }
 
@@ -125,9 +133,12 @@ class LayeredSvgWriter final : public SequentialWriter {
         }
     }
 
+    std::string tail() override { return "</svg>\n"; }
+
     GridPoint origin_;
+    std::vector<std::string> part_heads_; ///< used where there are several
     bool legacy_z_;
-    Grid grid_{step_mm};
+    Grid grid_{text_step_mm};
 };
 
 // How each picture begins, and how a folder of pictures is known again that may be replaced.
@@ -164,8 +175,9 @@ class SvgLayersWriter final : public LayerWriter {
         AtomicFile file(path.string());
         file.append(buffer->view());
         file.commit();
-        return [this, z = layer.z, size = buffer->view().size()] {
+        return [this, z = layer.z, size = buffer->view().size(), extras = extras_of(parts)] {
             order_.next(z);
+            left_out_.note(extras);
             bytes_.fetch_add(size, std::memory_order_relaxed);
         };
     }
@@ -176,6 +188,7 @@ class SvgLayersWriter final : public LayerWriter {
     }
 
     std::uint64_t bytes() const noexcept override { return bytes_.load(std::memory_order_relaxed); }
+    std::vector<std::string> warnings() const override { return left_out_.warnings(); }
 
   private:
     // Millimetres, with y upwards and a margin around the part, so that all pictures have the same frame.
@@ -229,8 +242,9 @@ class SvgLayersWriter final : public LayerWriter {
 
     AtomicDirectory directory_;
     LayerOrder order_;
+    LeftOut left_out_{{.open_chains = true, .hatches = false}};
     std::string head_;
-    Grid grid_{step_mm};
+    Grid grid_{text_step_mm};
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
     std::atomic<std::uint64_t> bytes_{0};
 };

@@ -35,8 +35,8 @@ std::vector<MeasuredRing> measured_rings(const Layer& layer) {
 }
 
 SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
-                                   std::string_view tail)
-    : file_(path), order_(info), tail_(tail) {
+                                   Holds holds)
+    : file_(path), order_(info), left_out_(holds) {
     file_.append(head);
 }
 
@@ -45,8 +45,10 @@ std::function<void()> SequentialWriter::prepare(std::span<const Layer> parts) {
     const std::shared_ptr<ByteBuffer> buffer = buffers_->take();
     format(parts, *buffer);
     const Layer& layer = parts.front();
-    return [this, buffer, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
+    return [this, buffer, extras = extras_of(parts), index = layer.index, z = layer.z, bottom = layer.bottom,
+            top = layer.top] {
         order_.next(z);
+        left_out_.note(extras);
         file_.append(layer_head({order_.count() - 1, index, z, bottom, top}));
         file_.append(buffer->view());
     };
@@ -54,7 +56,7 @@ std::function<void()> SequentialWriter::prepare(std::span<const Layer> parts) {
 
 void SequentialWriter::finish() {
     order_.end();
-    file_.append(tail_);
+    file_.append(tail());
     file_.commit();
 }
 

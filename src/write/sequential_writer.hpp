@@ -6,6 +6,7 @@
 
 #include "container/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
+#include "write/left_out.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -54,6 +55,7 @@ class SequentialWriter : public LayerWriter {
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
     void finish() final;
     [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_.bytes(); }
+    [[nodiscard]] std::vector<std::string> warnings() const final { return left_out_.warnings(); }
 
   protected:
     /// Where a layer lies; known when it is written.
@@ -65,19 +67,20 @@ class SequentialWriter : public LayerWriter {
         double top;
     };
 
-    /// Creates the file and writes `head`. `tail` will end it.
-    SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
-                     std::string_view tail);
+    /// Creates the file and writes `head`.
+    SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head, Holds holds);
 
     /// What stands before the contours of a layer. Called in order.
     [[nodiscard]] virtual std::string layer_head(const Place& place) = 0;
     /// Appends the contours of a layer, part by part, and what stands after them. Called from any threads.
     virtual void format(std::span<const Layer> parts, ByteBuffer& out) const = 0;
+    /// What ends the file. Called once, after the last layer.
+    [[nodiscard]] virtual std::string tail() { return {}; }
 
   private:
     AtomicFile file_;
     LayerOrder order_;
-    std::string tail_;
+    LeftOut left_out_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
 };
 

@@ -10,7 +10,8 @@ class Convert(ProgramTest):
         self.succeed("slice", "torus.stl", "-o", "torus.cli", "--layer-height", "0.5", "--label", "ring")
 
     def test_every_pair_of_formats(self):
-        names = {"cli": "a.cli", "cli-ascii": "b.cli", "svg": "c.svg"}
+        names = {"cli": "a.cli", "cli-ascii": "b.cli", "svg": "c.svg", "slc": "d.slc", "json": "e.json",
+                 "npz": "f.npz", "3mf": "g.3mf"}
         for name, path in names.items():
             self.succeed("slice", "torus.stl", "-o", path, "--format", name, "--layer-height", "0.5")
         whole = self.succeed("info", "torus.cli", "--json").json()
@@ -18,7 +19,9 @@ class Convert(ProgramTest):
             for target in names:
                 with self.subTest(source=source, target=target):
                     self.succeed("convert", source, "out", "--format", target)
-                    found = self.succeed("info", "out", "--json").json()
+                    if target == "3mf":  # info takes such a package for meshes
+                        self.succeed("convert", "out", "found.json")
+                    found = self.succeed("info", "found.json" if target == "3mf" else "out", "--json").json()
                     for key in ["layers", "contours", "open_chains"]:
                         self.assertEqual(found[key], whole[key])
                     self.assertAlmostEqual(found["volume_mm3"], whole["volume_mm3"], delta=1)
@@ -33,6 +36,18 @@ class Convert(ProgramTest):
         self.succeed("convert", "torus.cli", "torus.svg")
         piped = self.succeed("convert", "-", "-", "--format", "svg", stdin=self.bytes_of("torus.cli"))
         self.assertEqual(piped.out, self.bytes_of("torus.svg"))
+
+    def test_formats_that_others_read(self):
+        self.succeed("convert", "torus.cli", "out.dxf")
+
+    def test_what_a_format_has_no_place_for_is_told(self):
+        self.write("open.json", """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}],
+            "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 4, 0, 0, 4]],
+                        "chains": [[5, 5, 6, 6]], "hatches": [0, 0, 1, 1]}]}]}""")
+        for name, lost in {"cli": 0, "json": 0, "npz": 0, "dxf": 1, "svg": 1, "slc": 2, "3mf": 2}.items():
+            with self.subTest(format=name):
+                told = self.succeed("convert", "open.json", "out." + name).err
+                self.assertEqual(told.count("left out"), lost, told)
 
     def test_bad_input(self):
         self.fail_with(3, "nowhere", "convert", "nowhere.cli", "out.svg")

@@ -106,6 +106,34 @@ TEST(AtomicFile, KeepsTheOldFileWhenTheNewOneIsNotEnded) {
     EXPECT_EQ(folder.entries(), Names{"a.cli"});
 }
 
+void write_and_overwrite(const std::string& path) {
+    AtomicFile file(path, Overwriting::yes);
+    file.append("0123456789");
+    file.append(std::string(1'000'000, 'x'));
+    file.overwrite(2, "ab");
+    file.append("end");
+    file.overwrite(1'000'009, "yz");
+    EXPECT_EQ(file.bytes(), 1'000'013U);
+    file.commit();
+}
+
+TEST(AtomicFile, PutsOtherBytesInThePlaceOfSome) {
+    const TemporaryFolder folder;
+    write_and_overwrite(folder.file("a"));
+    const std::string bytes = file_bytes(folder.file("a"));
+    EXPECT_EQ(bytes, "01ab456789" + std::string(999'999, 'x') + "yznd");
+    // What cannot be taken back gets the bytes at the end.
+    ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+    std::string piped;
+    std::thread reader([&] { piped = file_bytes(folder.file("pipe")); });
+    write_and_overwrite(folder.file("pipe"));
+    reader.join();
+    EXPECT_EQ(piped, bytes);
+    EXPECT_NE(output_error_of([] { write_and_overwrite("/dev/full"); }).find("disk is full"),
+              std::string::npos);
+    EXPECT_EQ(folder.entries(), (Names{"a", "pipe"}));
+}
+
 TEST(AtomicFile, KeepsTheOrderOfPiecesOfAllSizes) {
     const TemporaryFolder folder;
     std::string expected;

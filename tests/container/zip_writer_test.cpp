@@ -89,6 +89,18 @@ TEST(ZipWriter, IsReadByAnotherProgram) {
         "b'in two pieces' b'ij'\n");
 }
 
+TEST(ZipWriter, TheHeadOfAnEntryMayBeKnownAtItsEnd) {
+    const TemporaryFolder folder;
+    ZipWriter zip(folder.file("a.zip"), Overwriting::yes);
+    zip.begin_headed("headed", 4);
+    zip.append_stored(" and content");
+    zip.end_headed("head");
+    zip.add("after", "");
+    zip.finish();
+    EXPECT_EQ(described(folder.file("a.zip")), "None\n" + line("headed", 16, 0) + line("after", 0, 0));
+    EXPECT_EQ(file_bytes(folder.file("a.zip")).substr(56, 16), "head and content");
+}
+
 TEST(ZipWriter, AnEmptyArchiveIsOne) {
     const TemporaryFolder folder;
     ZipWriter zip(folder.file("a.zip"));

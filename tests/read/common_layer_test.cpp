@@ -177,14 +177,44 @@ TEST(ReadCommonLayer, LayersOutOfOrderAreSortedAndEqualOnesJoined) {
     EXPECT_EQ(file.warnings.size(), 2U);
 }
 
-TEST(ReadCommonLayer, HatchesAreReadOver) {
+TEST(ReadCommonLayer, HatchesAreKept) {
     const LayerFile text = read(ascii(ring + "$$HATCHES/1,2,0,0,1,1,2,2,3,3\n"));
     expect_ring(text, 96);
-    EXPECT_EQ(text.warnings.size(), 1U);
+    EXPECT_TRUE(text.warnings.empty());
+    const PointArray& lines = text.parts.front().layers.front().hatches;
+    ASSERT_EQ(lines.size(), 4U);
+    EXPECT_EQ(lines[3], (Point2{0.03, 0.03}));
     const LayerFile bytes = read(binary(short_ring + u16(131, 1, 1, 1, 2, 3, 4) + u16(132) + bits(1) +
                                         bits(1) + bits(1.0F) + bits(2.0F) + bits(3.0F) + bits(4.0F)));
     expect_ring(bytes, 100);
-    EXPECT_EQ(bytes.warnings.size(), 1U);
+    EXPECT_TRUE(bytes.warnings.empty());
+    EXPECT_EQ(bytes.parts.front().layers.front().hatches.size(), 4U);
+}
+
+TEST(ReadCommonLayer, PartsAreToldByTheirNumbers) {
+    const std::string triangle = ",1,4,0,0,10,0,10,10,0,0\n";
+    const LayerFile file =
+        read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/7" + triangle + "$$POLYLINE/3" + triangle +
+                       "$$POLYLINE/7" + triangle + "$$LAYER/90\n$$HATCHES/7,1,0,0,1,1\n",
+                   "$$UNITS/0.01\n$$LABEL/7,seven\n$$LABEL/9,\"nine\"\n"));
+    ASSERT_EQ(file.parts.size(), 3U);
+    EXPECT_EQ(file.parts[0].label, "");
+    EXPECT_EQ(file.parts[1].label, "seven");
+    EXPECT_EQ(file.parts[2].label, "nine");
+    EXPECT_EQ(file.parts[0].layers[0].rings, 1U);
+    EXPECT_EQ(file.parts[1].layers[0].rings, 2U);
+    EXPECT_EQ(file.parts[2].layers[0].rings, 0U);
+    EXPECT_EQ(file.parts[1].layers[1].hatches.size(), 2U);
+    EXPECT_EQ(file.merged()[0].rings, 3U);
+}
+
+TEST(ReadCommonLayer, MorePartsThanCanBeMeantAreRefused) {
+    std::string geometry;
+    for (int i = 0; i < 3000; ++i)
+        geometry += u16(128, i);
+    for (int i = 0; i < 3000; ++i)
+        geometry += u16(129, i, 1, 0);
+    expect_error(binary(geometry), "3000 parts on");
 }
 
 TEST(ReadCommonLayer, ShortNumbersAreSignedWhereTheBoxIsNegative) {

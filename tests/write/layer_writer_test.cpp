@@ -53,9 +53,10 @@ TEST(LayerFormat, ListsWhatThereIsWhenItIsUnknown) {
 
 TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
     const LayerStack layers = random_layers(1, 40, 30, {10, -5}, true);
-    for (const char* name : {"cli", "cli-ascii", "svg", "png-zip"}) {
+    for (const LayerFormat& format : layer_formats()) {
+        if (format.directory || format.name.starts_with("sl1")) // whose layers must be of one height
+            continue;
         const TemporaryFolder folder;
-        const LayerFormat& format = layer_format(name, "");
         write_layers(folder.file("expected"), format, layers, info_of(layers));
 
         const auto writer = open_layer_writer(folder.file("parallel"), format, info_of(layers));
@@ -74,7 +75,8 @@ TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
         for (const auto& write : writes)
             write();
         writer->finish();
-        EXPECT_TRUE(file_bytes(folder.file("parallel")) == file_bytes(folder.file("expected"))) << name;
+        EXPECT_TRUE(file_bytes(folder.file("parallel")) == file_bytes(folder.file("expected")))
+            << format.name;
         EXPECT_EQ(writer->bytes(), file_bytes(folder.file("expected")).size());
     }
 }

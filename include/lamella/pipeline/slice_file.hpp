@@ -95,6 +95,8 @@ struct FileResult {
     double top = 0;                      ///< of the last layer
     std::string format;                  ///< of the slice file, "" when none was written
     std::uint64_t bytes = 0;             ///< written
+    /// What the format has no place for, one line each (LayerWriter::warnings).
+    std::vector<std::string> warnings;
 
     /// With FileJob::layer_statistics: in ascending z, and the sum of area times thickness.
     std::vector<LayerStatistics> layers;

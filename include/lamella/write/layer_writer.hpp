@@ -83,6 +83,9 @@ class LayerWriter {
 
     /// Bytes written so far.
     [[nodiscard]] virtual std::uint64_t bytes() const noexcept = 0;
+
+    /// What the format had no place for, one line each. To be asked after `finish`.
+    [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 /// Throws Error{output} when the file cannot be created there, Error{usage} for impossible options.
@@ -91,13 +94,15 @@ class LayerWriter {
                                                              const LayerFileInfo& info,
                                                              const LayerWriteOptions& options = {});
 
-/// Writes the stack of a single part. Formats on one thread; slicing to a file in parallel is `slice_to` with
-/// LayerWriter::prepare as the sink.
-void write_layers(const std::string& path, const LayerFormat& format, std::span<const Layer> layers,
-                  const LayerFileInfo& info, const LayerWriteOptions& options = {});
+/// Writes the stack of a single part and returns LayerWriter::warnings. Formats on one thread; slicing to a
+/// file in parallel is `slice_to` with LayerWriter::prepare as the sink.
+std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
+                                      std::span<const Layer> layers, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options = {});
 
 /// The same for several parts, whose stacks have the same planes.
-void write_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
-                  const LayerFileInfo& info, const LayerWriteOptions& options = {});
+std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
+                                      std::span<const LayerStack> parts, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options = {});
 
 } // namespace lamella

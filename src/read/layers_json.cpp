@@ -1,0 +1,203 @@
+#include "read/layers_json.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/json_text.hpp"
+#include "core/executor.hpp"
+#include "read/layer_assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::string_view format_name = "lamella layers";
+
+class LayersJsonReader {
+  public:
+    LayersJsonReader(JsonText& text, std::uint64_t bytes, LayerFile& file, const Execution& execution)
+        : text_(text), bytes_(bytes), file_(file), executor_(execution),
+          progress_(execution, Stage::read, bytes) {}
+
+    void read() {
+        text_.object([&](const std::string& key) {
+            if (key == "format")
+                check_format();
+            else if (key == "version")
+                check_version();
+            else if (key == "parts")
+                read_parts();
+            else if (key == "layers")
+                read_layers();
+            else
+                text_.skip();
+        });
+        text_.end();
+        if (!known_)
+            text_.fail("no \"format\"", fmt::format("it must be \"{}\"", format_name));
+        if (file_.parts.empty() || file_.parts.front().layers.empty())
+            text_.fail("no layer", "a slice file must have at least one");
+        dropped_.say(file_.warnings);
+        progress_.finish();
+    }
+
+  private:
+    void check_format() {
+        const std::string name = text_.string();
+        if (name != format_name)
+            text_.fail(fmt::format("the format '{}'", name.substr(0, 40)),
+                       fmt::format("of JSON files, '{}' is read", format_name));
+        known_ = true;
+    }
+
+    void check_version() {
+        const double version = text_.number();
+        if (version != 1)
+            text_.fail(fmt::format("version {}", version), "version 1 is read");
+    }
+
+    // In front of the layers.
+    void read_parts() {
+        text_.array([&] {
+            std::string label;
+            text_.object([&](const std::string& key) {
+                if (key == "label")
+                    label = text_.string();
+                else
+                    text_.skip();
+            });
+            file_.parts.push_back({std::move(label), {}});
+        });
+    }
+
+    void read_layers() {
+        if (!known_ || file_.parts.empty())
+            text_.fail("layers", "\"format\" and \"parts\" must come before them");
+        if (!file_.parts.front().layers.empty())
+            text_.fail("\"layers\" a second time", "they must come once");
+        text_.array([&] { read_layer(); });
+    }
+
+    double length() {
+        const double value = text_.number();
+        // What lies further away could make sums and areas overflow; no part is near it.
+        constexpr double farthest = 1e100;
+        if (!(std::abs(value) <= farthest))
+            text_.fail(fmt::format("{}", value), fmt::format("lengths must lie within {} mm", farthest));
+        return value + 0.0;
+    }
+
+    void read_layer() {
+        executor_.check_cancelled();
+        double index = static_cast<double>(file_.parts.front().layers.size());
+        std::optional<double> z;
+        std::optional<double> bottom;
+        std::optional<double> top;
+        RawLayer raw;
+        std::uint32_t parts = 0;
+        text_.object([&](const std::string& key) {
+            if (key == "index")
+                index = text_.number();
+            else if (key == "z")
+                z = length();
+            else if (key == "bottom")
+                bottom = length();
+            else if (key == "top")
+                top = length();
+            else if (key == "parts")
+                text_.array([&] { read_part(raw, parts++); });
+            else
+                text_.skip();
+        });
+        constexpr double most_index = 9e15;
+        if (!(index >= 0 && index <= most_index) || index != std::floor(index))
+            text_.fail(fmt::format("the index {}", index), "it must be a whole number");
+        if (!z || !bottom || !top || !(*bottom <= *z && *z <= *top))
+            text_.fail("a layer without a slab around its cut", "z must lie between bottom and top");
+        const LayerStack& before = file_.parts.front().layers;
+        if (!before.empty() && !(before.back().z < *z))
+            text_.fail(fmt::format("z = {} behind z = {}", *z, before.back().z), "layers must ascend");
+        if (parts != file_.parts.size())
+            text_.fail(fmt::format("a layer of {} parts", parts),
+                       fmt::format("the file has {}", file_.parts.size()));
+        check_part_planes(file_, before.size() + 1, bytes_);
+        add_layer(file_, raw, static_cast<std::uint64_t>(index), *z, *bottom, *top);
+        progress_.add(text_.at() - reported_);
+        reported_ = text_.at();
+    }
+
+    void read_part(RawLayer& raw, std::uint32_t part) {
+        if (part >= file_.parts.size())
+            text_.fail(fmt::format("part {} of a layer", part + 1),
+                       fmt::format("the file has {}", file_.parts.size()));
+        text_.object([&](const std::string& key) {
+            if (key == "rings" || key == "chains")
+                text_.array([&] {
+                    const std::size_t begin = raw.points.size();
+                    read_points(raw.points);
+                    if (!raw.end_clean_contour(begin, key == "rings", part))
+                        dropped_.note([&] { return fmt::format("byte {}", text_.at()); });
+                });
+            else if (key == "hatches")
+                read_hatches(raw, part);
+            else
+                text_.skip();
+        });
+    }
+
+    void read_hatches(RawLayer& raw, std::uint32_t part) {
+        const std::size_t begin = raw.hatches.size();
+        read_points(raw.hatches);
+        if ((raw.hatches.size() - begin) % 2 != 0)
+            text_.fail("half a hatch line", "each must have two points");
+        raw.end_hatches(part);
+    }
+
+    // x and y in turn.
+    void read_points(std::vector<Point2>& to) {
+        bool half = false;
+        text_.array([&] {
+            const double value = length();
+            if (half)
+                to.back().y = value;
+            else
+                to.push_back({value, 0});
+            half = !half;
+        });
+        if (half)
+            text_.fail("an x without its y", "coordinates must come in pairs");
+    }
+
+    JsonText& text_;
+    std::uint64_t bytes_;
+    LayerFile& file_;
+    Executor executor_;
+    ProgressMeter progress_;
+    std::size_t reported_ = 0;
+    bool known_ = false;
+    Oddity dropped_{"contours had too few different points; they were dropped"};
+};
+
+} // namespace
+
+bool is_json(std::string_view bytes) {
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && bytes[first] == '{';
+}
+
+LayerFile read_layers_json(std::string_view bytes, const std::string& name, const Execution& execution) {
+    LayerFile file;
+    file.path = name;
+    file.format = "json";
+    file.units_mm = 1;
+    JsonText text(bytes, name);
+    LayersJsonReader(text, bytes.size(), file, execution).read();
+    return file;
+}
+
+} // namespace lamella

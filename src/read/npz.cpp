@@ -1,0 +1,340 @@
+#include "read/npz.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "read/layer_assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are read as memory has them");
+
+// What lies further away could make sums and areas overflow; no part is near it.
+constexpr double farthest = 1e100;
+
+/// One array of the archive.
+class Array {
+  public:
+    Array(const ZipReader& zip, const ZipEntry& entry) : source_(zip.read(entry)) {
+        bytes_ = {reinterpret_cast<const char*>(source_.bytes.data()), source_.bytes.size()};
+        read_head();
+    }
+
+    [[nodiscard]] std::uint64_t size() const { return shape_.front(); }
+    [[nodiscard]] const std::vector<std::uint64_t>& shape() const { return shape_; }
+
+    [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+        throw Error(ErrorKind::input, fmt::format("{}: found {}; {}", source_.name, found, expected));
+    }
+
+    void expect_shape(const std::vector<std::uint64_t>& rest, const char* what) const {
+        if (!std::equal(shape_.begin() + 1, shape_.end(), rest.begin(), rest.end()))
+            fail("an array of another shape", what);
+    }
+    void expect_size(std::uint64_t size, std::string_view of) const {
+        if (size != this->size())
+            fail(fmt::format("{} elements", this->size()), fmt::format("there are {} {}", size, of));
+    }
+
+    /// A length in millimetres. `i` counts all numbers of the array.
+    [[nodiscard]] double length(std::uint64_t i) const {
+        double value = 0;
+        if (type_ == "<f8")
+            value = at<double>(i);
+        else if (type_ == "<f4")
+            value = at<float>(i);
+        else
+            fail(fmt::format("numbers of type '{}'", type_), "lengths are '<f8' or '<f4'");
+        if (!(std::abs(value) <= farthest))
+            fail(fmt::format("the number {}", value), fmt::format("lengths must lie within {} mm", farthest));
+        return value + 0.0;
+    }
+
+    /// A whole number of at most `most`.
+    [[nodiscard]] std::uint64_t whole(std::uint64_t i, std::uint64_t most) const {
+        std::uint64_t value = 0;
+        if (type_ == "<i8" || type_ == "<u8")
+            value = at<std::uint64_t>(i); // one below zero is above any `most`
+        else if (type_ == "<i4")
+            value = static_cast<std::uint64_t>(std::int64_t{at<std::int32_t>(i)});
+        else if (type_ == "<u4")
+            value = at<std::uint32_t>(i);
+        else if (type_ == "|b1" || type_ == "|u1")
+            value = at<std::uint8_t>(i);
+        else
+            fail(fmt::format("numbers of type '{}'", type_),
+                 "whole numbers are '<i8', '<u8', '<i4' or '<u4'");
+        if (value > most)
+            fail(fmt::format("{} at place {}", static_cast<std::int64_t>(value), i),
+                 fmt::format("it must lie between 0 and {}", most));
+        return value;
+    }
+
+    /// A string of fixed width, its zeros at the end left out, as UTF-8.
+    [[nodiscard]] std::string text(std::uint64_t i) const {
+        if (!type_.starts_with("<U"))
+            fail(fmt::format("elements of type '{}'", type_), "strings are '<U...'");
+        const std::uint64_t width = element_ / sizeof(char32_t);
+        std::string result;
+        for (std::uint64_t k = 0; k < width; ++k) {
+            const auto c = at<std::uint32_t>(i * width + k);
+            if (c == 0)
+                break;
+            if (c > 0x10FFFF || (c >= 0xD800 && c < 0xE000))
+                fail(fmt::format("the character number {}", c), "there is none");
+            append_utf8(result, c);
+        }
+        return result;
+    }
+
+  private:
+    template <class T>
+    [[nodiscard]] T at(std::uint64_t i) const {
+        T value;
+        std::memcpy(&value, bytes_.data() + begin_ + i * sizeof(T), sizeof value);
+        return value;
+    }
+
+    static void append_utf8(std::string& to, std::uint32_t c) {
+        if (c < 0x80) {
+            to += static_cast<char>(c);
+            return;
+        }
+        const unsigned tails = c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
+        to += static_cast<char>((0xF00U >> tails & 0xFFU) | (c >> (6 * tails)));
+        for (unsigned k = tails; k-- > 0;)
+            to += static_cast<char>(0x80U | ((c >> (6 * k)) & 0x3FU));
+    }
+
+    // "\x93NUMPY", a version, the length of the dictionary (16 bits in version 1, then 32), the dictionary.
+    void read_head() {
+        constexpr std::string_view magic = "\x93NUMPY";
+        if (!bytes_.starts_with(magic) || bytes_.size() < 12)
+            fail("no NumPy array", "it must begin with \\x93NUMPY");
+        const bool old = bytes_[magic.size()] == 1;
+        const std::size_t text_begin = old ? 10 : 12;
+        std::uint64_t length = 0;
+        std::memcpy(&length, bytes_.data() + magic.size() + 2, old ? 2 : 4);
+        if (length > bytes_.size() - text_begin)
+            fail(fmt::format("a head of {} bytes", length), fmt::format("the array has {}", bytes_.size()));
+        const std::string_view dictionary = bytes_.substr(text_begin, length);
+        begin_ = text_begin + length;
+        type_ = std::string(quoted(dictionary, "descr"));
+        read_shape(dictionary);
+        if (value(dictionary, "fortran_order").starts_with("True") && shape_.size() > 1)
+            fail("an array in Fortran's order", "the last index must run fastest");
+        element_ = element_size();
+        std::uint64_t numbers = 1;
+        for (const std::uint64_t n : shape_) {
+            if (n != 0 && numbers > std::numeric_limits<std::uint64_t>::max() / n / element_)
+                fail("an array of absurd shape", fmt::format("it has {} bytes", bytes_.size()));
+            numbers *= n;
+        }
+        if (numbers > (bytes_.size() - begin_) / element_)
+            fail(fmt::format("a shape of {} elements", numbers),
+                 fmt::format("{} bytes follow, room for {}", bytes_.size() - begin_,
+                             (bytes_.size() - begin_) / element_));
+    }
+
+    [[nodiscard]] std::string_view value(std::string_view dictionary, std::string_view key) const {
+        std::size_t at = dictionary.find(fmt::format("'{}'", key));
+        at = at == std::string_view::npos ? at : dictionary.find(':', at);
+        at = at == std::string_view::npos ? at : dictionary.find_first_not_of(' ', at + 1);
+        if (at == std::string_view::npos)
+            fail(fmt::format("a head without '{}'", key), "NumPy writes it");
+        return dictionary.substr(at);
+    }
+
+    [[nodiscard]] std::string_view quoted(std::string_view dictionary, std::string_view key) const {
+        const std::string_view text = value(dictionary, key);
+        const std::size_t end = text.find('\'', 1);
+        if (text.front() != '\'' || end == std::string_view::npos)
+            fail(fmt::format("'{}'", printable(text, 20)), "a type must be a string");
+        return text.substr(1, end - 1);
+    }
+
+    void read_shape(std::string_view dictionary) {
+        std::string_view text = value(dictionary, "shape");
+        const std::size_t end = text.find(')');
+        if (text.front() != '(' || end == std::string_view::npos)
+            fail(fmt::format("'{}'", printable(text, 20)), "a shape must be a tuple");
+        text = text.substr(1, end - 1);
+        for (;;) {
+            text.remove_prefix(std::min(text.find_first_not_of(", "), text.size()));
+            if (text.empty())
+                break;
+            std::uint64_t n = 0;
+            const auto [to, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+            if (error != std::errc())
+                fail(fmt::format("'{}' in a shape", printable(text, 20)), "it must be a whole number");
+            shape_.push_back(n);
+            text.remove_prefix(static_cast<std::size_t>(to - text.data()));
+        }
+        if (shape_.empty())
+            fail("a single number", "an array is expected");
+    }
+
+    [[nodiscard]] std::uint64_t element_size() const {
+        std::uint64_t digits = 0;
+        constexpr std::uint64_t most = 1U << 20;
+        if (type_.size() > 2)
+            std::from_chars(type_.data() + 2, type_.data() + type_.size(), digits);
+        if (digits == 0 || digits > most)
+            fail(fmt::format("elements of type '{}'", printable(type_, 20)), "they must have a size");
+        return type_[1] == 'U' ? digits * sizeof(char32_t) : digits;
+    }
+
+    ByteSource source_;
+    std::string_view bytes_;
+    std::string type_;
+    std::vector<std::uint64_t> shape_;
+    std::uint64_t element_ = 0;
+    std::size_t begin_ = 0;
+};
+
+class NpzReader {
+  public:
+    NpzReader(const ZipReader& zip, LayerFile& file) : zip_(zip), file_(file) {}
+
+    void read(const Execution& execution) {
+        Executor executor(execution);
+        const Array points = array("points");
+        points.expect_shape({2}, "points have two coordinates");
+        const Array offsets = array("offsets");
+        if (offsets.size() == 0)
+            offsets.fail("no element", "there must be one more than contours");
+        const std::uint64_t contours = offsets.size() - 1;
+        const Array closed = contour_array("closed", contours);
+        const Array layer = contour_array("layer", contours);
+        const Array part = contour_array("part", contours);
+        const Array z = array("z");
+        if (z.size() == 0)
+            z.fail("no layer", "a slice file must have at least one");
+        const Array bottom = plane_array("bottom", z.size());
+        const Array top = plane_array("top", z.size());
+        const Array index = plane_array("index", z.size());
+        const Array labels = array("labels");
+        if (labels.size() == 0)
+            labels.fail("no part", "there must be one");
+        constexpr std::uint64_t most_parts = std::numeric_limits<std::uint32_t>::max();
+        if (labels.size() > most_parts || labels.size() > zip_bytes() + 1)
+            labels.fail(fmt::format("{} parts", labels.size()), "so many are not possible");
+        for (std::uint64_t i = 0; i < labels.size(); ++i)
+            file_.parts.push_back({labels.text(i), {}});
+        check_part_planes(file_, z.size(), zip_bytes());
+
+        std::vector<RawLayer> raw(z.size());
+        read_contours(points, offsets, closed, layer, part, raw);
+        read_hatches(raw);
+        constexpr std::uint64_t most_index = 9'000'000'000'000'000;
+        for (std::uint64_t i = 0; i < raw.size(); ++i) {
+            executor.check_cancelled();
+            const double at = z.length(i);
+            const double from = bottom.length(i);
+            const double to = top.length(i);
+            if (!(from <= at && at <= to))
+                z.fail(fmt::format("z = {} outside of its slab [{}, {}]", at, from, to),
+                       "z must lie between bottom and top");
+            if (i > 0 && !(z.length(i - 1) < at))
+                z.fail(fmt::format("z = {} behind z = {}", at, z.length(i - 1)), "layers must ascend");
+            add_layer(file_, raw[i], index.whole(i, most_index), at, from, to);
+        }
+        dropped_.say(file_.warnings);
+    }
+
+  private:
+    [[nodiscard]] std::uint64_t zip_bytes() const { return zip_.unpacked(); }
+
+    [[nodiscard]] Array array(const std::string& name) const {
+        const ZipEntry* entry = zip_.find(name + ".npy");
+        if (entry == nullptr)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: found no array '{}'; the arrays of layers are points, offsets, "
+                                    "closed, layer, part, index, z, bottom, top and labels",
+                                    zip_.name(), name));
+        return {zip_, *entry};
+    }
+    [[nodiscard]] Array contour_array(const std::string& name, std::uint64_t contours) const {
+        Array result = array(name);
+        result.expect_shape({}, "there must be one number for each contour");
+        result.expect_size(contours, "contours");
+        return result;
+    }
+    [[nodiscard]] Array plane_array(const std::string& name, std::uint64_t planes) const {
+        Array result = array(name);
+        result.expect_shape({}, "there must be one number for each layer");
+        result.expect_size(planes, "layers");
+        return result;
+    }
+
+    void read_contours(const Array& points, const Array& offsets, const Array& closed, const Array& layer,
+                       const Array& part, std::vector<RawLayer>& raw) {
+        std::uint64_t begin = offsets.whole(0, 0);
+        for (std::uint64_t i = 0; i + 1 < offsets.size(); ++i) {
+            const std::uint64_t end = offsets.whole(i + 1, points.size());
+            if (end < begin)
+                offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
+            RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
+            const auto of_part = static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1));
+            const std::size_t first = into.points.size();
+            for (std::uint64_t k = begin; k < end; ++k)
+                into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
+            if (!into.end_clean_contour(first, closed.whole(i, 1) != 0, of_part))
+                dropped_.note([&] { return fmt::format("contour {}", i); });
+            begin = end;
+        }
+    }
+
+    void read_hatches(std::vector<RawLayer>& raw) const {
+        if (zip_.find("hatches.npy") == nullptr)
+            return;
+        const Array hatches = array("hatches");
+        hatches.expect_shape({2, 2}, "hatch lines have two points");
+        const Array layer = array("hatch_layer");
+        const Array part = array("hatch_part");
+        layer.expect_size(hatches.size(), "hatch lines");
+        part.expect_size(hatches.size(), "hatch lines");
+        for (std::uint64_t i = 0; i < hatches.size(); ++i) {
+            RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
+            for (std::uint64_t k = 4 * i; k < 4 * i + 4; k += 2)
+                into.hatches.push_back({hatches.length(k), hatches.length(k + 1)});
+            into.end_hatches(static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1)));
+        }
+    }
+
+    const ZipReader& zip_;
+    LayerFile& file_;
+    Oddity dropped_{"contours had too few different points; they were dropped"};
+};
+
+} // namespace
+
+bool is_npz(const ZipReader& zip) {
+    return zip.find("points.npy") != nullptr;
+}
+
+LayerFile read_npz(const ZipReader& zip, const Execution& execution) {
+    LayerFile file;
+    file.path = zip.name();
+    file.format = "npz";
+    file.units_mm = 1;
+    file.warnings = zip.oddities();
+    NpzReader(zip, file).read(execution);
+    return file;
+}
+
+} // namespace lamella

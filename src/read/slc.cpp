@@ -1,0 +1,273 @@
+// The header is text of at most 2048 bytes that ends with 0D 0A 1A, or at least with 1A; 256 reserved bytes
+// and the sampling table follow, then layers: z of the bottom, contours. A layer of 2^32 - 1 contours is the
+// end, and its z the top of the part.
+
+#include "read/slc.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "read/layer_assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are read as memory has them");
+
+constexpr std::size_t longest_header = 2048;
+constexpr std::size_t reserved = 256;
+constexpr std::uint32_t no_more_layers = 0xFFFFFFFF;
+constexpr char header_end = '\x1a';
+
+std::string upper_case(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    return result;
+}
+
+std::string_view header_of(std::string_view bytes) {
+    const std::string_view begin = bytes.substr(0, longest_header);
+    std::size_t end = begin.find("\r\n\x1a");
+    if (end == std::string_view::npos)
+        end = begin.find(header_end);
+    return end == std::string_view::npos ? std::string_view() : begin.substr(0, end);
+}
+
+/// What stands behind a keyword, up to the next one. Some writers leave out the blanks before and behind.
+std::optional<std::string_view> value_of(std::string_view header, std::string_view keyword) {
+    const std::string upper = upper_case(header);
+    const std::size_t at = upper.find(keyword);
+    if (at == std::string::npos)
+        return std::nullopt;
+    std::size_t begin = at + keyword.size();
+    if (begin < header.size() && upper[begin] == 'S') // -UNITS
+        ++begin;
+    std::size_t end = begin;
+    while (end < header.size() &&
+           !(header[end] == '-' && end + 1 < header.size() && upper[end + 1] >= 'A' && upper[end + 1] <= 'Z'))
+        ++end;
+    const std::string_view value = header.substr(begin, end - begin);
+    const std::size_t first = value.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos)
+        return std::string_view();
+    return value.substr(first, value.find_last_not_of(" \t\r\n") + 1 - first);
+}
+
+class SlcReader {
+  public:
+    SlcReader(std::string_view bytes, const std::string& name, LayerFile& file)
+        : bytes_(bytes), name_(name), file_(file) {}
+
+    void read(const Execution& execution) {
+        read_header();
+        read_layers(execution);
+        if (raw_.empty())
+            fail(at_, "no layer", "a slice file must have at least one");
+        unclosed_.say(file_.warnings);
+        gaps_.say(file_.warnings);
+        dropped_.say(file_.warnings);
+        place_layers();
+    }
+
+  private:
+    [[noreturn]] void fail(std::size_t at, const std::string& found, const std::string& expected) const {
+        throw Error(ErrorKind::input, fmt::format("{}, byte {}: found {}; {}", name_, at, found, expected));
+    }
+
+    [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
+
+    template <class T>
+    T take(const char* what) {
+        T value;
+        if (left() < sizeof value)
+            fail(at_, fmt::format("the end of the file within {}", what), "the file is truncated");
+        std::memcpy(&value, bytes_.data() + at_, sizeof value);
+        at_ += sizeof value;
+        return value;
+    }
+
+    double length(const char* what) {
+        const std::size_t at = at_;
+        const auto value = static_cast<double>(take<float>(what));
+        if (!std::isfinite(value))
+            fail(at, fmt::format("a number that is not finite in {}", what), "it must be a length");
+        return value * file_.units_mm;
+    }
+
+    void read_header() {
+        const std::string_view header = header_of(bytes_);
+        const auto unit = value_of(header, "-UNIT");
+        const std::string name = unit ? upper_case(*unit) : "";
+        if (name.starts_with("INCH")) {
+            file_.units_mm = 25.4;
+        } else {
+            file_.units_mm = 1;
+            if (!name.starts_with("MM"))
+                file_.warnings.push_back(unit ? fmt::format("the unit '{}' is unknown; millimetres are taken",
+                                                            printable(*unit, 20))
+                                              : "the header has no unit; millimetres are taken");
+        }
+        open_ = upper_case(value_of(header, "-TYPE").value_or("")).starts_with("WEB");
+        at_ = bytes_.find(header_end, header.size()) + 1;
+        if (left() < reserved)
+            fail(at_, fmt::format("{} bytes", left()), "256 reserved bytes must follow the header");
+        at_ += reserved;
+        const std::size_t table = at_;
+        const auto entries = take<std::uint8_t>("the sampling table");
+        if (entries == 0)
+            fail(table, "a sampling table of no entries", "it must have one at least");
+        for (unsigned i = 0; i < entries; ++i) {
+            const double z = length("the sampling table");
+            const double thickness = length("the sampling table");
+            static_cast<void>(length("the sampling table")); // line width compensation
+            static_cast<void>(take<float>("the sampling table"));
+            table_.push_back({z, thickness});
+        }
+    }
+
+    void read_layers(const Execution& execution) {
+        Executor executor(execution);
+        ProgressMeter progress(execution, Stage::read, bytes_.size());
+        std::size_t reported = 0;
+        for (;;) {
+            if (left() == 0) {
+                file_.warnings.emplace_back("the file ends without the mark of its end");
+                break;
+            }
+            const std::size_t at = at_;
+            const double z = length("a layer");
+            const auto contours = take<std::uint32_t>("a layer");
+            if (contours == no_more_layers) {
+                top_ = z;
+                break;
+            }
+            if (contours > left() / (2 * sizeof(std::uint32_t)))
+                fail(at, fmt::format("a layer of {} contours", contours),
+                     fmt::format("{} bytes are left in the file", left()));
+            RawLayer& layer = raw_.emplace_back();
+            layer.z = z;
+            layer.place = fmt::format("byte {}", at);
+            for (std::uint32_t i = 0; i < contours; ++i)
+                read_contour(layer);
+            if (at_ - reported > (std::size_t{1} << 22)) {
+                executor.check_cancelled();
+                progress.add(at_ - reported);
+                reported = at_;
+            }
+        }
+        progress.finish();
+    }
+
+    void read_contour(RawLayer& layer) {
+        const std::size_t at = at_;
+        const auto place = [&] {
+            return fmt::format("byte {}", at);
+        };
+        const auto count = take<std::uint32_t>("a contour");
+        const auto gaps = take<std::uint32_t>("a contour");
+        constexpr std::size_t point_size = 2 * sizeof(float);
+        if (count > left() / point_size)
+            fail(at, fmt::format("a contour of {} points", count),
+                 fmt::format("{} bytes are left in the file, room for {}", left(), left() / point_size));
+        if (gaps != 0)
+            gaps_.note(place);
+        const std::size_t begin = layer.points.size();
+        for (std::uint32_t i = 0; i < count; ++i) {
+            std::array<float, 2> p{};
+            std::memcpy(p.data(), bytes_.data() + at_, sizeof p);
+            if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+                fail(at_, "a point that is not finite", "coordinates must be numbers");
+            at_ += sizeof p;
+            layer.points.push_back(
+                {static_cast<double>(p[0]) * file_.units_mm, static_cast<double>(p[1]) * file_.units_mm});
+        }
+        const bool returns = layer.points.size() - begin > 1 && layer.points.back() == layer.points[begin];
+        const bool closed = returns || !open_;
+        if (!layer.end_clean_contour(begin, closed))
+            dropped_.note(place);
+        else if (!returns && closed)
+            unclosed_.note(place);
+    }
+
+    /// A layer reaches to the next one: the format lets layers be left out that are like the one below. The
+    /// last one reaches to the top of the part.
+    void place_layers() {
+        sort_by_height(raw_, file_.warnings);
+        file_.parts.emplace_back();
+        for (std::size_t i = 0; i < raw_.size(); ++i) {
+            const double bottom = raw_[i].z;
+            const double top = i + 1 < raw_.size() ? raw_[i + 1].z : last_top();
+            add_layer(file_, raw_[i], i, bottom + (top - bottom) / 2, bottom, top);
+        }
+    }
+
+    double last_top() {
+        const double bottom = raw_.back().z;
+        if (top_ && *top_ > bottom)
+            return *top_;
+        double thickness = 0;
+        for (const auto& [z, stated] : table_)
+            thickness = z <= bottom && stated > 0 ? stated : thickness;
+        if (thickness == 0 && raw_.size() > 1)
+            thickness = bottom - raw_[raw_.size() - 2].z;
+        if (top_)
+            file_.warnings.push_back(fmt::format("the end of the part is said to be z = {} mm, not above its "
+                                                 "last layer; that is taken to be {} mm thick",
+                                                 *top_, thickness));
+        return bottom + thickness;
+    }
+
+    struct Sampling {
+        double z;
+        double thickness;
+    };
+
+    std::string_view bytes_;
+    const std::string& name_;
+    LayerFile& file_;
+    std::size_t at_ = 0;
+    bool open_ = false; ///< contours may be
+    std::vector<Sampling> table_;
+    std::vector<RawLayer> raw_;
+    std::optional<double> top_;
+    Oddity unclosed_{"contours did not return to their first point; they were closed"};
+    Oddity gaps_{"contours have gaps, which were taken for lines"};
+    Oddity dropped_{"contours had too few different points; they were dropped"};
+};
+
+} // namespace
+
+bool is_slc(std::string_view bytes) {
+    return upper_case(header_of(bytes)).find("-SLCVER") != std::string::npos;
+}
+
+std::string_view other_slc(std::string_view bytes) {
+    if (bytes.starts_with("Slice V"))
+        return "an SLC file of Stratasys";
+    if (bytes.starts_with("11111"))
+        return "a volume of voxels as VTK and VolVis keep them in SLC files";
+    return "";
+}
+
+LayerFile read_slc(std::string_view bytes, const std::string& name, const Execution& execution) {
+    LayerFile file;
+    file.path = name;
+    file.format = "slc";
+    SlcReader(bytes, name, file).read(execution);
+    return file;
+}
+
+} // namespace lamella

@@ -1,0 +1,20 @@
+#pragma once
+
+// SLC 2.0 of 3D Systems.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+[[nodiscard]] bool is_slc(std::string_view bytes);
+
+/// What else goes by the name of SLC, to be told to a person; "" for what is none of it.
+[[nodiscard]] std::string_view other_slc(std::string_view bytes);
+
+[[nodiscard]] LayerFile read_slc(std::string_view bytes, const std::string& name, const Execution& execution);
+
+} // namespace lamella

@@ -1,0 +1,45 @@
+#pragma once
+
+// Contours in single precision, as binary formats store them.
+
+#include "lamella/core/point.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace lamella {
+
+/// x and y as they stand in a file.
+inline constexpr std::size_t float_point_size = 8;
+
+struct FloatContour {
+    std::size_t points = 0; ///< listed, the repeated first one of a ring included; 0 when nothing is left
+    double area_mm2 = 0;    ///< of a ring, before rounding
+};
+
+/// Millimetres to numbers in single precision, x and y in turn.
+class FloatContours {
+  public:
+    /// Coordinates are multiplied by `per_mm`.
+    explicit FloatContours(double per_mm) : per_mm_(per_mm) {}
+
+    /// Writes a contour, each coordinate rounded to the nearest single; a ring ends with its first point once
+    /// more. There must be room for one point more than the contour has. Points that fall together with the
+    /// one before are dropped; what is left of a ring of fewer than three, or of a chain of fewer than two
+    /// points, is nothing. A ring so thin that rounding turned it over is listed the other way round, so that
+    /// outer rings stay outer rings.
+    ///
+    /// Throws Error{usage}, naming the layer, for coordinates beyond single precision.
+    FloatContour put(std::span<const Point2> contour, bool closed, std::uint64_t layer, char* out) const;
+
+    /// Writes points that are no contour, each for itself. The same error.
+    void put_points(std::span<const Point2> points, std::uint64_t layer, char* out) const;
+
+  private:
+    double convert(std::span<const Point2> points, std::uint64_t layer, char* out) const;
+
+    double per_mm_;
+};
+
+} // namespace lamella

@@ -1,0 +1,94 @@
+#include "write/layers_json.hpp"
+
+#include "write/decimal.hpp"
+#include "write/quoted.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+namespace lamella {
+
+namespace {
+
+std::string exact(double value) {
+    std::array<char, most_double_digits> text{};
+    return {text.data(), put_shortest(text.data(), value + 0.0)};
+}
+
+// "[1,2,3.5,4]": x and y in turn.
+void put_numbers(std::span<const Point2> points, ByteBuffer& out) {
+    char* at = out.room(points.size() * 2 * (most_double_digits + 1) + 2);
+    *at++ = '[';
+    for (const Point2& p : points) {
+        at = put_shortest(at, p.x + 0.0);
+        *at++ = ',';
+        at = put_shortest(at, p.y + 0.0);
+        *at++ = ',';
+    }
+    if (points.empty())
+        ++at;
+    at[-1] = ']';
+    out.end_at(at);
+}
+
+class LayersJsonWriter final : public SequentialWriter {
+  public:
+    LayersJsonWriter(const std::string& path, const LayerFileInfo& info)
+        : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = true}) {}
+
+  private:
+    static std::string head(const LayerFileInfo& info) {
+        std::string text = "{\"format\":\"lamella layers\",\"version\":1,\"units\":\"mm\",\"parts\":[";
+        for (const PartInfo& part : info.parts) {
+            text += fmt::format("{{\"label\":{}}},", json_quoted(part.label));
+        }
+        text.back() = ']';
+        return text + ",\"layers\":[";
+    }
+
+    std::string layer_head(const Place& place) override {
+        return fmt::format("{}{{\"index\":{},\"z\":{},\"bottom\":{},\"top\":{},\"parts\":[",
+                           place.position == 0 ? "\n" : ",\n", place.index, exact(place.z),
+                           exact(place.bottom), exact(place.top));
+    }
+
+    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            const Layer& layer = parts[part];
+            out.append(part == 0 ? "{\"rings\":[" : ",{\"rings\":[");
+            put_contours(layer, 0, layer.rings, out);
+            if (layer.open_chains() > 0) {
+                out.append("],\"chains\":[");
+                put_contours(layer, layer.rings, layer.contours(), out);
+            }
+            out.append("]");
+            if (!layer.hatches.empty()) {
+                out.append(",\"hatches\":");
+                put_numbers(layer.hatches.span(), out);
+            }
+            out.append("}");
+        }
+        out.append("]}");
+    }
+
+    static void put_contours(const Layer& layer, std::size_t begin, std::size_t end, ByteBuffer& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i > begin)
+                out.append(",");
+            put_numbers(layer.contour(i), out);
+        }
+    }
+
+    std::string tail() override { return "\n]}\n"; }
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_layers_json(const std::string& path, const LayerFileInfo& info) {
+    return std::make_unique<LayersJsonWriter>(path, info);
+}
+
+} // namespace lamella

@@ -1,0 +1,44 @@
+#pragma once
+
+// What a format cannot hold is said, not lost in silence.
+
+#include "lamella/contour/layer.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+/// What a format holds besides rings.
+struct Holds {
+    bool open_chains = true;
+    bool hatches = false;
+};
+
+/// Open chains and hatches of one plane.
+struct PlaneExtras {
+    std::uint64_t open_chains = 0;
+    std::uint64_t hatches = 0;
+    double z = 0;
+};
+
+[[nodiscard]] PlaneExtras extras_of(std::span<const Layer> parts);
+
+/// Counts what a file leaves out. Planes are noted in ascending z.
+class LeftOut {
+  public:
+    explicit LeftOut(Holds holds) : holds_(holds) {}
+
+    void note(const PlaneExtras& plane);
+    /// One line for each kind.
+    [[nodiscard]] std::vector<std::string> warnings() const;
+
+  private:
+    Holds holds_;
+    PlaneExtras chains_; ///< all of them, and the lowest plane that has some
+    PlaneExtras hatches_;
+};
+
+} // namespace lamella

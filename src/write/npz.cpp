@@ -1,0 +1,256 @@
+// The points of all layers are one array and go to the file as they come; what they are the points of is
+// small and kept until the end. An array begins with its shape, so the first bytes of the points are written
+// last.
+
+#include "write/npz.hpp"
+
+#include "container/inflate.hpp"
+#include "container/text_place.hpp"
+#include "container/zip_writer.hpp"
+#include "write/left_out.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as memory has them");
+
+// The head of an array: magic, version 1.0, the length of what follows, and a Python dictionary. All of it as
+// long as NumPy makes it, so that the numbers begin at a multiple of 64.
+std::string npy_head(std::string_view type, const std::string& shape, std::size_t size) {
+    std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
+    constexpr std::size_t before = 10;
+    text.resize(size - before - 1, ' ');
+    text += '\n';
+    std::string head("\x93NUMPY\x01\x00", 8);
+    head += static_cast<char>(text.size() & 0xFF);
+    head += static_cast<char>(text.size() >> 8);
+    return head + text;
+}
+
+constexpr std::size_t head_size = 128;
+
+template <class T>
+std::string_view bytes_of(std::span<const T> values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+}
+
+/// UTF-8, well-formed, as the fixed-width characters of NumPy's strings.
+std::u32string characters(std::string_view text) {
+    std::u32string result;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        const std::size_t length = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+        char32_t c = length == 1 ? lead : lead & (0x7FU >> length);
+        for (std::size_t k = 1; k < length; ++k)
+            c = (c << 6U) | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
+        result += c;
+        i += length;
+    }
+    return result;
+}
+
+class NpzWriter final : public LayerWriter {
+  public:
+    NpzWriter(const std::string& path, const LayerFileInfo& info)
+        : labels_(info.parts), zip_(path, Overwriting::yes), order_(info) {
+        zip_.begin_headed("points.npy", head_size);
+    }
+
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
+        struct Prepared {
+            std::vector<PointArray> points;
+            std::vector<std::uint32_t> crcs;
+            std::vector<std::vector<std::uint64_t>> offsets;
+            std::vector<PartPlane> counts;
+        };
+        auto prepared = std::make_shared<Prepared>();
+        for (const Layer& layer : parts) {
+            prepared->points.push_back(layer.points);
+            prepared->crcs.push_back(crc32_of(bytes_of(layer.points.span())));
+            prepared->offsets.emplace_back(layer.offsets.begin() + 1, layer.offsets.end());
+            prepared->counts.push_back({layer.contours(), layer.rings, layer.hatches});
+        }
+        const Layer& layer = parts.front();
+        return [this, prepared, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
+            order_.next(z);
+            planes_.push_back({static_cast<std::int64_t>(index), z, bottom, top});
+            for (std::size_t part = 0; part < prepared->points.size(); ++part) {
+                const std::string_view bytes = bytes_of(prepared->points[part].span());
+                zip_.append({bytes, bytes.size(), prepared->crcs[part]});
+                for (const std::uint64_t end : prepared->offsets[part])
+                    offsets_.push_back(points_ + static_cast<std::int64_t>(end));
+                points_ += static_cast<std::int64_t>(prepared->points[part].size());
+                counts_.push_back(std::move(prepared->counts[part]));
+            }
+        };
+    }
+
+    void finish() override {
+        order_.end();
+        zip_.end_headed(npy_head("<f8", fmt::format("{}, 2", points_), head_size));
+        add_numbers<std::int64_t>("offsets", "<i8", offsets_);
+        add_contour_numbers<char>("closed", "|b1", [](const Contour& c) -> char { return c.closed ? 1 : 0; });
+        add_contour_numbers<std::int64_t>("layer", "<i8", [](const Contour& c) { return c.layer; });
+        add_contour_numbers<std::int64_t>("part", "<i8", [](const Contour& c) { return c.part; });
+        add_plane_numbers<std::int64_t>("index", "<i8", [](const Plane& p) { return p.index; });
+        add_plane_numbers<double>("z", "<f8", [](const Plane& p) { return p.z; });
+        add_plane_numbers<double>("bottom", "<f8", [](const Plane& p) { return p.bottom; });
+        add_plane_numbers<double>("top", "<f8", [](const Plane& p) { return p.top; });
+        add_labels();
+        add_hatches();
+        zip_.finish();
+    }
+
+    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+
+  private:
+    struct Plane {
+        std::int64_t index;
+        double z;
+        double bottom;
+        double top;
+    };
+    /// What one part has on one plane.
+    struct PartPlane {
+        std::uint64_t contours;
+        std::uint64_t rings;
+        PointArray hatches;
+    };
+    struct Contour {
+        std::int64_t layer;
+        std::int64_t part;
+        bool closed;
+    };
+
+    /// An array of a known number of elements, made and written some thousand at a time: `make` fills a
+    /// vector up to its capacity or the array's end and says so by returning false.
+    class Array {
+      public:
+        Array(ZipWriter& zip, std::string_view name, std::string_view type, const std::string& shape,
+              std::uint64_t bytes)
+            : zip_(zip) {
+            constexpr std::uint64_t large = 0xFFFF0000;
+            zip_.begin(fmt::format("{}.npy", name), ZipMethod::stored, bytes >= large);
+            waiting_ = npy_head(type, shape, head_size);
+        }
+
+        void add(std::string_view bytes) {
+            waiting_ += bytes;
+            if (waiting_.size() >= (std::size_t{1} << 18))
+                flush();
+        }
+        void end() {
+            flush();
+            zip_.end();
+        }
+
+      private:
+        void flush() {
+            zip_.append_stored(waiting_);
+            waiting_.clear();
+        }
+
+        ZipWriter& zip_;
+        std::string waiting_;
+    };
+
+    template <class T>
+    void add_numbers(std::string_view name, std::string_view type, std::span<const T> values) {
+        Array array(zip_, name, type, fmt::format("{},", values.size()), values.size_bytes());
+        array.add(bytes_of(values));
+        array.end();
+    }
+
+    template <class T, class Value>
+    void add_plane_numbers(std::string_view name, std::string_view type, const Value& value) {
+        std::vector<T> values;
+        for (const Plane& plane : planes_)
+            values.push_back(value(plane));
+        add_numbers<T>(name, type, values);
+    }
+
+    template <class T, class Value>
+    void add_contour_numbers(std::string_view name, std::string_view type, const Value& value) {
+        const std::size_t contours = offsets_.size() - 1;
+        Array array(zip_, name, type, fmt::format("{},", contours), contours * sizeof(T));
+        for (std::size_t i = 0; i < counts_.size(); ++i) {
+            for (std::uint64_t k = 0; k < counts_[i].contours; ++k) {
+                const T number = value({layer_of(i), part_of(i), k < counts_[i].rings});
+                array.add(bytes_of(std::span(&number, 1)));
+            }
+        }
+        array.end();
+    }
+
+    void add_labels() {
+        std::vector<std::u32string> labels;
+        std::size_t longest = 1;
+        constexpr std::size_t most_bytes = 4096;
+        for (const PartInfo& part : labels_) {
+            labels.push_back(characters(printable(part.label, most_bytes)));
+            longest = std::max(longest, labels.back().size());
+        }
+        const std::string type = fmt::format("<U{}", longest);
+        Array array(zip_, "labels", type, fmt::format("{},", labels.size()), 0);
+        for (std::u32string& label : labels) {
+            label.resize(longest, U'\0');
+            array.add(bytes_of(std::span<const char32_t>(label)));
+        }
+        array.end();
+    }
+
+    // Only where there are any.
+    void add_hatches() {
+        std::vector<std::int64_t> layers;
+        std::vector<std::int64_t> parts;
+        for (std::size_t i = 0; i < counts_.size(); ++i) {
+            layers.insert(layers.end(), counts_[i].hatches.size() / 2, layer_of(i));
+            parts.insert(parts.end(), counts_[i].hatches.size() / 2, part_of(i));
+        }
+        if (layers.empty())
+            return;
+        constexpr std::uint64_t bytes_of_line = 32;
+        Array array(zip_, "hatches", "<f8", fmt::format("{}, 2, 2", layers.size()),
+                    layers.size() * bytes_of_line);
+        for (const PartPlane& counts : counts_)
+            array.add(bytes_of(counts.hatches.span()));
+        array.end();
+        add_numbers<std::int64_t>("hatch_layer", "<i8", layers);
+        add_numbers<std::int64_t>("hatch_part", "<i8", parts);
+    }
+
+    [[nodiscard]] std::int64_t layer_of(std::size_t count) const {
+        return static_cast<std::int64_t>(count / labels_.size());
+    }
+    [[nodiscard]] std::int64_t part_of(std::size_t count) const {
+        return static_cast<std::int64_t>(count % labels_.size());
+    }
+
+    std::vector<PartInfo> labels_;
+    ZipWriter zip_;
+    LayerOrder order_;
+    std::vector<Plane> planes_;
+    std::vector<PartPlane> counts_; ///< of all parts of the first plane, then of the second ...
+    std::vector<std::int64_t> offsets_{0};
+    std::int64_t points_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_npz(const std::string& path, const LayerFileInfo& info) {
+    return std::make_unique<NpzWriter>(path, info);
+}
+
+} // namespace lamella

@@ -1,0 +1,15 @@
+#pragma once
+
+// Names as strings of text formats. What is no printable UTF-8 stands there as \xNN.
+
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// With quotation marks.
+[[nodiscard]] std::string json_quoted(std::string_view text);
+/// Without quotation marks, for text and attributes.
+[[nodiscard]] std::string xml_escaped(std::string_view text);
+
+} // namespace lamella

@@ -1,0 +1,139 @@
+#include "write/slc.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "write/decimal.hpp"
+#include "write/float_contour.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as memory has them");
+
+constexpr std::uint32_t no_more_layers = 0xFFFFFFFF;
+
+template <class T>
+void append(std::string& bytes, T value) {
+    std::array<char, sizeof value> raw{};
+    std::memcpy(raw.data(), &value, sizeof value);
+    bytes.append(raw.data(), raw.size());
+}
+
+float single(double mm) {
+    return static_cast<float>(mm) + 0.0F;
+}
+
+class SlcWriter final : public SequentialWriter {
+  public:
+    SlcWriter(const std::string& path, const LayerFileInfo& info)
+        : SequentialWriter(path, info, header(info), {.open_chains = false, .hatches = false}),
+          bottom_(info.bottom), top_(info.bottom) {}
+
+  private:
+    // One line with a blank at its end: readers that split at blanks would take the line's end to the last
+    // number otherwise.
+    static std::string header(const LayerFileInfo& info) {
+        const Box3& box = info.box;
+        const auto range = [](double low, double high) {
+            return decimal_text(low, 6, 6) + ',' + decimal_text(high, 6, 6) + ' ';
+        };
+        constexpr std::size_t reserved = 256;
+        return "-SLCVER 2.0 -UNIT MM -TYPE PART -PACKAGE LAMELLA -EXTENTS " + range(box.min.x, box.max.x) +
+               range(box.min.y, box.max.y) + range(box.min.z, box.max.z) + "\r\n\x1a" +
+               std::string(reserved, '\0');
+    }
+
+    // One entry: every layer is in the file, so where thicknesses differ, heights tell.
+    static std::string sampling_table(double bottom, double thickness) {
+        constexpr float line_width_compensation = 0;
+        constexpr float unused = 0;
+        std::string table(1, '\1');
+        for (const float value : {single(bottom), single(thickness), line_width_compensation, unused})
+            append(table, value);
+        return table;
+    }
+
+    std::string layer_head(const Place& place) override {
+        std::string bytes;
+        if (place.position == 0)
+            bytes = sampling_table(place.bottom, place.top - place.bottom);
+        else if (!(single(place.bottom) > last_))
+            throw Error(ErrorKind::usage,
+                        fmt::format("layer {} is so thin that its bottom, z = {} mm, is that of the layer "
+                                    "before in single precision",
+                                    place.index, place.bottom));
+        append(bytes, single(place.bottom));
+        last_ = single(place.bottom);
+        top_ = place.top;
+        empty_ = false;
+        return bytes;
+    }
+
+    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
+        std::size_t room = sizeof(std::uint32_t);
+        for (const Layer& layer : parts)
+            room += layer.rings * (boundary_head + float_point_size) + layer.points.size() * float_point_size;
+        char* const begin = out.room(room);
+        char* at = begin + sizeof(std::uint32_t);
+        std::size_t boundaries = 0;
+        for (const Layer& layer : parts) {
+            for (std::size_t i = 0; i < layer.rings; ++i) {
+                const FloatContour listed =
+                    floats_.put(layer.contour(i), true, layer.index, at + boundary_head);
+                if (listed.points == 0)
+                    continue;
+                put_count(at, listed.points, layer.index);
+                put_count(at + sizeof(std::uint32_t), 0, layer.index); // gaps
+                at += boundary_head + listed.points * float_point_size;
+                ++boundaries;
+            }
+        }
+        put_count(begin, boundaries, parts.front().index);
+        out.end_at(at);
+    }
+
+    std::string tail() override {
+        std::string bytes = empty_ ? sampling_table(bottom_, 0) : std::string();
+        append(bytes, single(top_));
+        append(bytes, no_more_layers);
+        return bytes;
+    }
+
+    static void put_count(char* out, std::size_t count, std::uint64_t layer) {
+        if (count >= no_more_layers)
+            throw Error(ErrorKind::limit,
+                        fmt::format("layer {} has {} points or contours at a place where the format counts "
+                                    "to 2^32 - 2",
+                                    layer, count));
+        const auto stored = static_cast<std::uint32_t>(count);
+        std::memcpy(out, &stored, sizeof stored);
+    }
+
+    static constexpr std::size_t boundary_head = 2 * sizeof(std::uint32_t);
+
+    FloatContours floats_{1.0};
+    double bottom_;
+    double top_;
+    float last_ = 0;
+    bool empty_ = true;
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_slc(const std::string& path, const LayerFileInfo& info) {
+    return std::make_unique<SlcWriter>(path, info);
+}
+
+} // namespace lamella

@@ -1,0 +1,265 @@
+// One model part: for each part of the file a slice stack, and an object that uses it. The stacks come before
+// the objects, since readers go through the file once. A layer is formatted and compressed where it is
+// prepared and only joined to the others in order.
+
+#include "write/slices_3mf.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+
+#include "container/deflate.hpp"
+#include "container/inflate.hpp"
+#include "container/zip_writer.hpp"
+#include "write/byte_buffer.hpp"
+#include "write/decimal.hpp"
+#include "write/grid.hpp"
+#include "write/left_out.hpp"
+#include "write/quoted.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::string_view content_types =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+    "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+    "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
+    "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
+    "</Types>\n";
+
+constexpr std::string_view relations =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+    "<Relationship Id=\"model\" Target=\"/3D/3dmodel.model\" "
+    "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
+
+constexpr std::string_view model_begin =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+    "<model unit=\"millimeter\" xml:lang=\"en-US\" "
+    "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+    "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\" requiredextensions=\"s\">\n"
+    "<resources>\n";
+
+std::string height_text(double mm) {
+    return decimal_text(mm, 9, 0);
+}
+
+char* put(char* at, std::string_view text) {
+    std::memcpy(at, text.data(), text.size());
+    return at + text.size();
+}
+
+/// Bytes of the model part, compressed.
+struct Piece {
+    std::string bytes;
+    std::uint64_t size = 0;
+    std::uint32_t crc = 0;
+
+    [[nodiscard]] ZipPiece in_zip() const { return {bytes, size, crc}; }
+};
+
+/// Deflaters that wait to be used again: each has some hundred kilobytes. For any number of threads.
+class Compression {
+  public:
+    [[nodiscard]] Piece piece(std::string_view text) {
+        std::unique_ptr<Deflater> deflater;
+        {
+            const std::lock_guard lock(mutex_);
+            if (!idle_.empty()) {
+                deflater = std::move(idle_.back());
+                idle_.pop_back();
+            }
+        }
+        if (!deflater)
+            deflater = std::make_unique<Deflater>();
+        Piece piece{{}, text.size(), crc32_of(text)};
+        deflater->append_piece(text, piece.bytes);
+        piece.bytes.shrink_to_fit();
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(deflater));
+        return piece;
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Deflater>> idle_;
+};
+
+/// One <s:slice>.
+void put_slice(const Layer& layer, const Grid& grid, ByteBuffer& out) {
+    out.append(fmt::format("<s:slice ztop=\"{}\"", height_text(layer.top)));
+    constexpr std::string_view x_before = "<s:vertex x=\"";
+    constexpr std::string_view y_before = "\" y=\"";
+    constexpr std::string_view vertex_end = "\"/>\n";
+    constexpr std::size_t per_vertex =
+        x_before.size() + y_before.size() + vertex_end.size() + 2 * (most_integer_digits + 6);
+    std::vector<std::size_t> ends; // of rings, counted in vertices
+    std::vector<GridPoint> scratch;
+    std::size_t vertices = 0;
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        const auto points =
+            grid.snap(layer.contour(i), true, ring_area(layer.contour(i)), layer.index, scratch);
+        if (points.empty())
+            continue;
+        if (vertices == 0)
+            out.append(">\n<s:vertices>\n");
+        char* at = out.room(points.size() * per_vertex);
+        for (const GridPoint& p : points) {
+            at = put_thousandths(put(at, x_before), p.x);
+            at = put_thousandths(put(at, y_before), p.y);
+            at = put(at, vertex_end);
+        }
+        out.end_at(at);
+        vertices += points.size();
+        ends.push_back(vertices);
+    }
+    if (vertices == 0) {
+        out.append("/>\n");
+        return;
+    }
+    out.append("</s:vertices>\n");
+    std::size_t begin = 0;
+    for (const std::size_t end : ends) {
+        constexpr std::string_view before = "<s:segment v2=\"";
+        constexpr std::string_view after = "\"/>\n";
+        out.append(fmt::format("<s:polygon startv=\"{}\">\n", begin));
+        char* at = out.room((end - begin) * (before.size() + most_integer_digits + after.size()));
+        for (std::size_t v = begin + 1; v < end; ++v)
+            at = put(put_integer(put(at, before), std::uint64_t{v}), after);
+        at = put(put_integer(put(at, before), std::uint64_t{begin}), after);
+        out.end_at(at);
+        out.append("</s:polygon>\n");
+        begin = end;
+    }
+    out.append("</s:slice>\n");
+}
+
+/// Every object must have a mesh; this one only says where the part is.
+std::string box_mesh(const Box3& box) {
+    std::string text = "<mesh>\n<vertices>\n";
+    for (const double z : {box.min.z, box.max.z})
+        for (const auto& [x, y] : {Point2{box.min.x, box.min.y}, Point2{box.max.x, box.min.y},
+                                   Point2{box.max.x, box.max.y}, Point2{box.min.x, box.max.y}})
+            text += fmt::format("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", height_text(x), height_text(y),
+                                height_text(z));
+    text += "</vertices>\n<triangles>\n";
+    constexpr std::array<std::array<int, 3>, 12> triangles{{{0, 2, 1},
+                                                            {0, 3, 2},
+                                                            {4, 5, 6},
+                                                            {4, 6, 7},
+                                                            {0, 1, 5},
+                                                            {0, 5, 4},
+                                                            {1, 2, 6},
+                                                            {1, 6, 5},
+                                                            {2, 3, 7},
+                                                            {2, 7, 6},
+                                                            {3, 0, 4},
+                                                            {3, 4, 7}}};
+    for (const auto& [a, b, c] : triangles)
+        text += fmt::format("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", a, b, c);
+    return text + "</triangles>\n</mesh>\n";
+}
+
+class Slices3mfWriter final : public LayerWriter {
+  public:
+    Slices3mfWriter(const std::string& path, const LayerFileInfo& info)
+        : info_(info), zip_(path), order_(info), later_(info.parts.size() - 1), last_top_(info.bottom) {
+        zip_.add("[Content_Types].xml", content_types, ZipMethod::deflated);
+        zip_.add("_rels/.rels", relations, ZipMethod::deflated);
+        zip_.begin("3D/3dmodel.model", ZipMethod::deflated);
+        append(std::string(model_begin) + stack_begin(0));
+    }
+
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
+        const std::shared_ptr<ByteBuffer> text = buffers_->take();
+        auto pieces = std::make_shared<std::vector<Piece>>();
+        for (const Layer& layer : parts) {
+            text->clear();
+            put_slice(layer, grid_, *text);
+            pieces->push_back(compression_.piece(text->view()));
+        }
+        const Layer& layer = parts.front();
+        return [this, pieces, extras = extras_of(parts), index = layer.index, z = layer.z, top = layer.top] {
+            order_.next(z);
+            left_out_.note(extras);
+            if (!(top > last_top_))
+                throw Error(ErrorKind::usage,
+                            fmt::format("layer {} ends at z = {} mm, where the one below it does; the tops "
+                                        "of slices must ascend",
+                                        index, top));
+            last_top_ = top;
+            zip_.append(pieces->front().in_zip());
+            for (std::size_t part = 1; part < pieces->size(); ++part)
+                later_[part - 1].push_back(std::move((*pieces)[part]));
+        };
+    }
+
+    void finish() override {
+        order_.end();
+        append(stack_end);
+        for (std::size_t part = 1; part <= later_.size(); ++part) {
+            append(stack_begin(part));
+            for (const Piece& piece : later_[part - 1])
+                zip_.append(piece.in_zip());
+            append(stack_end);
+        }
+        std::string items;
+        for (std::size_t part = 0; part < info_.parts.size(); ++part) {
+            const PartInfo& known = info_.parts[part];
+            append(fmt::format("<object id=\"{}\" type=\"model\" name=\"{}\" s:slicestackid=\"{}\" "
+                               "s:meshresolution=\"lowres\">\n{}</object>\n",
+                               object_id(part), xml_escaped(known.label), stack_id(part),
+                               box_mesh(known.box.empty() ? info_.box : known.box)));
+            items += fmt::format("<item objectid=\"{}\"/>\n", object_id(part));
+        }
+        append(fmt::format("</resources>\n<build>\n{}</build>\n</model>\n", items));
+        zip_.end();
+        zip_.finish();
+    }
+
+    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+    std::vector<std::string> warnings() const override { return left_out_.warnings(); }
+
+  private:
+    static constexpr std::string_view stack_end = "</s:slicestack>\n";
+
+    [[nodiscard]] static std::size_t stack_id(std::size_t part) { return part + 1; }
+    [[nodiscard]] std::size_t object_id(std::size_t part) const { return info_.parts.size() + part + 1; }
+    [[nodiscard]] std::string stack_begin(std::size_t part) const {
+        return fmt::format("<s:slicestack id=\"{}\" zbottom=\"{}\">\n", stack_id(part),
+                           height_text(info_.bottom));
+    }
+
+    void append(std::string_view text) { zip_.append(compression_.piece(text).in_zip()); }
+
+    LayerFileInfo info_;
+    ZipWriter zip_;
+    LayerOrder order_;
+    LeftOut left_out_{{.open_chains = false, .hatches = false}};
+    Grid grid_{text_step_mm};
+    Compression compression_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+    /// The stacks of all parts but the first, which wait for the end of the first one.
+    std::vector<std::vector<Piece>> later_;
+    double last_top_;
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_slices_3mf(const std::string& path, const LayerFileInfo& info) {
+    return std::make_unique<Slices3mfWriter>(path, info);
+}
+
+} // namespace lamella

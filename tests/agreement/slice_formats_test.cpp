@@ -1,0 +1,267 @@
+// Every slice format that is read: what is written comes back, at the resolution of the format; and no bytes
+// of it do more harm than an error.
+
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <lamella/lamella.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+struct Resolution {
+    const char* format;
+    std::function<double(double)> coordinate; ///< as the format keeps it
+    bool chains = true;
+    bool hatches = false;
+    bool parts = true;
+    bool exact = false; ///< heights, too
+};
+
+// Relative to the corner of the part, which is at -60.
+double thousandths_from_corner(double v) {
+    return (std::nearbyint(v * 1000) + 60000) / 1000 - 60 + 0.0;
+}
+double decimal_thousandths(double v) {
+    return std::nearbyint(v * 1000) / 1000 + 0.0;
+}
+double single(double v) {
+    return static_cast<double>(static_cast<float>(v)) + 0.0;
+}
+// The long binary form keeps single precision in units of a thousandth.
+double single_thousandths(double v) {
+    return static_cast<double>(static_cast<float>(v * 1000)) * 0.001 + 0.0;
+}
+double itself(double v) {
+    return v;
+}
+
+const std::vector<Resolution>& readable() {
+    static const std::vector<Resolution> formats{
+        {.format = "cli", .coordinate = single_thousandths, .hatches = true},
+        {.format = "cli-ascii",
+         .coordinate = [](double v) { return std::nearbyint(v * 1000) * 0.001 + 0.0; },
+         .hatches = true},
+        {.format = "svg", .coordinate = thousandths_from_corner},
+        {.format = "slc", .coordinate = single, .chains = false, .parts = false},
+        {.format = "3mf", .coordinate = decimal_thousandths, .chains = false},
+        {.format = "json", .coordinate = itself, .hatches = true, .exact = true},
+        {.format = "npz", .coordinate = itself, .hatches = true, .exact = true},
+    };
+    return formats;
+}
+
+// Rings of both directions, chains and hatches; some planes are empty.
+std::vector<LayerStack> random_parts(unsigned seed, std::size_t parts, std::size_t planes) {
+    std::mt19937_64 random(seed);
+    const auto uniform = [&](double low, double high) {
+        return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
+    };
+    std::vector<LayerStack> stacks(parts);
+    double bottom = 0.5;
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+        const double top = bottom + uniform(0.1, 0.3);
+        for (LayerStack& stack : stacks) {
+            LayerBuilder builder;
+            const std::size_t contours = random() % 5;
+            for (std::size_t c = 0; c < contours; ++c) {
+                const Point2 middle{uniform(-50, 50), uniform(-50, 50)};
+                const double turn = random() % 2 == 0 ? 1 : -1;
+                const std::size_t points = 3 + random() % 40;
+                for (std::size_t i = 0; i < points; ++i) {
+                    const double angle = turn * 6.25 * static_cast<double>(i) / static_cast<double>(points);
+                    const double radius = uniform(4, 9);
+                    builder.add_point(
+                        {middle.x + radius * std::cos(angle), middle.y + radius * std::sin(angle)});
+                }
+                builder.end_contour(random() % 3 != 0);
+            }
+            stack.push_back(builder.finish(plane, bottom + (top - bottom) / 2, bottom, top));
+            std::vector<Point2> hatches(2 * (random() % 4));
+            for (Point2& p : hatches)
+                p = {uniform(-50, 50), uniform(-50, 50)};
+            stack.back().hatches = PointArray(std::move(hatches));
+        }
+        bottom = top;
+    }
+    return stacks;
+}
+
+LayerFileInfo info_of(const std::vector<LayerStack>& parts) {
+    LayerFileInfo info;
+    info.layers = parts.front().size();
+    info.bottom = parts.front().front().bottom;
+    info.box.add(Point3{-60, -60, info.bottom});
+    info.box.add(Point3{60, 60, parts.front().back().top});
+    info.parts.clear();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        info.parts.push_back({"part \"" + std::to_string(i) + "\" <&", info.box});
+    return info;
+}
+
+// What a file of this resolution can say of a layer.
+Layer kept(const Layer& layer, const Resolution& of) {
+    LayerBuilder builder;
+    for (std::size_t i = 0; i < (of.chains ? layer.contours() : layer.rings); ++i) {
+        for (const Point2& p : layer.contour(i))
+            builder.add_point({of.coordinate(p.x), of.coordinate(p.y)});
+        builder.end_contour(layer.closed(i));
+    }
+    return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+}
+
+std::string written(const char* format, const std::vector<LayerStack>& parts,
+                    std::vector<std::string>* warnings = nullptr) {
+    const TemporaryFolder folder;
+    std::vector<std::string> told =
+        write_layers(folder.file("out"), layer_format(format, ""), parts, info_of(parts));
+    if (warnings != nullptr)
+        *warnings = std::move(told);
+    return file_bytes(folder.file("out"));
+}
+
+LayerFile read(std::string_view bytes) {
+    // Exactly as long as the bytes, so that a sanitizer sees one byte too far.
+    const auto copy = std::make_unique<std::byte[]>(bytes.size());
+    std::memcpy(copy.get(), bytes.data(), bytes.size());
+    return read_layers(std::span(copy.get(), bytes.size()), "test", {.threads = 1});
+}
+
+TEST(SliceFormats, ComeBackAtTheirResolution) {
+    for (const Resolution& format : readable()) {
+        for (const std::size_t parts : {1U, 3U}) {
+            const auto original = random_parts(7, parts, 12);
+            const LayerFile back = read(written(format.format, original));
+            EXPECT_EQ(back.format, format.format);
+            for (const std::string& warning : back.warnings)
+                EXPECT_NE(warning.find("contours are open"), std::string::npos) << format.format << warning;
+            ASSERT_EQ(back.parts.size(), format.parts ? parts : 1) << format.format;
+            LayerFile whole;
+            for (const LayerStack& stack : original)
+                whole.parts.push_back({"", stack});
+            const LayerStack merged = whole.merged();
+            for (std::size_t part = 0; part < back.parts.size(); ++part) {
+                const LayerStack& expected = format.parts ? original[part] : merged;
+                ASSERT_EQ(back.parts[part].layers.size(), expected.size()) << format.format;
+                for (std::size_t i = 0; i < expected.size(); ++i) {
+                    const Layer& found = back.parts[part].layers[i];
+                    EXPECT_EQ(content_hash(found), content_hash(kept(expected[i], format)))
+                        << format.format << ", part " << part << ", layer " << i;
+                    const double tolerance = format.exact ? 0 : 1e-5;
+                    EXPECT_NEAR(found.z, expected[i].z, tolerance) << format.format;
+                    EXPECT_NEAR(found.bottom, expected[i].bottom, tolerance) << format.format;
+                    EXPECT_NEAR(found.top, expected[i].top, tolerance) << format.format;
+                    ASSERT_EQ(found.hatches.size(), format.hatches ? expected[i].hatches.size() : 0);
+                    for (std::size_t k = 0; k < found.hatches.size(); ++k) {
+                        EXPECT_EQ(found.hatches[k].x, format.coordinate(expected[i].hatches[k].x));
+                        EXPECT_EQ(found.hatches[k].y, format.coordinate(expected[i].hatches[k].y));
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(SliceFormats, KeepTheLabelsOfParts) {
+    const auto parts = random_parts(3, 2, 2);
+    for (const char* format : {"svg", "3mf", "json", "npz"}) {
+        const LayerFile back = read(written(format, parts));
+        ASSERT_EQ(back.parts.size(), 2U);
+        EXPECT_EQ(back.parts[1].label, "part \"1\" <&") << format;
+    }
+    EXPECT_EQ(read(written("cli", parts)).parts[1].label, "part _1_ <&");
+}
+
+TEST(SliceFormats, SayWhatTheyLeaveOut) {
+    const auto parts = random_parts(7, 1, 12);
+    std::uint64_t chains = 0;
+    std::uint64_t hatches = 0;
+    for (const Layer& layer : parts.front()) {
+        chains += layer.open_chains();
+        hatches += layer.hatches.size() / 2;
+    }
+    ASSERT_GT(chains, 1U);
+    ASSERT_GT(hatches, 1U);
+    for (const LayerFormat& format : layer_formats()) {
+        if (format.directory)
+            continue;
+        std::vector<std::string> warnings;
+        static_cast<void>(written(std::string(format.name).c_str(), parts, &warnings));
+        std::string all;
+        for (const std::string& warning : warnings)
+            all += warning + '\n';
+        const bool closed_only = format.name == "slc" || format.name == "3mf";
+        const bool no_hatches =
+            format.name != "json" && format.name != "npz" && !format.name.starts_with("cli");
+        EXPECT_EQ(all.find(std::to_string(chains) + " open contours") != std::string::npos, closed_only)
+            << all;
+        EXPECT_EQ(all.find(std::to_string(hatches) + " hatch lines") != std::string::npos, no_hatches) << all;
+    }
+}
+
+// An input error, or layers in normal form.
+void expect_harmless(std::string_view bytes) {
+    try {
+        const LayerFile file = read(bytes);
+        ASSERT_FALSE(file.parts.empty());
+        for (const LayerPart& part : file.parts) {
+            ASSERT_EQ(part.layers.size(), file.parts.front().layers.size());
+            for (const Layer& layer : part.layers)
+                ASSERT_TRUE(in_normal_form(layer));
+        }
+    } catch (const Error& error) {
+        ASSERT_EQ(error.kind(), ErrorKind::input) << error.what();
+        ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    }
+}
+
+TEST(SliceFormats, TruncatedFilesAreErrorsOrLessLayers) {
+    const auto parts = random_parts(5, 2, 3);
+    for (const Resolution& format : readable()) {
+        const std::string bytes = written(format.format, parts);
+        for (std::size_t size = 1; size<bytes.size(); size += bytes.size()> 8000 ? 7 : 1)
+            expect_harmless(std::string_view(bytes).substr(0, size));
+    }
+}
+
+TEST(SliceFormats, ChangedBytesAreErrorsOrOtherLayers) {
+    const auto parts = random_parts(5, 2, 3);
+    std::mt19937_64 random(11);
+    for (const Resolution& format : readable()) {
+        const std::string bytes = written(format.format, parts);
+        for (int i = 0; i < 2000; ++i) {
+            std::string changed = bytes;
+            const std::size_t changes = 1 + random() % 4;
+            for (std::size_t k = 0; k < changes; ++k)
+                changed[random() % changed.size()] = static_cast<char>(random() % 4 == 0 ? 0xFF : random());
+            expect_harmless(changed);
+        }
+    }
+}
+
+TEST(SliceFormats, SamplesOfOthersHaveTheirAreas) {
+    const std::string folder = std::string(LAMELLA_SHARED) + "/formats/samples/own/";
+    if (!std::filesystem::exists(folder))
+        GTEST_SKIP() << "no samples at " << folder;
+    for (const char* name : {"ring_ascii.cli", "ring_long.cli", "ring_short.cli", "ring_short_align.cli",
+                             "ring_slic3r.svg", "ring.slc", "ring.slices.3mf"}) {
+        const LayerStack layers = read_layers(folder + name).merged();
+        ASSERT_EQ(layers.size(), 2U) << name;
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            EXPECT_NEAR(measure(layers[i]).area_mm2, 96, 1e-6) << name;
+            EXPECT_NEAR(measure(layers[i]).perimeter_mm, 48, 1e-6) << name;
+            EXPECT_NEAR(layers[i].top, 0.5 * static_cast<double>(i + 1), 1e-6) << name;
+        }
+    }
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,68 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lamella {
+namespace {
+
+LayerFile read(const std::string& text) {
+    return read_layers(std::as_bytes(std::span(text)), "test.json");
+}
+
+std::string error_of(const std::string& text) {
+    try {
+        static_cast<void>(read(text));
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+        return error.what();
+    }
+    return "no error";
+}
+
+std::string file(const std::string& layers) {
+    return "{\"format\": \"lamella layers\", \"version\": 1, \"other\": [null, {\"a\": true}],\n\"parts\": "
+           "[{\"label\": \"\\u00e4\\ud83d\\ude00\\n\"}], \"layers\": [" +
+           layers + "]}\n";
+}
+
+std::string layer(const std::string& part, const std::string& z = "1") {
+    return "{\"index\": 5, \"z\": " + z + ", \"bottom\": 0, \"top\": 2, \"parts\": [" + part + "]}";
+}
+
+TEST(ReadLayersJson, TellsAllThatALayerHas) {
+    const LayerFile found = read(file(layer(R"({"rings": [[0, 0, 1e1, 0, 0, 10]], "chains": [[1, 1, 2, 2]],
+                                               "hatches": [0, 1, 2, 3]})")));
+    EXPECT_EQ(found.parts.front().label, "\xc3\xa4\xf0\x9f\x98\x80\n");
+    const Layer& only = found.parts.front().layers.front();
+    EXPECT_EQ(only.index, 5U);
+    EXPECT_EQ(only.z, 1);
+    EXPECT_EQ(measure(only).area_mm2, 50);
+    EXPECT_EQ(only.open_chains(), 1U);
+    ASSERT_EQ(only.hatches.size(), 2U);
+    EXPECT_EQ(only.hatches[1], (Point2{2, 3}));
+}
+
+TEST(ReadLayersJson, RefusesWhatItDoesNotUnderstand) {
+    const auto expect = [](const std::string& text, const char* part) {
+        EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
+    };
+    expect("{}", "format");
+    expect("{\"format\": \"geojson\"}", "'geojson'");
+    expect("{\"format\": \"lamella layers\", \"version\": 2}", "version 2");
+    expect(file(""), "no layer");
+    expect(file(layer("{\"rings\": [[0, 0, 1]]}")), "x without its y");
+    expect(file(layer("{\"hatches\": [0, 0]}")), "half a hatch");
+    expect(file(layer("{\"rings\": [[0, 0, 1, 1e200]]}")), "within");
+    expect(file(layer("{}, {}")), "part 2");
+    expect(file(layer("{}") + "," + layer("{}")), "ascend");
+    expect(file(layer("{}", "3")), "between bottom and top");
+    expect(file(layer("{}")) + "x", "end here");
+    expect(file(layer("{\"rings\": [[0, 0, nan, 1]]}")), "number");
+    expect(std::string(100, '{'), "string");
+    expect("{\"a\": " + std::string(100, '['), "nested deeper");
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,166 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include "container/zip_writer.hpp"
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+namespace lamella {
+namespace {
+
+std::string model(const std::string& resources, const std::string& build,
+                  const std::string& unit = "millimeter") {
+    return "<model unit=\"" + unit +
+           "\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+           "xmlns:t=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"><resources>" +
+           resources + "</resources><build>" + build + "</build></model>";
+}
+
+// A triangle of 8 square units to the right of the origin.
+std::string slice(const std::string& top, const std::string& last = "0") {
+    return "<t:slice ztop=\"" + top +
+           "\"><t:vertices><t:vertex x=\"1\" y=\"0\"/><t:vertex x=\"5\" y=\"0\"/><t:vertex x=\"1\" "
+           "y=\"4\"/></t:vertices>"
+           "<t:polygon startv=\"0\"><t:segment v2=\"1\"/><t:segment v2=\"2\"/><t:segment v2=\"" +
+           last + "\"/></t:polygon></t:slice>";
+}
+
+std::string stack(int id, const std::string& slices, const std::string& bottom = "0") {
+    return "<t:slicestack id=\"" + std::to_string(id) + "\" zbottom=\"" + bottom + "\">" + slices +
+           "</t:slicestack>";
+}
+
+std::string object(int id, int stack) {
+    return "<object id=\"" + std::to_string(id) + "\" name=\"body\" t:slicestackid=\"" +
+           std::to_string(stack) + "\"/>";
+}
+
+LayerFile read(const std::string& root, const std::string& other = "") {
+    const TemporaryFolder folder;
+    ZipWriter zip(folder.file("a.3mf"));
+    zip.add("3D/3dmodel.model", root, ZipMethod::deflated);
+    if (!other.empty())
+        zip.add("2D/other.model", other);
+    zip.finish();
+    return read_layers(folder.file("a.3mf"));
+}
+
+std::string error_of(const std::string& root, const std::string& other = "") {
+    try {
+        static_cast<void>(read(root, other));
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(ReadSlices3mf, StacksArePartsWhereTheBuildPutsThem) {
+    const LayerFile file =
+        read(model(stack(1, slice("0.5") + "<t:slice ztop=\"1\"/>") + object(2, 1),
+                   "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 10 20 3\"/>", "centimeter"));
+    ASSERT_EQ(file.parts.size(), 1U);
+    EXPECT_EQ(file.parts[0].label, "body");
+    const LayerStack& layers = file.parts[0].layers;
+    ASSERT_EQ(layers.size(), 2U);
+    EXPECT_DOUBLE_EQ(layers[0].bottom, 30);
+    EXPECT_DOUBLE_EQ(layers[0].top, 35);
+    EXPECT_DOUBLE_EQ(measure(layers[0]).area_mm2, 800);
+    EXPECT_EQ(layers[0].contour(0)[0], (Point2{110, 200}));
+    EXPECT_EQ(layers[1].contours(), 0U);
+}
+
+TEST(ReadSlices3mf, MirrorsKeepMaterialToTheLeft) {
+    const LayerFile file = read(model(stack(1, slice("1")) + object(2, 1),
+                                      "<item objectid=\"2\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>"));
+    EXPECT_DOUBLE_EQ(measure(file.parts[0].layers[0]).area_mm2, 8);
+    EXPECT_EQ(file.parts[0].layers[0].contour(0)[0], (Point2{-5, 0}));
+}
+
+TEST(ReadSlices3mf, StacksAreFoundInOtherPartsAndUnderComponents) {
+    const LayerFile file =
+        read(model(stack(1, "<t:sliceref slicestackid=\"7\" slicepath=\"/2D/other.model\"/>") + object(2, 1) +
+                       "<object id=\"3\"><components><component objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 1 "
+                       "0 0 0\"/>"
+                       "<component objectid=\"2\"/></components></object>",
+                   "<item objectid=\"3\"/>"),
+             model(stack(7, slice("1") + slice("2")), ""));
+    ASSERT_EQ(file.parts.size(), 2U);
+    EXPECT_DOUBLE_EQ(measure(file.parts[0].layers[1]).area_mm2, 32);
+    EXPECT_DOUBLE_EQ(measure(file.parts[1].layers[1]).area_mm2, 8);
+}
+
+TEST(ReadSlices3mf, PartsOfDifferentHeightsAreDividedAtAll) {
+    const LayerFile file = read(
+        model(stack(1, slice("2") + slice("4")) + object(2, 1) + stack(3, slice("3"), "1") + object(4, 3),
+              "<item objectid=\"2\"/><item objectid=\"4\"/>"));
+    ASSERT_EQ(file.parts.size(), 2U);
+    ASSERT_EQ(file.parts[0].layers.size(), 4U);
+    const double areas[2][4] = {{8, 8, 8, 8}, {0, 8, 8, 0}};
+    for (std::size_t part = 0; part < 2; ++part) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_DOUBLE_EQ(measure(file.parts[part].layers[i]).area_mm2, areas[part][i]);
+            EXPECT_DOUBLE_EQ(file.parts[part].layers[i].bottom, static_cast<double>(i));
+        }
+    }
+}
+
+TEST(ReadSlices3mf, OpenPolygonsStayOpen) {
+    const LayerFile file =
+        read(model(stack(1, "<t:slice ztop=\"1\"><t:vertices><t:vertex x=\"0\" y=\"0\"/><t:vertex x=\"1\" "
+                            "y=\"0\"/></t:vertices><t:polygon startv=\"0\"><t:segment v2=\"1\"/>"
+                            "</t:polygon></t:slice>") +
+                       object(2, 1),
+                   "<item objectid=\"2\"/>"));
+    EXPECT_EQ(file.parts[0].layers[0].open_chains(), 1U);
+    EXPECT_EQ(file.warnings.size(), 1U);
+}
+
+TEST(ReadSlices3mf, WhatBreaksTheRulesIsRefused) {
+    const auto expect = [](const std::string& error, const char* part) {
+        EXPECT_NE(error.find(part), std::string::npos) << error;
+    };
+    const std::string item = "<item objectid=\"2\"/>";
+    expect(error_of(model(stack(1, slice("1") + slice("1")) + object(2, 1), item)), "lie above");
+    expect(error_of(model(stack(1, slice("1", "9")) + object(2, 1), item)), "vertex 9");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 5), item)), "slice stack 5");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1), "<item objectid=\"9\"/>")), "object 9");
+    expect(error_of(model(stack(1, slice("nan")) + object(2, 1), item)), "ztop = 'nan'");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1),
+                          "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 2 0 0 0\"/>")),
+           "tilts");
+    expect(error_of(model(stack(1, slice("1")), "")), "no slice stack in the build");
+    expect(error_of(model(stack(1, "") + object(2, 1), item)), "without slices");
+    expect(error_of(model(stack(1, "<t:sliceref slicestackid=\"1\" slicepath=\"/no.model\"/>") + object(2, 1),
+                          item)),
+           "no part 'no.model'");
+    expect(error_of(model(stack(1, "<t:sliceref slicestackid=\"7\" slicepath=\"/2D/other.model\"/>") +
+                              object(2, 1),
+                          item),
+                    model(stack(7, "<t:sliceref slicestackid=\"7\" slicepath=\"/2D/other.model\"/>"), "")),
+           "within slices");
+    expect(error_of(
+               model("<object id=\"2\"><components><component objectid=\"2\"/></components></object>", item)),
+           "without end");
+}
+
+TEST(ReadSlices3mf, TheConsortiumsSamplesAreRead) {
+    const std::string folder = std::string(LAMELLA_SHARED) + "/formats/samples/3mf-slices/";
+    if (!std::filesystem::exists(folder))
+        GTEST_SKIP() << "no samples at " << folder;
+    const LayerFile box = read_layers(folder + "box_sliced.3mf");
+    ASSERT_EQ(box.parts.size(), 1U);
+    EXPECT_GT(box.parts[0].layers.size(), 100U);
+    EXPECT_NEAR(measure(box.parts[0].layers[50]).area_mm2, 20.207 * 10.104, 0.5);
+    EXPECT_NEAR(box.parts[0].layers[0].bottom, 14.967, 1e-9);
+    const LayerFile gears = read_layers(folder + "cube_gears_sliced.3mf");
+    EXPECT_EQ(gears.parts.size(), 17U);
+}
+
+} // namespace
+} // namespace lamella
