@@ -2,7 +2,7 @@
 
 #include "lamella/mesh/shapes.hpp"
 
-#include "read/mesh_text.hpp"
+#include "read/face_text.hpp"
 #include "temporary_folder.hpp"
 
 #include <fmt/format.h>

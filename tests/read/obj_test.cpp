@@ -1,4 +1,4 @@
-#include "read/mesh_text.hpp"
+#include "read/face_text.hpp"
 
 #include <fmt/format.h>
 
