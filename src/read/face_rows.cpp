@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace lamella {
@@ -57,17 +58,25 @@ std::size_t read_piece(std::string_view text, std::size_t begin, std::size_t end
 }
 
 std::uint64_t count_rows(std::string_view text, std::size_t begin, std::size_t end, char comment) {
+    const char* const last = text.data() + end;
+    // Where lines end with LF alone, memchr finds the ends several times faster than a look at each byte,
+    // which was a quarter of the time of reading.
+    const bool any_return = std::memchr(text.data() + begin, '\r', end - begin) != nullptr;
     std::uint64_t count = 0;
-    for_rows(text.data() + begin, text.data() + end, comment, [&](const char* at) {
+    for_rows(text.data() + begin, last, comment, [&](const char* at) {
         ++count;
-        return skip_to_line_end(at, text.data() + end);
+        if (any_return)
+            return skip_to_line_end(at, last);
+        const void* const line_end = std::memchr(at, '\n', static_cast<std::size_t>(last - at));
+        return line_end == nullptr ? last : static_cast<const char*>(line_end);
     });
     return count;
 }
 
 } // namespace
 
-void RowWords::to_word(std::string_view expected) {
+/// Skips blanks before the next word of the line.
+inline void RowWords::to_word(std::string_view expected) {
     at_ = skip_spaces(at_, end_);
     if (at_ == end_ || is_line_end(*at_))
         throw TextFault{offset(), std::string(expected)};
@@ -90,10 +99,12 @@ std::int64_t RowWords::integer() {
     if (negative || *at == '+')
         ++at;
     const char* const digits = at;
+    constexpr std::ptrdiff_t most_digits = 18;
     constexpr std::int64_t too_large = std::int64_t{1} << 40;
-    std::int64_t value = 0;
+    std::uint64_t whole = 0; // may wrap round, but not with so many digits
     for (; at != end_ && static_cast<unsigned char>(*at - '0') < 10; ++at)
-        value = std::min(value * 10 + (*at - '0'), too_large);
+        whole = whole * 10 + static_cast<unsigned char>(*at - '0');
+    const std::int64_t value = at - digits <= most_digits ? static_cast<std::int64_t>(whole) : too_large;
     if (at == digits || (at != end_ && !is_blank(*at)))
         throw TextFault{offset(), "a whole number"};
     at_ = at;

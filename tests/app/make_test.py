@@ -17,6 +17,19 @@ class Make(ProgramTest):
                 self.assertEqual(set(found["defects"].values()), {0})
                 self.assertGreater(found["volume_mm3"], 0)
 
+    def test_any_format_holds_the_same_solid(self):
+        self.succeed("make", "rook")
+        self.succeed("slice", "rook.stl", "-o", "stl.cli")
+        for name in ["rook.ply", "rook.obj"]:
+            with self.subTest(name):
+                self.succeed("make", "rook", "-o", name)
+                stl, other = self.info("rook.stl"), self.info(name)
+                self.assertEqual({key: value for key, value in other.items() if key not in ("path", "format")},
+                                 {key: value for key, value in stl.items() if key not in ("path", "format")})
+                self.succeed("slice", name, "-o", "other.cli")
+                self.assertEqual((self.folder / "other.cli").read_bytes(), (self.folder / "stl.cli").read_bytes())
+        self.fail_with(2, "--ascii: PLY files are written as binary", "make", "rook", "--ascii", "-o", "other.ply")
+
     def test_a_lattice_is_one_closed_surface(self):
         self.succeed("make", "lattice", "--cells", "2", "--detail", "2")
         found = self.info("lattice.stl")

@@ -44,9 +44,8 @@ struct Filled {
 ///
 /// Open chains stay as they are. Flat rings, which bound nothing, are dropped.
 ///
-/// A few nanoseconds a point for clean layers; O(n log n) to find what overlaps; what is united costs what
-/// the clipping library takes, O((m + k) s) for m points, k crossings and s edges side by side. Throws
-/// Error{limit} for a layer of more than 2^32 - 2 points.
+/// Expected O(n) to find that a layer is clean, O(n log n) to find what overlaps; to unite rings of m points
+/// with k crossings, O((m + k) log m). Throws Error{limit} for a layer of more than 2^32 - 2 points.
 [[nodiscard]] Filled fill(const Layer& layer, FillRule rule);
 
 } // namespace lamella
