@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -35,6 +36,14 @@ struct EdgeUse {
     [[nodiscard]] bool lowest_side() const noexcept { return (place & lowest_bit) != 0; }
     [[nodiscard]] std::uint32_t low_in_partition() const noexcept { return place & (lowest_bit - 1); }
 };
+
+/// The vertices of a side, the lower one first.
+[[nodiscard]] inline std::pair<std::uint32_t, std::uint32_t> ends_of(const IndexedMesh& mesh,
+                                                                     const EdgeUse& use) noexcept {
+    const auto& t = mesh.triangles[use.triangle];
+    const std::size_t at = t[0] == use.high ? 0 : t[1] == use.high ? 1 : 2;
+    return {t[(at + (use.upwards() ? 2 : 1)) % 3], use.high};
+}
 
 /// visit(uses, worker) once for each edge; `uses` in no particular order. Triangles with a repeated vertex
 /// have no edges.

@@ -2,10 +2,12 @@
 
 #include "lamella/core/point.hpp"
 
+#include "mesh/measures.hpp"
+
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace lamella {
 
@@ -99,24 +101,23 @@ class PointGrid {
 
 } // namespace
 
-std::vector<int> winding_numbers(Executor& executor, const IndexedMesh& mesh, std::span<const Point3> points,
-                                 const std::function<bool(std::size_t, std::size_t)>& counts) {
-    std::vector<int> out(points.size(), 0);
+void for_triangles_above(
+    Executor& executor, const IndexedMesh& mesh, std::span<const Point3> points,
+    const std::function<void(std::size_t point, std::size_t triangle, int winding, unsigned worker)>& visit) {
     if (points.empty())
-        return out;
+        return;
     const PointGrid grid(points);
-    executor.for_chunks(mesh.triangles.size(), 1024, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto& t = mesh.triangles[i];
-            const std::array corners{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-            grid.under(corners, [&](std::size_t p) {
-                const int winding = projected_winding(corners, points[p]);
-                if (winding != 0 && counts(p, i) && above(corners, points[p]))
-                    std::atomic_ref<int>(out[p]).fetch_add(winding, std::memory_order_relaxed);
-            });
-        }
-    });
-    return out;
+    executor.for_chunks(mesh.triangles.size(), 1024,
+                        [&](std::size_t begin, std::size_t end, unsigned worker) {
+                            for (std::size_t i = begin; i < end; ++i) {
+                                const Triangle3 t = corners(mesh, i);
+                                grid.under(t, [&](std::size_t p) {
+                                    const int winding = projected_winding(t, points[p]);
+                                    if (winding != 0 && above(t, points[p]))
+                                        visit(p, i, winding, worker);
+                                });
+                            }
+                        });
 }
 
 } // namespace lamella

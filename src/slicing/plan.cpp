@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "slicing/stacking.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,27 +15,6 @@
 namespace lamella {
 
 namespace {
-
-constexpr std::uint64_t max_layers = (std::uint64_t{1} << 31) - 2; // ranks are 31-bit numbers
-
-// What is left of a layer below this share of its height is rounding noise of the file, not material.
-constexpr double negligible = 1e-3;
-
-double fraction(SliceAt at) {
-    switch (at) {
-    case SliceAt::bottom:
-        return 0.0;
-    case SliceAt::middle:
-        return 0.5;
-    case SliceAt::top:
-        return 1.0;
-    }
-    return 0.5;
-}
-
-PlaneRule rule_for(SliceAt at) {
-    return at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
-}
 
 void require_height(double height, const char* what) {
     if (!(std::isfinite(height) && height > 0))

@@ -73,6 +73,37 @@ TEST(NonManifold, BoxesBackToBackStayTwoRings) {
         EXPECT_EQ(areas_of_rings(layer), (Areas{4, 4}));
 }
 
+TEST(NonManifold, AWallWithoutThicknessBoundsNothing) {
+    Triangles sheet;
+    test::add_quad(sheet, {0, 0, 0}, {5, 1, 0}, {5, 1, 3}, {0, 0, 3});
+    const Triangles both = test::joined({sheet, test::flipped(sheet)});
+    for (const SliceAt at : {SliceAt::bottom, SliceAt::top})
+        for (const Layer& layer : slice_at(both, {0, 1, 2, 3}, at))
+            EXPECT_EQ(layer.contours(), 0U);
+    // Beside a body it changes nothing.
+    const Triangles box = test::box_triangles({10, 0, 0}, {12, 2, 3});
+    const LayerStack alone = slice_at(box, {0, 1, 2});
+    const LayerStack beside = slice_at(test::joined({both, box}), {0, 1, 2});
+    for (std::size_t i = 0; i < alone.size(); ++i)
+        EXPECT_TRUE(same_contours(alone[i], beside[i]));
+}
+
+TEST(NonManifold, AFaceInsideABodyTakesThePlaceOfAWallAndLeavesTheRestOpen) {
+    // Two boxes back to back, the common wall of one of them missing.
+    Triangles triangles = test::boxes_back_to_back();
+    triangles.erase(triangles.begin() + 20, triangles.begin() + 22);
+    for (const Layer& layer : slice_at(triangles, {1, 2})) {
+        EXPECT_EQ(areas_of_rings(layer), Areas{4});
+        ASSERT_EQ(layer.open_chains(), 1U);
+        EXPECT_EQ(layer.contour(1).front(), (Point2{2, 0}));
+        EXPECT_EQ(layer.contour(1).back(), (Point2{2, 2}));
+        // The straight way back would run through the points of the wall.
+        const ClosedGaps closed = close_gaps(layer, 2);
+        EXPECT_EQ(closed.refused, 1U);
+        EXPECT_EQ(closed.layer.open_chains(), 1U);
+    }
+}
+
 TEST(NonManifold, BoxesStackedAreOneRingOnEveryPlane) {
     for (const SliceAt at : {SliceAt::bottom, SliceAt::top})
         for (const Layer& layer : sound_slices(test::boxes_stacked(), {1, 2, 3}, at))

@@ -3,7 +3,7 @@
 from program import ProgramTest, binary_stl, box_triangles, main, open_box
 
 MESH_KEYS = ["path", "format", "unit", "triangles", "vertices", "bbox", "volume_mm3", "area_mm2", "closed",
-             "shells", "cavities", "defects"]
+             "shells", "cavities", "defects", "boundary_length_mm", "places", "shell_list", "self_intersections"]
 
 
 class Info(ProgramTest):
@@ -45,6 +45,52 @@ class Info(ProgramTest):
         self.assertRegex(self.succeed("info", "hollow.stl").text, r"shells +2, 1 of them a cavity\n")
         self.assertEqual(self.info(self.box())["cavities"], 0)
         self.assertRegex(self.succeed("info", "box.stl").text, r"shells +1\n")
+
+    def test_places_of_defects(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        found = self.info("open.stl")
+        self.assertEqual(found["defects"]["boundary_loops"], 1)
+        [loop] = found["places"]["boundary_loops"]
+        self.assertEqual((loop["edges"], loop["closed"]), (4, True))
+        self.assertAlmostEqual(loop["length_mm"], 80, places=4)
+        self.assertAlmostEqual(found["boundary_length_mm"], 80, places=4)
+        [shell] = found["shell_list"]
+        self.assertEqual((shell["kind"], shell["inside"], shell["depth"]), ("open", None, 0))
+        self.assertRegex(self.succeed("info", "open.stl").text, r"a rim of 4 edges, 80 mm long")
+
+    def test_shells_tell_what_they_lie_in(self):
+        hollow = [tuple((x + 5, y + 5, z + 2) for x, y, z in t[::-1]) for t in box_triangles(3, 4, 5)]
+        self.write("hollow.stl", binary_stl(hollow + box_triangles(20, 30, 10)))
+        shells = self.info("hollow.stl")["shell_list"]
+        self.assertEqual([s["kind"] for s in shells], ["cavity", "body"])
+        self.assertEqual([s["inside"] for s in shells], [1, None])
+        self.assertAlmostEqual(shells[0]["volume_mm3"], -60, places=3)
+
+    def test_self_intersections(self):
+        self.assertIsNone(self.info(self.box())["self_intersections"])
+        found = self.info("--self-intersections", "box.stl")["self_intersections"]
+        self.assertEqual((found["crossing"], found["overlapping"], found["touching"]), (0, 0, 0))
+        moved = [tuple((x + 5, y + 5, z + 5) for x, y, z in t) for t in box_triangles(20, 10, 10)]
+        self.write("two.stl", binary_stl(box_triangles(20, 30, 10) + moved))
+        found = self.info("--self-intersections", "two.stl")["self_intersections"]
+        self.assertGreater(found["crossing"], 0)
+        self.assertEqual([pair["shells"] for pair in found["shells"]], [[0, 1]])
+        self.assertEqual(found["shells"][0]["crossing"], found["crossing"])
+        self.assertIn(found["first"][0]["kind"], ["crossing", "overlapping"])
+        text = self.succeed("info", "--self-intersections", "two.stl").text
+        self.assertRegex(text, r"\d+ crossings: .*pass through")
+        self.assertRegex(text, r"1 pair of shells")
+
+    def test_a_picture(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        self.succeed("info", "open.stl", "--picture", "open.svg")
+        svg = self.bytes_of("open.svg").decode()
+        self.assertTrue(svg.startswith("<svg ") and svg.endswith("</svg>\n"))
+        self.assertIn("1 boundary loops", svg)
+        self.fail_with(2, "open.stl", "info", "open.stl", "--picture", "open.stl")
+        self.fail_with(6, "nowhere", "info", "open.stl", "--picture", "nowhere/open.svg")
+        self.succeed("slice", self.box(), "-o", "box.cli", "--layer-height", "1")
+        self.fail_with(2, "for meshes", "info", "box.cli", "--picture", "box.svg")
 
     def test_strict_turns_a_defect_into_an_exit_code(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))

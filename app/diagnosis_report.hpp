@@ -1,0 +1,19 @@
+#pragma once
+
+// What `lamella info` tells of a mesh: size, shells, defects and where they are.
+
+#include "lamella/mesh/diagnose.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/read/mesh_file.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace lamella::app {
+
+[[nodiscard]] std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate& plate);
+[[nodiscard]] nlohmann::ordered_json mesh_json(const MeshFile& file, const Diagnosis& found,
+                                               const Plate& plate);
+
+} // namespace lamella::app

@@ -1,0 +1,284 @@
+#include "lamella/contour/close_gaps.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/orientation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+double distance(const Point2& a, const Point2& b) noexcept {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+/// From the last point of one chain to the first point of another.
+struct Candidate {
+    double length;
+    Point2 from;
+    Point2 to;
+    std::size_t chain; ///< that is continued
+    std::size_t next;
+
+    friend bool operator<(const Candidate& a, const Candidate& b) noexcept {
+        return std::tuple(a.length, a.from, a.to, a.chain, a.next) <
+               std::tuple(b.length, b.from, b.to, b.chain, b.next);
+    }
+};
+
+constexpr std::size_t most_candidates_of_an_end = 64;
+
+std::vector<Candidate> find_candidates(const Layer& layer, double within) {
+    struct Start {
+        Point2 point;
+        std::size_t chain;
+    };
+    std::vector<Start> starts;
+    for (std::size_t c = layer.rings; c < layer.contours(); ++c)
+        starts.push_back({layer.contour(c).front(), c});
+    std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) {
+        return std::tuple(a.point, a.chain) < std::tuple(b.point, b.chain);
+    });
+    std::vector<Candidate> all;
+    std::vector<Candidate> of_end;
+    for (std::size_t c = layer.rings; c < layer.contours(); ++c) {
+        const Point2& end = layer.contour(c).back();
+        of_end.clear();
+        auto start = std::lower_bound(starts.begin(), starts.end(), end.x - within,
+                                      [](const Start& s, double x) { return s.point.x < x; });
+        for (; start != starts.end() && start->point.x <= end.x + within; ++start)
+            if (std::abs(start->point.y - end.y) <= within)
+                if (const double length = distance(end, start->point); length <= within)
+                    of_end.push_back({length, end, start->point, c, start->chain});
+        const std::size_t kept = std::min(of_end.size(), most_candidates_of_an_end);
+        std::partial_sort(of_end.begin(), of_end.begin() + static_cast<std::ptrdiff_t>(kept), of_end.end());
+        all.insert(all.end(), of_end.begin(), of_end.begin() + static_cast<std::ptrdiff_t>(kept));
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+struct Piece {
+    Point2 a;
+    Point2 b;
+};
+
+/// p lies on the piece, and is none of its ends.
+bool lies_inside(const Point2& p, const Piece& piece) noexcept {
+    if (p == piece.a || p == piece.b || orientation(piece.a, piece.b, p) != 0)
+        return false;
+    return piece.a.x != piece.b.x ? (piece.a.x < p.x) == (p.x < piece.b.x) && p.x != piece.b.x
+                                  : (piece.a.y < p.y) == (p.y < piece.b.y) && p.y != piece.b.y;
+}
+
+/// The join crosses the piece, or runs through one of its ends.
+bool is_barred(const Piece& join, const Piece& by) noexcept {
+    if (std::max(join.a.x, join.b.x) < std::min(by.a.x, by.b.x) ||
+        std::max(by.a.x, by.b.x) < std::min(join.a.x, join.b.x) ||
+        std::max(join.a.y, join.b.y) < std::min(by.a.y, by.b.y) ||
+        std::max(by.a.y, by.b.y) < std::min(join.a.y, join.b.y))
+        return false;
+    if (lies_inside(by.a, join) || lies_inside(by.b, join))
+        return true;
+    return orientation(join.a, join.b, by.a) * orientation(join.a, join.b, by.b) < 0 &&
+           orientation(by.a, by.b, join.a) * orientation(by.a, by.b, join.b) < 0;
+}
+
+/// The segments of a layer by rows of y, which are at least as high as a join is long.
+class Rows {
+  public:
+    Rows(const Layer& layer, double within) {
+        double length = 0;
+        std::size_t count = 0;
+        double high = -Box3::infinity;
+        low_ = Box3::infinity;
+        for_each_segment(layer, [&](const Piece& piece) {
+            length += std::abs(piece.a.y - piece.b.y);
+            ++count;
+        });
+        for (const Point2& p : layer.points) {
+            low_ = std::min(low_, p.y);
+            high = std::max(high, p.y);
+        }
+        // Rows of the mean height of a segment hold it two or three times.
+        height_ = std::max(within, length / static_cast<double>(count));
+        const double rows = (high - low_) / height_;
+        if (!(rows < static_cast<double>(count) + 1)) // also where numbers overflow
+            height_ = Box3::infinity;
+        rows_.resize(row(high) + 1);
+        for_each_segment(layer, [&](const Piece& piece) { add(piece); });
+    }
+
+    void add(const Piece& piece) {
+        const auto [low, high] = std::minmax(piece.a.y, piece.b.y);
+        for (std::size_t r = row(low); r <= row(high); ++r)
+            rows_[r].push_back(piece);
+    }
+
+    [[nodiscard]] bool bar(const Piece& join) const {
+        const auto [low, high] = std::minmax(join.a.y, join.b.y);
+        for (std::size_t r = row(low); r <= row(high); ++r)
+            if (std::ranges::any_of(rows_[r], [&](const Piece& piece) { return is_barred(join, piece); }))
+                return true;
+        return false;
+    }
+
+  private:
+    template <class Visit>
+    static void for_each_segment(const Layer& layer, const Visit& visit) {
+        for (std::size_t c = 0; c < layer.contours(); ++c) {
+            const std::span<const Point2> points = layer.contour(c);
+            for (std::size_t i = 0; i + 1 < points.size(); ++i)
+                visit(Piece{points[i], points[i + 1]});
+            if (layer.closed(c))
+                visit(Piece{points.back(), points.front()});
+        }
+    }
+    [[nodiscard]] std::size_t row(double y) const noexcept {
+        return static_cast<std::size_t>((y - low_) / height_);
+    }
+
+    double low_ = 0;
+    double height_ = 1;
+    std::vector<std::vector<Piece>> rows_;
+};
+
+/// What has been joined so far: chains in a row, each known by its first one and by its last one.
+class Joined {
+  public:
+    explicit Joined(const Layer& layer)
+        : layer_(layer), next_(layer.contours(), none), first_(layer.contours()), last_(layer.contours()),
+          length_(layer.contours(), 0), continued_(layer.contours(), false) {
+        for (std::size_t c = layer.rings; c < layer.contours(); ++c) {
+            first_[c] = last_[c] = c;
+            const std::span<const Point2> points = layer.contour(c);
+            for (std::size_t i = 1; i < points.size(); ++i)
+                length_[c] += distance(points[i - 1], points[i]);
+        }
+    }
+
+    [[nodiscard]] bool free(const Candidate& join) const {
+        return next_[join.chain] == none && !continued_[join.next];
+    }
+    [[nodiscard]] bool makes_ring(const Candidate& join) const { return first_[join.chain] == join.next; }
+    /// Of the chains in a row that end with this one.
+    [[nodiscard]] double length(std::size_t chain) const { return length_[first_[chain]]; }
+
+    void join(const Candidate& join) {
+        next_[join.chain] = join.next;
+        continued_[join.next] = true;
+        if (makes_ring(join))
+            return;
+        const std::size_t first = first_[join.chain];
+        const std::size_t last = last_[join.next];
+        length_[first] += join.length + length_[join.next];
+        last_[first] = last;
+        first_[last] = first;
+    }
+
+    /// visit(points, closed) for what there is now.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        std::vector<bool> done(layer_.contours(), false);
+        std::vector<Point2> points;
+        const auto follow = [&](std::size_t from) {
+            points.clear();
+            std::size_t c = from;
+            do {
+                done[c] = true;
+                for (const Point2& p : layer_.contour(c))
+                    if (points.empty() || points.back() != p)
+                        points.push_back(p);
+                c = next_[c];
+            } while (c != none && c != from);
+            if (c == from && points.size() > 1 && points.front() == points.back())
+                points.pop_back();
+            visit(std::span<const Point2>(points), c == from);
+        };
+        for (std::size_t c = layer_.rings; c < layer_.contours(); ++c)
+            if (!continued_[c])
+                follow(c);
+        for (std::size_t c = layer_.rings; c < layer_.contours(); ++c)
+            if (!done[c])
+                follow(c);
+    }
+
+    /// Points that a ring of the chains in a row ending with this one would have.
+    [[nodiscard]] std::size_t ring_points(const Candidate& join) const {
+        std::size_t points = 0;
+        Point2 before = join.from;
+        for (std::size_t c = join.next; c != none && points < 3; c = next_[c])
+            for (const Point2& p : layer_.contour(c)) {
+                points += p != before ? 1 : 0;
+                before = p;
+            }
+        return points;
+    }
+
+  private:
+    static constexpr std::size_t none = ~std::size_t{0};
+
+    const Layer& layer_;
+    std::vector<std::size_t> next_;
+    std::vector<std::size_t> first_; ///< right for the last one in a row
+    std::vector<std::size_t> last_;  ///< right for the first one in a row
+    std::vector<double> length_;     ///< right for the first one in a row
+    std::vector<bool> continued_;    ///< another one runs into it
+};
+
+} // namespace
+
+ClosedGaps close_gaps(const Layer& layer, double within_mm) {
+    if (!(std::isfinite(within_mm) && within_mm > 0))
+        throw Error(ErrorKind::usage,
+                    fmt::format("gaps up to {} mm cannot be closed; it must be a number above 0", within_mm));
+    ClosedGaps result;
+    const std::vector<Candidate> candidates = find_candidates(layer, within_mm);
+    if (candidates.empty()) {
+        result.layer = layer;
+        return result;
+    }
+    Rows rows(layer, within_mm);
+    Joined joined(layer);
+    for (const Candidate& join : candidates) {
+        if (!joined.free(join))
+            continue;
+        const bool thin_ring = joined.makes_ring(join) &&
+                               (2 * join.length > joined.length(join.chain) || joined.ring_points(join) < 3);
+        if (thin_ring || rows.bar({join.from, join.to})) {
+            ++result.refused;
+            continue;
+        }
+        joined.join(join);
+        rows.add({join.from, join.to});
+        result.joins.push_back({join.from, join.to, join.length});
+        result.longest_mm = std::max(result.longest_mm, join.length);
+        result.total_mm += join.length;
+    }
+    if (result.joins.empty()) {
+        result.layer = layer;
+        return result;
+    }
+    LayerBuilder builder;
+    const auto add = [&](std::span<const Point2> points, bool closed) {
+        for (const Point2& p : points)
+            builder.add_point(p);
+        builder.end_contour(closed);
+    };
+    for (std::size_t c = 0; c < layer.rings; ++c)
+        add(layer.contour(c), true);
+    joined.for_each(add);
+    result.layer = builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+    result.layer.hatches = layer.hatches;
+    return result;
+}
+
+} // namespace lamella

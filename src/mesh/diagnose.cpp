@@ -1,0 +1,235 @@
+#include "lamella/mesh/diagnose.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "mesh/edge_uses.hpp"
+#include "mesh/folds.hpp"
+#include "mesh/measures.hpp"
+#include "mesh/survey.hpp"
+#include "mesh/union_find.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+/// Joins directed edges, ascending, end to end into loops that pass no vertex twice, and into chains where
+/// they do not return. visit(vertices, closed).
+template <class Visit>
+void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
+    // Edges of one vertex are neighbours; next[i]: the first of them that is not used yet, kept at the first.
+    const auto first_of = [&](std::uint32_t vertex) {
+        return static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), VertexPair{vertex, 0}) -
+                                        edges.begin());
+    };
+    std::vector<std::uint32_t> used(edges.size(), 0); // of a vertex's edges, kept at the first of them
+    std::vector<std::uint32_t> arrivals;
+    for (const VertexPair& edge : edges)
+        arrivals.push_back(edge.second);
+    std::sort(arrivals.begin(), arrivals.end());
+    std::vector<std::uint32_t> path;
+    // Where a vertex stands in the path, at the first of its edges; a vertex without edges ends the path.
+    constexpr std::uint32_t nowhere = 0xffffffff;
+    std::vector<std::uint32_t> place(edges.size(), nowhere);
+    const auto walk_from = [&](std::uint32_t start) {
+        path.clear();
+        for (std::uint32_t vertex = start;;) {
+            const std::size_t first = first_of(vertex);
+            const bool leaves = first < edges.size() && edges[first].first == vertex;
+            if (leaves && place[first] != nowhere) {
+                const std::uint32_t from = place[first];
+                visit(std::span<const std::uint32_t>(path).subspan(from), true);
+                for (std::size_t i = from; i < path.size(); ++i)
+                    place[first_of(path[i])] = nowhere;
+                path.resize(from);
+            }
+            const std::size_t next = first + (leaves ? used[first] : 0);
+            path.push_back(vertex);
+            if (!leaves || next >= edges.size() || edges[next].first != vertex)
+                break;
+            place[first] = static_cast<std::uint32_t>(path.size() - 1);
+            ++used[first];
+            vertex = edges[next].second;
+        }
+        for (const std::uint32_t vertex : path)
+            if (const std::size_t first = first_of(vertex);
+                first < edges.size() && edges[first].first == vertex)
+                place[first] = nowhere;
+        if (path.size() > 1)
+            visit(std::span<const std::uint32_t>(path), false);
+    };
+    // Chains first: from vertices that more edges leave than arrive at.
+    for (std::size_t begin = 0; begin < edges.size();) {
+        const std::uint32_t vertex = edges[begin].first;
+        std::size_t end = begin;
+        while (end < edges.size() && edges[end].first == vertex)
+            ++end;
+        const auto [from, to] = std::equal_range(arrivals.begin(), arrivals.end(), vertex);
+        for (auto more = static_cast<std::ptrdiff_t>(end - begin) - (to - from); more > 0; --more)
+            walk_from(vertex);
+        begin = end;
+    }
+    for (std::size_t begin = 0; begin < edges.size();) {
+        const std::uint32_t vertex = edges[begin].first;
+        std::size_t end = begin;
+        while (end < edges.size() && edges[end].first == vertex)
+            ++end;
+        while (begin + used[begin] < end)
+            walk_from(vertex);
+        begin = end;
+    }
+}
+
+void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, std::size_t keep,
+                Diagnosis& found) {
+    for_each_loop(edges, [&](std::span<const std::uint32_t> vertices, bool closed) {
+        BoundaryLoop loop;
+        loop.closed = closed;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const Point3& p = mesh.vertices[vertices[i]];
+            if (i > 0)
+                loop.length_mm += distance(loop.points.back(), p);
+            loop.points.push_back(p);
+            loop.box.add(p);
+        }
+        if (closed)
+            loop.length_mm += distance(loop.points.back(), loop.points.front());
+        ++found.boundary_loops;
+        found.boundary_length_mm += loop.length_mm;
+        found.loops.push_back(std::move(loop));
+    });
+    std::stable_sort(found.loops.begin(), found.loops.end(),
+                     [](const BoundaryLoop& a, const BoundaryLoop& b) {
+                         return std::tuple(-a.length_mm, a.box.min) < std::tuple(-b.length_mm, b.box.min);
+                     });
+    if (found.loops.size() > keep)
+        found.loops.resize(keep);
+}
+
+/// Joins the corners of triangles at the same vertex over their common edges; vertices with more than one
+/// group of corners are where parts of the surface touch.
+void find_nonmanifold_vertices(Executor& executor, const IndexedMesh& mesh, std::size_t keep,
+                               Diagnosis& found) {
+    const std::size_t n = mesh.triangles.size();
+    if (n > 0xffffffff / 3)
+        throw Error(ErrorKind::limit, fmt::format("cannot diagnose {} triangles: at most {} can be indexed",
+                                                  n, 0xffffffffU / 3));
+    const UnionFind groups(3 * n);
+    const auto corner_at = [&](std::uint32_t triangle, std::uint32_t vertex) {
+        const auto& t = mesh.triangles[triangle];
+        return 3 * triangle + (t[0] == vertex ? 0U : t[1] == vertex ? 1U : 2U);
+    };
+    for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned) {
+        const auto [low, high] = ends_of(mesh, uses[0]);
+        for (const EdgeUse& use : uses.subspan(1))
+            for (const std::uint32_t vertex : {low, high})
+                groups.join(corner_at(uses[0].triangle, vertex), corner_at(use.triangle, vertex));
+    });
+    std::vector<std::uint8_t> seen(mesh.vertices.size(), 0); // 1: one group, 2: more
+    for (std::size_t i = 0; i < n; ++i) {
+        if (degenerate(mesh.triangles[i]))
+            continue;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const auto corner = static_cast<std::uint32_t>(3 * i + k);
+            if (groups.find(corner) != corner)
+                continue;
+            std::uint8_t& groups_seen = seen[mesh.triangles[i][k]];
+            if (++groups_seen > 2)
+                groups_seen = 2;
+        }
+    }
+    for (std::size_t v = 0; v < seen.size(); ++v)
+        if (seen[v] > 1) {
+            if (found.vertices.size() < keep)
+                found.vertices.push_back(mesh.vertices[v]);
+            ++found.nonmanifold_vertices;
+        }
+}
+
+std::vector<Shell> tell_shells(const Survey& all, const IndexedMesh& mesh) {
+    std::vector<Shell> shells(all.shells.size());
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+        Shell& shell = shells[s];
+        shell.first_triangle = all.shells.first[s];
+        shell.box = all.boxes[s];
+        shell.volume_mm3 = all.volumes[s];
+        shell.kind = !all.shells.closed[s] ? ShellKind::open
+                     : all.volumes[s] >= 0 ? ShellKind::body
+                     : all.cavity[s]       ? ShellKind::cavity
+                                           : ShellKind::inverted;
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        if (const std::uint32_t s = all.shells.of_triangle[i]; s != no_shell)
+            ++shells[s].triangles;
+    for (const Enclosure& enclosure : all.enclosures) {
+        Shell& shell = shells[enclosure.shell];
+        ++shell.depth;
+        const auto volume = [&](std::uint32_t s) {
+            return std::abs(all.volumes[s]);
+        };
+        if (!shell.inside || volume(enclosure.encloser) < volume(*shell.inside))
+            shell.inside = enclosure.encloser;
+    }
+    return shells;
+}
+
+} // namespace
+
+std::string_view shell_kind_name(ShellKind kind) noexcept {
+    switch (kind) {
+    case ShellKind::body:
+        return "body";
+    case ShellKind::cavity:
+        return "cavity";
+    case ShellKind::inverted:
+        return "inverted";
+    case ShellKind::open:
+        return "open";
+    }
+    return "";
+}
+
+Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, const Execution& execution) {
+    Executor executor(execution);
+    Diagnosis found;
+    const Survey all = survey(executor, mesh, true);
+    found.counts = all.found;
+    found.counts.box = bounding_box(mesh, execution);
+    found.opposite_pairs = all.opposite_pairs;
+
+    find_loops(mesh, all.places.boundary, options.keep, found);
+    const auto tell_edges = [&](const std::vector<VertexPair>& edges, std::vector<EdgePlace>& told) {
+        for (std::size_t i = 0; i < std::min(edges.size(), options.keep); ++i)
+            told.push_back({mesh.vertices[edges[i].first], mesh.vertices[edges[i].second]});
+    };
+    tell_edges(all.places.nonmanifold, found.nonmanifold_edges);
+    tell_edges(all.places.conflicts, found.conflicting_edges);
+    found.duplicate_triangles = all.places.duplicates;
+    if (found.duplicate_triangles.size() > options.keep)
+        found.duplicate_triangles.resize(options.keep);
+    for (std::uint32_t i = 0; i < mesh.triangles.size() && found.degenerate_triangles.size() < options.keep &&
+                              found.degenerate_triangles.size() < found.counts.degenerate_triangles;
+         ++i)
+        if (degenerate(mesh.triangles[i]))
+            found.degenerate_triangles.push_back(i);
+    find_nonmanifold_vertices(executor, mesh, options.keep, found);
+
+    found.shells = tell_shells(all, mesh);
+    if (found.shells.size() > options.keep)
+        found.shells.resize(options.keep);
+    if (options.self_intersections)
+        found.self_intersections = find_self_intersections(
+            mesh, {.keep = options.keep, .parts = all.shells.of_triangle.span()}, execution);
+    return found;
+}
+
+} // namespace lamella

@@ -1,0 +1,132 @@
+#include "mesh/edge_survey.hpp"
+
+#include "mesh/edge_uses.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <span>
+
+namespace lamella {
+
+namespace {
+
+/// A triangle by its highest vertex, among those whose two lowest vertices one edge joins.
+struct OverLowest {
+    std::uint32_t highest;
+    std::uint32_t triangle;
+    bool upwards;
+
+    friend auto operator<=>(const OverLowest&, const OverLowest&) noexcept = default;
+};
+
+struct Worker {
+    EdgeCounts counts;
+    EdgePlaces places;
+    std::vector<OverLowest> triangles;
+};
+
+/// visit(group) for the triangles with the same three vertices among those whose two lowest vertices these
+/// sides join: two or more of them, in ascending order. `work`: memory to work in.
+template <class Visit>
+void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses, std::vector<OverLowest>& work,
+                   const Visit& visit) {
+    work.clear();
+    for (const EdgeUse& use : uses)
+        if (use.lowest_side()) {
+            const auto& t = mesh.triangles[use.triangle];
+            work.push_back({std::max({t[0], t[1], t[2]}), use.triangle, use.upwards()});
+        }
+    if (work.size() < 2)
+        return;
+    std::sort(work.begin(), work.end());
+    for (std::size_t begin = 0; begin < work.size();) {
+        std::size_t end = begin + 1;
+        while (end < work.size() && work[end].highest == work[begin].highest)
+            ++end;
+        if (end - begin > 1)
+            visit(std::span<const OverLowest>(work).subspan(begin, end - begin));
+        begin = end;
+    }
+}
+
+template <class Value>
+void append_sorted(std::vector<Value>& all, const std::vector<Value>& part) {
+    all.insert(all.end(), part.begin(), part.end());
+}
+
+} // namespace
+
+EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places) {
+    const std::size_t n = mesh.triangles.size();
+    EdgeSurvey survey{{}, UnionFind(n), PageArray<std::uint8_t>(n, Fill::zero), {}};
+    std::vector<Worker> workers(executor.workers());
+    for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned w) {
+        Worker& worker = workers[w];
+        std::size_t up = 0;
+        for (const EdgeUse& use : uses) {
+            up += use.upwards() ? 1 : 0;
+            survey.parts.join(uses[0].triangle, use.triangle);
+        }
+        const bool balanced = 2 * up == uses.size();
+        const bool boundary = uses.size() == 1;
+        const bool nonmanifold = uses.size() > 2;
+        const bool conflict = !boundary && !balanced;
+        if (!balanced)
+            std::atomic_ref<std::uint8_t>(survey.open[uses[0].triangle]).store(1, std::memory_order_relaxed);
+        worker.counts.boundary += boundary ? 1 : 0;
+        worker.counts.nonmanifold += nonmanifold ? 1 : 0;
+        worker.counts.conflicts += conflict ? 1 : 0;
+        for_each_same(mesh, uses, worker.triangles, [&](std::span<const OverLowest> group) {
+            const auto same_way = static_cast<std::uint64_t>(
+                std::ranges::count_if(group, [](const OverLowest& t) { return t.upwards; }));
+            worker.counts.duplicate_triangles += group.size() - 1;
+            worker.counts.opposite_pairs += std::min(same_way, group.size() - same_way);
+            if (with_places)
+                for (const OverLowest& t : group.subspan(1))
+                    worker.places.duplicates.push_back(t.triangle);
+        });
+        if (!with_places || !(boundary || nonmanifold || conflict))
+            return;
+        const VertexPair edge = ends_of(mesh, uses[0]);
+        if (boundary)
+            worker.places.boundary.push_back(up == 1 ? VertexPair{edge.second, edge.first} : edge);
+        if (nonmanifold)
+            worker.places.nonmanifold.push_back(edge);
+        if (conflict)
+            worker.places.conflicts.push_back(edge);
+    });
+    EdgePlaces& places = survey.places;
+    for (const Worker& worker : workers) {
+        survey.counts.boundary += worker.counts.boundary;
+        survey.counts.nonmanifold += worker.counts.nonmanifold;
+        survey.counts.conflicts += worker.counts.conflicts;
+        survey.counts.duplicate_triangles += worker.counts.duplicate_triangles;
+        survey.counts.opposite_pairs += worker.counts.opposite_pairs;
+        append_sorted(places.boundary, worker.places.boundary);
+        append_sorted(places.nonmanifold, worker.places.nonmanifold);
+        append_sorted(places.conflicts, worker.places.conflicts);
+        append_sorted(places.duplicates, worker.places.duplicates);
+    }
+    std::sort(places.boundary.begin(), places.boundary.end());
+    std::sort(places.nonmanifold.begin(), places.nonmanifold.end());
+    std::sort(places.conflicts.begin(), places.conflicts.end());
+    std::sort(places.duplicates.begin(), places.duplicates.end());
+    return survey;
+}
+
+std::vector<std::vector<SameVertices>> find_same_vertices(Executor& executor, const IndexedMesh& mesh) {
+    std::vector<std::vector<SameVertices>> found(executor.workers());
+    std::vector<std::vector<OverLowest>> work(executor.workers());
+    for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
+        for_each_same(mesh, uses, work[worker], [&](std::span<const OverLowest> group) {
+            SameVertices same;
+            for (const OverLowest& t : group)
+                same.triangles.push_back({t.triangle, t.upwards});
+            found[worker].push_back(std::move(same));
+        });
+    });
+    return found;
+}
+
+} // namespace lamella

@@ -1,0 +1,34 @@
+#pragma once
+
+// A triangle of a mesh, and its size.
+
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace lamella {
+
+[[nodiscard]] inline Triangle3 corners(const IndexedMesh& mesh, std::size_t i) noexcept {
+    const auto& t = mesh.triangles[i];
+    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+[[nodiscard]] inline double area(const Triangle3& t) noexcept {
+    const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
+    const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
+    const double x = u.y * v.z - u.z * v.y;
+    const double y = u.z * v.x - u.x * v.z;
+    const double z = u.x * v.y - u.y * v.x;
+    return std::sqrt(x * x + y * y + z * z) / 2;
+}
+
+[[nodiscard]] inline Point3 middle(const Triangle3& t) noexcept {
+    return {(t[0].x + t[1].x + t[2].x) / 3, (t[0].y + t[1].y + t[2].y) / 3, (t[0].z + t[1].z + t[2].z) / 3};
+}
+
+[[nodiscard]] inline double distance(const Point3& a, const Point3& b) noexcept {
+    return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+} // namespace lamella

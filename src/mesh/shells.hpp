@@ -1,0 +1,53 @@
+#pragma once
+
+// The parts of a mesh that are connected over edges: their volumes, and which lies in which.
+
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "mesh/edge_survey.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+constexpr std::uint32_t no_shell = 0xffffffff;
+
+/// The n-th shell is the one whose first triangle comes n-th in the mesh.
+struct Shells {
+    PageArray<std::uint32_t> of_triangle; ///< no_shell for a degenerate triangle
+    std::vector<std::uint32_t> first;     ///< triangle of each shell
+    std::vector<bool> closed;             ///< every edge is used as often one way as the other
+
+    [[nodiscard]] std::size_t size() const noexcept { return first.size(); }
+};
+
+[[nodiscard]] Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey& survey);
+
+/// The signed volume of every shell, measured from its own first corner: a small shell far away keeps its
+/// sign.
+[[nodiscard]] std::vector<double> shell_volumes(Executor& executor, const IndexedMesh& mesh,
+                                                const Shells& shells);
+
+[[nodiscard]] std::vector<Box3> shell_boxes(const IndexedMesh& mesh, const Shells& shells);
+
+/// Around a place on the surface of one shell, another winds so many times.
+struct Enclosure {
+    std::uint32_t shell;
+    std::uint32_t encloser;
+    int winding; ///< not 0
+
+    friend auto operator<=>(const Enclosure&, const Enclosure&) = default;
+};
+
+/// Which shells lie around which, ascending; of the shells that asked(shell) says. A shell is judged by the
+/// middle of its largest triangle: well away from edges where shells touch.
+[[nodiscard]] std::vector<Enclosure> find_enclosures(Executor& executor, const IndexedMesh& mesh,
+                                                     const Shells& shells, const std::vector<Box3>& boxes,
+                                                     const std::vector<bool>& asked);
+
+} // namespace lamella

@@ -1,0 +1,31 @@
+#pragma once
+
+// All that `inspect` counts and `diagnose` tells of.
+
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/inspect.hpp"
+
+#include "core/executor.hpp"
+#include "mesh/edge_survey.hpp"
+#include "mesh/shells.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace lamella {
+
+struct Survey {
+    Inspection found = {}; ///< without the box
+    std::uint64_t opposite_pairs = 0;
+    EdgePlaces places = {};
+    Shells shells;
+    std::vector<double> volumes = {}; ///< of the shells
+    std::vector<Box3> boxes = {};
+    std::vector<bool> cavity = {};
+    /// With places of all shells, without of those that may be cavities.
+    std::vector<Enclosure> enclosures = {};
+};
+
+[[nodiscard]] Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places);
+
+} // namespace lamella

@@ -1,0 +1,240 @@
+#include "lamella/slicing/varying_plan.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "slicing/stacking.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace lamella {
+
+namespace {
+
+void require_height(double height, const char* what) {
+    if (!(std::isfinite(height) && height > 0))
+        throw Error(ErrorKind::usage, fmt::format("{} is {} mm; it must be a number above 0", what, height));
+}
+
+/// Layers on one another: height_at(bottom) -> height, from z_min on as long as cuts meet the part.
+template <class HeightAt>
+Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at, const HeightAt& height_at) {
+    if (!(std::isfinite(z_min) && std::isfinite(z_max) && z_min < z_max))
+        throw Error(ErrorKind::usage,
+                    fmt::format("the mesh has no height (z from {} to {}), so there is nothing to slice; "
+                                "another slicing direction may have some",
+                                z_min, z_max));
+    if ((z_max - z_min) / lowest_height > static_cast<double>(max_layers))
+        throw Error(ErrorKind::usage,
+                    fmt::format("layers of {} mm are too many for a part that is {} mm high; at most {} are "
+                                "possible",
+                                lowest_height, z_max - z_min, max_layers));
+    Plan plan;
+    plan.rule = rule_for(slice_at);
+    const bool at_top = slice_at == SliceAt::top;
+    for (double bottom = z_min;;) {
+        const double height = height_at(bottom);
+        const double top = bottom + height;
+        double z = bottom + fraction(slice_at) * height;
+        const bool meets_part = at_top ? z <= z_max + negligible * height : z < z_max - negligible * height;
+        if (!meets_part)
+            break;
+        if (!(bottom < top) || (!plan.layers.empty() && !(plan.layers.back().z < z)))
+            throw Error(ErrorKind::usage,
+                        fmt::format("a layer height of {} mm is too small for coordinates around {} mm: "
+                                    "neighbouring cuts fall on the same number",
+                                    height, z));
+        // A remainder that counts as nothing must not lift the last cut off the top face.
+        if (at_top && z > z_max - negligible * height)
+            z = z_max;
+        plan.layers.push_back({plan.layers.size(), z, bottom, std::max(top, z)});
+        bottom = top;
+    }
+    if (plan.layers.empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("no layer: the first cut misses the part (z from {} to {} mm); choose layers "
+                                "below {} mm",
+                                z_min, z_max, z_max - z_min));
+    return plan;
+}
+
+/// The steepness |n.z| of the triangles at each height: the largest, in steps.
+class Slopes {
+  public:
+    Slopes(double z_min, double z_max, double wanted_step)
+        : z_min_(z_min), step_(std::max(wanted_step, (z_max - z_min) / (1 << 20))),
+          steps_(static_cast<std::size_t>((z_max - z_min) / step_) + 1) {
+        for (std::size_t span = 1; span <= steps_; span *= 2)
+            levels_.emplace_back(steps_, 0);
+    }
+
+    /// From any thread. The triangle's heights and |n.z|.
+    void add(double low, double high, float steepness) noexcept {
+        const std::size_t first = step_at(low);
+        const std::size_t last = step_at(high);
+        // Two stretches of 2^k steps that cover all; spread() hands them down.
+        const auto k = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
+        raise(levels_[k][first], steepness);
+        raise(levels_[k][last + 1 - (std::size_t{1} << k)], steepness);
+    }
+
+    void spread() noexcept {
+        for (std::size_t k = levels_.size() - 1; k > 0; --k)
+            for (std::size_t i = 0; i + (std::size_t{1} << k) <= steps_; ++i) {
+                const float value = levels_[k][i];
+                float& near = levels_[k - 1][i];
+                float& far = levels_[k - 1][i + (std::size_t{1} << (k - 1))];
+                near = std::max(near, value);
+                far = std::max(far, value);
+            }
+        levels_.resize(1);
+    }
+
+    [[nodiscard]] std::size_t steps() const noexcept { return steps_; }
+    [[nodiscard]] std::size_t step_at(double z) const noexcept {
+        return std::min(steps_ - 1, static_cast<std::size_t>(std::max(0.0, (z - z_min_) / step_)));
+    }
+    [[nodiscard]] double start(std::size_t step) const noexcept {
+        return z_min_ + static_cast<double>(step) * step_;
+    }
+    [[nodiscard]] double steepness(std::size_t step) const noexcept { return levels_[0][step]; }
+
+  private:
+    static void raise(float& value, float to) noexcept {
+        const std::atomic_ref<float> shared(value);
+        for (float now = shared.load(std::memory_order_relaxed);
+             now < to && !shared.compare_exchange_weak(now, to, std::memory_order_relaxed);) {
+        }
+    }
+
+    double z_min_;
+    double step_;
+    std::size_t steps_;
+    std::vector<std::vector<float>> levels_; ///< [k][i]: of the 2^k steps from i on
+};
+
+Triangle3 triangle(const MeshRef& mesh, std::size_t i) {
+    if (mesh.soup() != nullptr)
+        return mesh.soup()->placed(i);
+    const auto& t = mesh.mesh()->triangles[i];
+    const std::vector<Point3>& vertices = mesh.mesh()->vertices;
+    return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+}
+
+/// |n.z|, rounded up; 0 for a triangle without area, which bounds nothing.
+float steepness(const Triangle3& t) noexcept {
+    const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
+    const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
+    const double x = u.y * v.z - u.z * v.y;
+    const double y = u.z * v.x - u.x * v.z;
+    const double z = u.x * v.y - u.y * v.x;
+    const double length = std::hypot(x, y, z);
+    if (!(length > 0))
+        return 0;
+    return std::nextafter(static_cast<float>(std::min(1.0, std::abs(z) / length)), 2.0F);
+}
+
+} // namespace
+
+Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& ranges, double layer_height,
+                    SliceAt slice_at) {
+    require_height(layer_height, "the layer height");
+    double lowest = layer_height;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        const HeightRange& range = ranges[i];
+        require_height(range.layer_height, "a layer height of the ranges");
+        lowest = std::min(lowest, range.layer_height);
+        if (!(std::isfinite(range.from) && std::isfinite(range.to) && 0 <= range.from &&
+              range.from < range.to))
+            throw Error(ErrorKind::usage,
+                        fmt::format("the range {}:{} is empty or begins below the part: it must go from a "
+                                    "height above its bottom, 0 or more, to a larger one",
+                                    range.from, range.to));
+        if (i > 0 && range.from < ranges[i - 1].to)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("the range {}:{} begins before the one before it ends, at {}; ranges must "
+                            "ascend and not overlap",
+                            range.from, range.to, ranges[i - 1].to));
+    }
+    // Heights are base + i h within a stretch of equal heights, never a running sum.
+    double base = z_min;
+    double base_height = 0;
+    std::uint64_t above_base = 0;
+    double expected = z_min;
+    const auto height_at = [&](double bottom) {
+        double height = layer_height;
+        for (const HeightRange& range : ranges) {
+            const double slack = negligible * range.layer_height;
+            if (range.from - slack <= bottom - z_min && bottom - z_min < range.to - slack)
+                height = range.layer_height;
+        }
+        if (height != base_height || bottom != expected) {
+            base = bottom;
+            base_height = height;
+            above_base = 0;
+        }
+        ++above_base;
+        const double top = base + static_cast<double>(above_base) * height;
+        expected = bottom + (top - bottom);
+        return top - bottom;
+    };
+    return stacked(z_min, z_max, lowest, slice_at, height_at);
+}
+
+Plan plan_adaptive(const MeshRef& mesh, const AdaptiveLayers& layers, const Execution& execution) {
+    require_height(layers.min_height, "the lowest layer height");
+    require_height(layers.max_height, "the largest layer height");
+    require_height(layers.cusp_mm, "the cusp height");
+    if (layers.max_height < layers.min_height)
+        throw Error(ErrorKind::usage, fmt::format("layers from {} to {} mm: the largest height is below the "
+                                                  "lowest",
+                                                  layers.min_height, layers.max_height));
+    const Box3 box = mesh.soup() != nullptr ? bounding_box(*mesh.soup(), execution)
+                                            : bounding_box(*mesh.mesh(), execution);
+    const double z_min = box.min.z;
+    const double z_max = box.max.z;
+    if (!(std::isfinite(z_max - z_min) && z_min < z_max))
+        throw Error(ErrorKind::usage, "the mesh has no height, so there is nothing to slice; another slicing "
+                                      "direction may have some");
+    Slopes slopes(z_min, z_max, layers.min_height / 4);
+    Executor executor(execution);
+    constexpr std::size_t chunk = std::size_t{1} << 14;
+    executor.for_chunks(mesh.triangles(), chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Triangle3 t = triangle(mesh, i);
+            const auto [low, high] = std::minmax({t[0].z, t[1].z, t[2].z});
+            if (const float steep = steepness(t); steep > 0)
+                slopes.add(low, high, steep);
+        }
+    });
+    slopes.spread();
+
+    const auto height_at = [&](double bottom) {
+        double worst = 0;
+        double height = layers.max_height;
+        for (std::size_t step = slopes.step_at(bottom); step < slopes.steps(); ++step) {
+            const double below = slopes.start(step) - bottom; // what is free of this step's slopes
+            if (below >= height)
+                break;
+            worst = std::max(worst, slopes.steepness(step));
+            if (worst * height > layers.cusp_mm)
+                height = std::max(layers.cusp_mm / worst, below);
+            if (height <= layers.min_height)
+                break;
+        }
+        height = std::max(height, layers.min_height);
+        const double rest = z_max - bottom;
+        return rest >= layers.min_height ? std::min(height, rest) : height;
+    };
+    return stacked(z_min, z_max, layers.min_height, layers.slice_at, height_at);
+}
+
+} // namespace lamella

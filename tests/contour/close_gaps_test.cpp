@@ -1,0 +1,203 @@
+#include "lamella/contour/close_gaps.hpp"
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+
+#include "fixtures/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+using test::Random;
+using Points = std::vector<Point2>;
+
+Layer layer_of(const std::vector<Points>& rings, const std::vector<Points>& chains) {
+    LayerBuilder builder;
+    for (const std::vector<Points>* some : {&rings, &chains})
+        for (const Points& contour : *some) {
+            for (const Point2& p : contour)
+                builder.add_point(p);
+            builder.end_contour(some == &rings);
+        }
+    return builder.finish(7, 1.5, 1, 2);
+}
+
+const Points square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+
+TEST(CloseGaps, PassesThroughWhatHasNoChains) {
+    const Layer layer = layer_of({square}, {});
+    const ClosedGaps closed = close_gaps(layer, 1);
+    EXPECT_EQ(closed.layer.points.data(), layer.points.data());
+    EXPECT_TRUE(closed.joins.empty());
+    EXPECT_EQ(close_gaps(layer_of({}, {}), 1).layer.contours(), 0U);
+}
+
+TEST(CloseGaps, ClosesAChainWhoseEndsMeet) {
+    const Layer layer = layer_of({}, {{{0, 0.25}, {0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0.75}}});
+    const ClosedGaps closed = close_gaps(layer, 0.5);
+    ASSERT_EQ(closed.joins.size(), 1U);
+    EXPECT_EQ(closed.joins[0].from, (Point2{0, 0.75}));
+    EXPECT_EQ(closed.joins[0].to, (Point2{0, 0.25}));
+    EXPECT_EQ(closed.joins[0].length_mm, 0.5);
+    EXPECT_EQ(closed.longest_mm, 0.5);
+    EXPECT_EQ(closed.total_mm, 0.5);
+    EXPECT_EQ(closed.layer.rings, 1U);
+    EXPECT_EQ(closed.layer.open_chains(), 0U);
+    EXPECT_EQ(measure(closed.layer).area_mm2, 100);
+    EXPECT_EQ(closed.layer.index, 7U);
+    EXPECT_EQ(closed.layer.z, 1.5);
+    EXPECT_EQ(closed.layer.bottom, 1);
+    EXPECT_EQ(closed.layer.top, 2);
+    EXPECT_TRUE(in_normal_form(closed.layer));
+    EXPECT_TRUE(close_gaps(layer, 0.499).joins.empty());
+}
+
+TEST(CloseGaps, LeavesOutARepeatedPoint) {
+    const ClosedGaps closed = close_gaps(layer_of({}, {{{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}}), 0.1);
+    EXPECT_TRUE(same_contours(closed.layer, layer_of({square}, {})));
+    EXPECT_EQ(closed.total_mm, 0);
+}
+
+TEST(CloseGaps, JoinsTheClosestPairsFirst) {
+    // Both ends could go on with either start.
+    const Layer layer = layer_of({}, {{{0, 0}, {10, 0}}, {{10.2, 0}, {10.2, 10}}, {{10, 0.3}, {5, 5}}});
+    const ClosedGaps closed = close_gaps(layer, 1);
+    ASSERT_EQ(closed.joins.size(), 1U);
+    EXPECT_EQ(closed.joins[0].to, (Point2{10.2, 0}));
+    EXPECT_EQ(closed.layer.open_chains(), 2U);
+}
+
+TEST(CloseGaps, JoinsNoHeadsWithHeadsAndNoTailsWithTails) {
+    EXPECT_TRUE(close_gaps(layer_of({}, {{{0, 0}, {10, 0}}, {{20, 0}, {10.1, 0}}}), 1).joins.empty());
+    EXPECT_TRUE(close_gaps(layer_of({}, {{{0, 0}, {-10, 0}}, {{0.1, 0}, {10, 0}}}), 1).joins.empty());
+}
+
+TEST(CloseGaps, JoinsNothingAcrossAContour) {
+    const std::vector<Points> chains{{{0, 0}, {10, 0}}, {{11, 0}, {20, 0}}};
+    EXPECT_EQ(close_gaps(layer_of({}, chains), 2).joins.size(), 1U);
+    const ClosedGaps across =
+        close_gaps(layer_of({{{10.5, -5}, {10.6, -5}, {10.6, 5}, {10.5, 5}}}, chains), 2);
+    EXPECT_TRUE(across.joins.empty());
+    EXPECT_EQ(across.refused, 1U);
+    EXPECT_EQ(across.layer.open_chains(), 2U);
+    // Through a corner of another one is across, too.
+    EXPECT_TRUE(close_gaps(layer_of({{{10.5, 0}, {10.7, 3}, {10.3, 3}}}, chains), 2).joins.empty());
+}
+
+TEST(CloseGaps, AShortStraightPieceIsNoRing) {
+    const ClosedGaps closed = close_gaps(layer_of({}, {{{0, 0}, {1, 0}}, {{5, 5}, {6, 5}, {6.5, 5.1}}}), 2);
+    EXPECT_TRUE(closed.joins.empty());
+    EXPECT_EQ(closed.refused, 2U);
+}
+
+/// Rings taken apart: some segments are left out.
+std::vector<Points> taken_apart(const Points& ring, Random& random, double share) {
+    std::vector<bool> kept(ring.size());
+    for (std::size_t i = 0; i < ring.size(); ++i)
+        kept[i] = random.real(0, 1) >= share;
+    kept[0] = false;
+    std::vector<Points> chains;
+    Points chain;
+    for (std::size_t i = 1; i <= ring.size(); ++i) {
+        chain.push_back(ring[i % ring.size()]);
+        if (!kept[i % ring.size()]) {
+            if (chain.size() > 1)
+                chains.push_back(chain);
+            chain.clear();
+        }
+    }
+    return chains;
+}
+
+TEST(CloseGaps, PutsRingsTogetherThatWereTakenApart) {
+    Random random(5);
+    for (int round = 0; round < 500; ++round) {
+        // Circles side by side of many short segments; gaps are shorter than what is between circles.
+        std::vector<Points> chains;
+        double area = 0;
+        const int circles = 1 + round % 5;
+        for (int c = 0; c < circles; ++c) {
+            const int n = static_cast<int>(random.integer(40, 90));
+            Points ring;
+            for (int i = 0; i < n; ++i) {
+                const double a = 2 * std::numbers::pi * i / n * (c % 2 == 0 ? 1 : -1);
+                ring.push_back({30.0 * c + 10 * std::cos(a), 10 * std::sin(a)});
+            }
+            area += ring_area(ring);
+            for (Points& chain : taken_apart(ring, random, 0.04))
+                chains.push_back(std::move(chain));
+        }
+        for (std::size_t i = chains.size(); i > 1; --i)
+            std::swap(chains[i - 1],
+                      chains[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
+        const ClosedGaps closed = close_gaps(layer_of({}, chains), 5);
+        ASSERT_EQ(closed.layer.open_chains(), 0U);
+        ASSERT_EQ(closed.layer.rings, static_cast<std::size_t>(circles));
+        EXPECT_TRUE(in_normal_form(closed.layer));
+        // What the joins cut off: less than their length times the sagitta of the longest.
+        EXPECT_NEAR(measure(closed.layer).area_mm2, area, closed.total_mm * closed.longest_mm);
+        EXPECT_TRUE(std::ranges::is_sorted(closed.joins, {}, &GapJoin::length_mm));
+    }
+}
+
+TEST(CloseGaps, NeverLosesAPointNorMakesAnEndTwiceOnRandomLayers) {
+    Random random(6);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<Points> chains;
+        std::vector<Points> rings;
+        const double size = round % 3 == 0 ? 4 : 40;
+        for (std::int64_t c = random.integer(1, 30); c > 0; --c) {
+            Points points;
+            for (std::int64_t i = random.integer(2, 8); i > 0; --i)
+                points.push_back(round % 2 == 0 ? Point2{random.real(0, size), random.real(0, size)}
+                                                : Point2{static_cast<double>(random.integer(0, 5)),
+                                                         static_cast<double>(random.integer(0, 5))});
+            points.erase(std::unique(points.begin(), points.end()), points.end());
+            if (points.size() > 2 && random.integer(0, 4) == 0)
+                rings.push_back(points);
+            else if (points.size() > 1)
+                chains.push_back(points);
+        }
+        const Layer layer = layer_of(rings, chains);
+        const double within = random.real(0.1, 3);
+        const ClosedGaps closed = close_gaps(layer, within);
+        EXPECT_TRUE(in_normal_form(closed.layer));
+        std::size_t zero = 0;
+        for (const GapJoin& join : closed.joins) {
+            EXPECT_LE(join.length_mm, within);
+            zero += join.length_mm == 0 ? 1 : 0;
+        }
+        EXPECT_EQ(closed.layer.points.size() + zero, layer.points.size());
+        // A join takes one chain away.
+        EXPECT_EQ(closed.layer.open_chains() + closed.joins.size(), layer.open_chains());
+        EXPECT_GE(closed.layer.rings, layer.rings);
+        // What is left could not be joined: a second time changes nothing but by pairs that were refused.
+        if (closed.refused == 0) {
+            EXPECT_TRUE(close_gaps(closed.layer, within).joins.empty());
+        }
+    }
+}
+
+TEST(CloseGaps, RefusesDistancesThatAreNone) {
+    for (const double within : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+        EXPECT_THROW((void)close_gaps(layer_of({square}, {}), within), Error);
+}
+
+TEST(CloseGaps, ManyChainsInOnePlaceAreNoTrap) {
+    std::vector<Points> chains;
+    for (int i = 0; i < 2000; ++i)
+        chains.push_back({{0, 0}, {1, static_cast<double>(i)}, {0, 0}});
+    const ClosedGaps closed = close_gaps(layer_of({}, chains), 1e-3);
+    EXPECT_GT(closed.joins.size(), 60U);
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,331 @@
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/diagnose.hpp"
+#include "lamella/mesh/inspect.hpp"
+#include "lamella/mesh/repair.hpp"
+#include "lamella/mesh/shapes.hpp"
+
+#include "fixtures/random.hpp"
+#include "mesh/assemble.hpp"
+#include "mesh/naive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+namespace lamella {
+namespace {
+
+using test::Random;
+
+TriangleSoup moved(const TriangleSoup& soup, double x, double y, double z) {
+    return soup.transformed(translation(x, y, z));
+}
+
+/// Triangles as coordinates, in order.
+std::vector<Triangle3> coordinates(const IndexedMesh& mesh) {
+    std::vector<Triangle3> out;
+    for (const auto& t : mesh.triangles)
+        out.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+    return out;
+}
+
+/// The same mesh with its vertices in another order.
+IndexedMesh renumbered(const IndexedMesh& mesh, Random& random) {
+    std::vector<std::uint32_t> number(mesh.vertices.size());
+    std::iota(number.begin(), number.end(), 0U);
+    for (std::size_t i = number.size(); i > 1; --i)
+        std::swap(number[i - 1],
+                  number[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
+    IndexedMesh out;
+    out.vertices.resize(mesh.vertices.size());
+    for (std::size_t v = 0; v < number.size(); ++v)
+        out.vertices[number[v]] = mesh.vertices[v];
+    for (const auto& t : mesh.triangles)
+        out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+    return out;
+}
+
+/// Every triangle with corners of its own, each moved by up to `by` in each direction.
+IndexedMesh jittered(const TriangleSoup& soup, double by, Random& random) {
+    IndexedMesh out;
+    for (std::size_t i = 0; i < soup.size(); ++i) {
+        const Triangle3 t = soup.placed(i);
+        const auto first = static_cast<std::uint32_t>(out.vertices.size());
+        for (const Point3& p : t)
+            out.vertices.push_back(
+                {p.x + random.real(-by, by), p.y + random.real(-by, by), p.z + random.real(-by, by)});
+        out.triangles.push_back({first, first + 1, first + 2});
+    }
+    return out;
+}
+
+TEST(WeldWithin, ClosesTheCracksOfAJitteredSolid) {
+    Random random(1);
+    for (const TriangleSoup& soup : {make_sphere(10, 3), make_torus(10, 3, 40, 20), make_calibration()}) {
+        const IndexedMesh torn = jittered(soup, 0.001, random);
+        ASSERT_FALSE(inspect(torn).closed());
+        const ToleranceWeld welded = weld_within(torn, 0.01, {.threads = 2});
+        const Inspection found = inspect(welded.mesh);
+        EXPECT_TRUE(found.closed());
+        EXPECT_EQ(found.vertices, inspect(weld(soup)).vertices);
+        EXPECT_EQ(welded.collapsed_triangles, 0U);
+        EXPECT_EQ(welded.joined_vertices, torn.vertices.size() - found.vertices);
+        EXPECT_GT(welded.longest_move_mm, 0);
+        EXPECT_LE(welded.longest_move_mm, 0.01);
+        EXPECT_EQ(welded.places.size(), repair_places);
+        EXPECT_EQ(welded.pairs_apart, 0U);
+        EXPECT_NEAR(found.volume_mm3, inspect(weld(soup)).volume_mm3, 0.002 * found.area_mm2);
+    }
+}
+
+TEST(WeldWithin, DoesNotDependOnTheOrderOfVerticesAndThreads) {
+    Random random(2);
+    for (int round = 0; round < 30; ++round) {
+        IndexedMesh mesh;
+        for (int v = 0; v < 400; ++v)
+            mesh.vertices.push_back(round % 2 == 0
+                                        ? Point3{random.real(0, 1), random.real(0, 1), random.real(0, 1)}
+                                        : Point3{static_cast<double>(random.integer(0, 9)) / 8,
+                                                 static_cast<double>(random.integer(0, 9)) / 8,
+                                                 static_cast<double>(random.integer(0, 9)) / 8});
+        for (int t = 0; t < 300; ++t) {
+            const auto any = [&] {
+                return static_cast<std::uint32_t>(random.integer(0, 399));
+            };
+            mesh.triangles.push_back({any(), any(), any()});
+        }
+        const double tolerance = random.real(0.02, 0.3);
+        const ToleranceWeld one = weld_within(mesh, tolerance, {.threads = 1});
+        for (const unsigned threads : {1U, 2U, 7U}) {
+            const ToleranceWeld other =
+                weld_within(renumbered(mesh, random), tolerance, {.threads = threads});
+            ASSERT_EQ(coordinates(other.mesh), coordinates(one.mesh));
+            ASSERT_EQ(other.joined_vertices, one.joined_vertices);
+            ASSERT_EQ(other.pairs_apart, one.pairs_apart);
+            ASSERT_EQ(other.longest_move_mm, one.longest_move_mm);
+            ASSERT_EQ(other.places, one.places);
+        }
+        EXPECT_LE(one.longest_move_mm, tolerance);
+    }
+}
+
+TEST(WeldWithin, JoinsNoChains) {
+    // Points 1 apart, 100 in a row: groups never get longer than the tolerance.
+    IndexedMesh row;
+    for (int i = 0; i < 100; ++i)
+        row.vertices.push_back({static_cast<double>(i), 0, 0});
+    for (std::uint32_t i = 0; i + 2 < 100; i += 3)
+        row.triangles.push_back({i, i + 1, i + 2});
+    const ToleranceWeld welded = weld_within(row, 1.5);
+    EXPECT_EQ(welded.mesh.vertices.size(), 50U);
+    EXPECT_EQ(welded.pairs_apart, 49U);
+    EXPECT_EQ(welded.longest_move_mm, 1);
+    EXPECT_EQ(welded.collapsed_triangles + welded.mesh.triangles.size(), 33U);
+}
+
+TEST(WeldWithin, TheClosestPairsAreJoinedFirst) {
+    // The middle one is closer to the right one.
+    const IndexedMesh three{{{0, 0, 0}, {1, 0, 0}, {1.75, 0, 0}}, {{0, 1, 2}}};
+    const ToleranceWeld welded = weld_within(three, 1);
+    ASSERT_EQ(welded.mesh.vertices.size(), 2U);
+    EXPECT_EQ(welded.mesh.vertices[1], (Point3{1, 0, 0}));
+    EXPECT_EQ(welded.collapsed_triangles, 1U);
+    EXPECT_EQ(welded.pairs_apart, 1U);
+}
+
+TEST(WeldWithin, EqualVerticesAreOneAndDegenerateTrianglesStay) {
+    const IndexedMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}}, {{0, 1, 2}, {2, 3, 0}, {1, 1, 2}}};
+    const ToleranceWeld welded = weld_within(mesh, 1e-6);
+    EXPECT_EQ(welded.mesh.vertices.size(), 3U);
+    EXPECT_EQ(welded.mesh.triangles.size(), 3U);
+    EXPECT_EQ(welded.joined_vertices, 1U);
+    EXPECT_EQ(welded.longest_move_mm, 0);
+    EXPECT_TRUE(welded.places.empty());
+}
+
+TEST(WeldWithin, RefusesTolerancesThatAreNone) {
+    const IndexedMesh mesh = weld(make_sphere(1, 5));
+    for (const double tolerance : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity(), 10.0})
+        try {
+            (void)weld_within(mesh, tolerance);
+            ADD_FAILURE() << tolerance;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+        }
+    EXPECT_EQ(weld_within({}, 1).mesh.vertices.size(), 0U);
+}
+
+TEST(DropDuplicates, LeavesASoundMeshAsItIs) {
+    const IndexedMesh mesh = weld(make_rook());
+    const DroppedDuplicates dropped = drop_duplicates(mesh);
+    EXPECT_EQ(dropped.mesh.triangles, mesh.triangles);
+    EXPECT_EQ(dropped.mesh.vertices, mesh.vertices);
+    EXPECT_EQ(dropped.repeated_triangles + dropped.opposite_triangles, 0U);
+}
+
+TEST(DropDuplicates, ABodyStoredTwiceIsThereOnce) {
+    const TriangleSoup torus = make_torus(5, 1, 20, 10);
+    const DroppedDuplicates dropped = drop_duplicates(weld(assemble({torus, torus, torus})));
+    EXPECT_EQ(coordinates(dropped.mesh), coordinates(weld(torus)));
+    EXPECT_EQ(dropped.repeated_triangles, 2 * torus.size());
+    EXPECT_EQ(dropped.opposite_triangles, 0U);
+    EXPECT_EQ(dropped.places.size(), repair_places);
+}
+
+TEST(DropDuplicates, AWallBetweenTwoBodiesVanishes) {
+    // The second box mirrored, so that the triangles of the common side have the same vertices.
+    const TriangleSoup box = make_box(1, 1, 1);
+    const DroppedDuplicates dropped =
+        drop_duplicates(weld(assemble({box, moved(box.transformed(scaling(-1, 1, 1)), 2, 0, 0)})));
+    EXPECT_EQ(dropped.opposite_triangles, 4U);
+    EXPECT_EQ(dropped.repeated_triangles, 0U);
+    const Inspection found = inspect(dropped.mesh);
+    EXPECT_TRUE(found.sound());
+    EXPECT_EQ(found.shells, 1U);
+    EXPECT_NEAR(found.volume_mm3, 2, 1e-12);
+}
+
+TEST(DropDuplicates, CancelsOppositeOnesBeforeItKeepsTheRest) {
+    const TriangleSoup box = make_box(1, 1, 1);
+    const DroppedDuplicates nothing = drop_duplicates(weld(assemble({box, turned_inside_out(box)})));
+    EXPECT_TRUE(nothing.mesh.triangles.empty());
+    EXPECT_TRUE(nothing.mesh.vertices.empty());
+    const DroppedDuplicates inward = drop_duplicates(
+        weld(assemble({box, turned_inside_out(box), turned_inside_out(box), turned_inside_out(box)})));
+    EXPECT_EQ(inward.opposite_triangles, 24U);
+    EXPECT_EQ(inward.repeated_triangles, 12U);
+    EXPECT_EQ(coordinates(inward.mesh), coordinates(weld(turned_inside_out(box))));
+}
+
+/// With some of its triangles turned over.
+IndexedMesh with_turned(IndexedMesh mesh, double share, Random& random) {
+    for (auto& t : mesh.triangles)
+        if (random.real(0, 1) < share)
+            std::swap(t[1], t[2]);
+    return mesh;
+}
+
+TEST(Orient, LeavesSoundMeshesAsTheyAre) {
+    for (const TriangleSoup& soup : {make_rook(), make_dodecahedra(), make_calibration()}) {
+        const IndexedMesh mesh = weld(soup);
+        const OrientedMesh oriented = orient(mesh, {.threads = 2});
+        EXPECT_EQ(oriented.mesh.triangles, mesh.triangles);
+        EXPECT_EQ(oriented.turned_triangles + oriented.turned_inward + oriented.turned_outward, 0U);
+        EXPECT_EQ(oriented.patches, inspect(mesh).shells);
+    }
+}
+
+TEST(Orient, MendsFlippedTrianglesWhicheverAndHoweverMany) {
+    Random random(3);
+    for (const TriangleSoup& soup : {make_sphere(3, 3), make_torus(5, 2, 20, 12), make_dodecahedra(),
+                                     assemble({make_box(4, 4, 4), moved(make_box(1, 1, 1), 9, 0, 0)})}) {
+        const IndexedMesh sound = weld(soup);
+        for (const double share : {0.05, 0.4, 0.8, 1.0}) {
+            const IndexedMesh broken = with_turned(sound, share, random);
+            const OrientedMesh oriented = orient(broken);
+            const Inspection found = inspect(oriented.mesh);
+            EXPECT_TRUE(found.sound());
+            EXPECT_NEAR(found.volume_mm3, inspect(sound).volume_mm3, 1e-9 * found.volume_mm3);
+            std::uint64_t turned = 0;
+            for (std::size_t i = 0; i < sound.triangles.size(); ++i)
+                turned += oriented.mesh.triangles[i] != broken.triangles[i] ? 1 : 0;
+            EXPECT_EQ(oriented.turned_triangles, turned);
+            EXPECT_EQ(oriented.one_sided_patches, 0U);
+        }
+    }
+}
+
+TEST(Orient, TurnsVoidsInwardAndWhatLiesInThemOutward) {
+    // All outward: a box, a hollow in it, a ball in the hollow.
+    const IndexedMesh nested = weld(assemble(
+        {moved(make_sphere(1, 2), 5, 5, 5), moved(make_box(8, 8, 8), 1, 1, 1), make_box(10, 10, 10)}));
+    const OrientedMesh oriented = orient(nested);
+    EXPECT_EQ(oriented.turned_inward, 1U);
+    EXPECT_EQ(oriented.turned_outward, 0U);
+    EXPECT_EQ(oriented.turned_triangles, 12U);
+    EXPECT_EQ(oriented.places.size(), 12U);
+    const Inspection found = inspect(oriented.mesh);
+    EXPECT_EQ(found.cavities, 1U);
+    EXPECT_EQ(found.inverted_shells, 0U);
+    // Bodies that only partly lie in one another are no voids.
+    const OrientedMesh crossing =
+        orient(weld(assemble({make_box(10, 10, 2), moved(make_box(1, 1, 20), 5, 5, -1)})));
+    EXPECT_EQ(crossing.turned_triangles, 0U);
+}
+
+TEST(Orient, BodiesThatTouchInAnEdgeAreJudgedOneByOne) {
+    const TriangleSoup box = make_box(1, 1, 1);
+    const OrientedMesh oriented =
+        orient(weld(assemble({turned_inside_out(box), moved(turned_inside_out(box), 1, 1, 0)})));
+    EXPECT_EQ(oriented.patches, 2U);
+    EXPECT_EQ(oriented.turned_outward, 2U);
+    EXPECT_NEAR(inspect(oriented.mesh).volume_mm3, 2, 1e-12);
+}
+
+TEST(Orient, AnOpenBodyIsTurnedOutwardWhereverItIs) {
+    std::vector<Triangle3f> triangles = triangles_of(turned_inside_out(make_box(3, 4, 5)));
+    std::erase_if(triangles, [](const Triangle3f& t) { return t[0].z == 5 && t[1].z == 5 && t[2].z == 5; });
+    for (const double x : {0.0, 100.0, -100.0}) {
+        const OrientedMesh oriented =
+            orient(weld(TriangleSoup(triangles).transformed(translation(x, x / 2, -x))));
+        EXPECT_EQ(oriented.turned_outward, 1U);
+        EXPECT_EQ(oriented.turned_triangles, 10U);
+    }
+}
+
+TEST(Orient, AMoebiusStripIsLeftOneSided) {
+    IndexedMesh strip;
+    const int n = 12;
+    for (int i = 0; i < n; ++i) {
+        const double a = 2 * 3.14159265358979 * i / n;
+        for (const double s : {-1.0, 1.0}) {
+            const double r = 5 + s * std::cos(a / 2);
+            strip.vertices.push_back({r * std::cos(a), r * std::sin(a), s * std::sin(a / 2)});
+        }
+    }
+    const auto vertex = [&](int i, int side) {
+        // After one round the sides are swapped.
+        return static_cast<std::uint32_t>(i < n ? 2 * i + side : 2 * (i - n) + 1 - side);
+    };
+    for (int i = 0; i < n; ++i) {
+        strip.triangles.push_back({vertex(i, 0), vertex(i + 1, 0), vertex(i + 1, 1)});
+        strip.triangles.push_back({vertex(i, 0), vertex(i + 1, 1), vertex(i, 1)});
+    }
+    const OrientedMesh oriented = orient(strip);
+    EXPECT_EQ(oriented.one_sided_patches, 1U);
+    EXPECT_EQ(inspect(oriented.mesh).orientation_conflicts, inspect(strip).orientation_conflicts);
+}
+
+TEST(Orient, IsTheSameForAnyNumberOfThreadsOnRandomMeshes) {
+    Random random(4);
+    for (int round = 0; round < 100; ++round) {
+        IndexedMesh mesh;
+        const int vertices = 6 + round;
+        for (int v = 0; v < vertices; ++v)
+            mesh.vertices.push_back({random.real(0, 1), random.real(0, 1), random.real(0, 1)});
+        for (int t = 0; t < 80; ++t) {
+            const auto any = [&] {
+                return static_cast<std::uint32_t>(random.integer(0, vertices - 1));
+            };
+            mesh.triangles.push_back({any(), any(), any()});
+        }
+        const OrientedMesh one = orient(mesh, {.threads = 1});
+        const OrientedMesh many = orient(mesh, {.threads = 7});
+        EXPECT_EQ(one.mesh.triangles, many.mesh.triangles);
+        EXPECT_EQ(one.turned_triangles, many.turned_triangles);
+        // Done once, there is nothing left to do.
+        if (one.one_sided_patches == 0) {
+            EXPECT_EQ(orient(one.mesh).turned_triangles, 0U);
+        }
+        const DroppedDuplicates dropped = drop_duplicates(mesh, {.threads = 7});
+        EXPECT_EQ(dropped.mesh.triangles, drop_duplicates(mesh, {.threads = 1}).mesh.triangles);
+        EXPECT_EQ(inspect(dropped.mesh).duplicate_triangles, 0U);
+    }
+}
+
+} // namespace
+} // namespace lamella
