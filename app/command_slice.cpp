@@ -7,9 +7,11 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "deadline.hpp"
+#include "height_options.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "repair_options.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
 #include "z_list.hpp"
@@ -55,7 +57,9 @@ struct SliceArguments {
     std::optional<std::pair<double, double>> z_range;
     std::optional<std::pair<std::uint64_t, std::uint64_t>> layers;
     std::string z_list;
+    HeightOptions heights;
 
+    RepairPolicies repair;
     std::string engine;
     bool inspect = false;
     bool strict = false;
@@ -124,7 +128,7 @@ OptionGroup input_options(SliceArguments& target) {
 OptionGroup plan_options(SliceArguments& target) {
     Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
     layer_height.preset = exact(UniformLayers{}.layer_height);
-    return {
+    OptionGroup group{
         "Where it is cut",
         {std::move(layer_height),
          length("first-layer-height", "thickness of the first layer, where it differs",
@@ -139,6 +143,9 @@ OptionGroup plan_options(SliceArguments& target) {
              "z-list",
              "cut at the heights listed in this file instead: one a line, # starts a comment; or a JSON list",
              target.z_list)}};
+    for (Option& option : height_options(target.heights))
+        group.options.push_back(std::move(option));
+    return group;
 }
 
 OptionGroup checking_options(SliceArguments& target) {
@@ -180,6 +187,17 @@ FileJob make_job(const SliceArguments& arguments) {
                    "--z-list and --layer-height", "the list says where to cut");
     check_conflict(!arguments.z_list.empty(), arguments.first_layer_height.has_value(),
                    "--z-list and --first-layer-height", "the list says where to cut");
+    const bool ranges = !arguments.heights.ranges.empty();
+    const bool adaptive = arguments.heights.adaptive.has_value();
+    check_conflict(!arguments.z_list.empty(), ranges, "--z-list and --heights", "the list says where to cut");
+    check_conflict(!arguments.z_list.empty(), adaptive, "--z-list and --adaptive",
+                   "the list says where to cut");
+    check_conflict(ranges, adaptive, "--heights and --adaptive", "each says how high layers are");
+    check_conflict(adaptive, arguments.layer_height.has_value(), "--adaptive and --layer-height",
+                   "layers differ in height then");
+    check_conflict(ranges || adaptive, arguments.first_layer_height.has_value(),
+                   "--first-layer-height and layers of varying height",
+                   "--heights can say how high the first one is");
     for (const PlateInput& input : arguments.inputs) {
         check_distinct(input.path, arguments.output);
         check_distinct(input.path, arguments.stats);
@@ -204,6 +222,9 @@ FileJob make_job(const SliceArguments& arguments) {
                   .index_range = arguments.layers};
     if (!arguments.z_list.empty())
         job.z = read_z_list(arguments.z_list);
+    job.heights = arguments.heights.ranges;
+    job.adaptive = arguments.heights.adaptive_layers(job.layers.slice_at);
+    job.repair = arguments.repair;
     job.engine = arguments.engine;
     job.inspect = arguments.inspect;
     job.strict = arguments.strict;
@@ -243,6 +264,10 @@ std::string summary(const FileJob& job, const FileResult& result) {
                                                  ? "closed, consistently oriented, no defects"
                                                  : fmt::format("has defects; lamella info {} lists them",
                                                                one_line(job.inputs.front().path)));
+    for (const FileResult::MeshRepair& repair : result.repairs)
+        text += repairs_text(repair.repairs);
+    if (job.repair.close_gaps_mm)
+        text += gaps_text(result.gaps);
     if (result.changes)
         text += fmt::format("made     {} other than sliced: {} united, {} turned, {} dropped, {} left out\n",
                             counted(result.changes->changed_layers, "layer"),
@@ -333,7 +358,7 @@ Command slice_command() {
             "clockwise. Several files, and all that a 3MF or AMF file places, make up a build plate: they "
             "are cut "
             "on common planes, and stay apart in formats that can tell parts. A mesh is taken as it is, "
-            "never repaired: where it has a hole, contours stay "
+            "repaired only where options say so: where it has a hole, contours stay "
             "open, are marked as such in the file, and a warning says so. The result does not depend on the "
             "number of threads nor on the order of the triangles.",
         .operands = {{.placeholder = "FILE",
@@ -344,7 +369,8 @@ Command slice_command() {
                               add_input(*arguments, text);
                           }}},
         .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
-                   plan_options(*arguments), layer_step_options(arguments->making), input_options(*arguments),
+                   plan_options(*arguments), repair_options(arguments->repair),
+                   layer_step_options(arguments->making), input_options(*arguments),
                    checking_options(*arguments), timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},

@@ -2,6 +2,7 @@
 
 #include "command_line.hpp"
 #include "numbers.hpp"
+#include "options.hpp"
 #include "stats_json.hpp"
 
 #include <fmt/format.h>
@@ -271,7 +272,7 @@ Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate)
     defects["boundary_loops"] = found.boundary_loops;
     defects["nonmanifold_vertices"] = found.nonmanifold_vertices;
     defects["opposite_pairs"] = found.opposite_pairs;
-    return {
+    Json json = {
         {"path", file.path},
         {"format", format_name(file.format)},
         {"unit", unit_name(plate.files.front().unit_mm)},
@@ -288,6 +289,9 @@ Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate)
         {"places", places_json(found)},
         {"shell_list", shells_json(found)},
         {"self_intersections", found.self_intersections ? meetings_json(*found.self_intersections) : Json()}};
+    if (plate.parts.size() > 1)
+        json["parts"] = parts_json(plate);
+    return json;
 }
 
 } // namespace lamella::app

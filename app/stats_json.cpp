@@ -2,6 +2,7 @@
 
 #include "config_file.hpp"
 #include "options.hpp"
+#include "repair_options.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -69,6 +70,8 @@ Json layers_json(const FileResult& result) {
                           {"open_chains", layer.measure.open_chains},
                           // As text: a JSON number loses digits beyond 2^53.
                           {"hash", fmt::format("{:016x}", layer.hash)}});
+        if (!layer.joins.empty())
+            layers.back()["gaps"] = joins_json(layer.joins);
         if (result.changes)
             layers.back().update(changes_json(layer.changes));
     }
@@ -175,6 +178,15 @@ Json stats_json(const Command& command, const FileResult& result) {
         stats["inputs"] = inputs_json(result);
         stats["parts"] = parts_json(result);
     }
+    if (!result.repairs.empty()) {
+        Json& repairs = stats["repairs"] = Json::array();
+        for (const FileResult::MeshRepair& repair : result.repairs) {
+            repairs.push_back(repairs_json(repair.repairs));
+            repairs.back()["path"] = result.files[repair.file].path;
+        }
+    }
+    if (result.gaps.closed > 0)
+        stats["gaps"] = gaps_json(result.gaps);
     stats["layers"] = layers_json(result);
     return stats;
 }

@@ -78,7 +78,8 @@ bool meets(double z, PlaneRule rule, const Box3& box) {
                                             : box.min.z < z && z <= box.max.z;
 }
 
-Plan listed_plan(const FileJob& job, Plan plan, const Box3& box) {
+/// Without the layers that nobody asked for.
+Plan selected(const FileJob& job, Plan plan, const Box3& box) {
     std::erase_if(plan.layers, [&](const PlannedLayer& layer) {
         const auto& z_range = job.layers.z_range;
         const auto& index_range = job.layers.index_range;
@@ -105,16 +106,40 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
     return plan_uniform(box.min.z, box.max.z, job.layers);
 }
 
+/// `listed`: of the heights that the job lists, if it does.
+Plan plan_of(const FileJob& job, const Plate& plate, Plan listed, const Execution& execution) {
+    const Box3& box = plate.box;
+    if (!job.z.empty())
+        return selected(job, std::move(listed), box);
+    if (job.adaptive)
+        return selected(job, plan_adaptive(joined(plate, execution), *job.adaptive, execution), box);
+    if (!job.heights.empty())
+        return selected(
+            job,
+            plan_by_ranges(box.min.z, box.max.z, job.heights, job.layers.layer_height, job.layers.slice_at),
+            box);
+    return uniform_plan(job, box);
+}
+
 /// What is gathered about the layers while they pass, in any order and from any thread.
 class Gatherer {
   public:
-    Gatherer(const Plan& plan, std::size_t parts, bool statistics)
+    Gatherer(const Plan& plan, std::size_t parts, const FileJob& job)
         : first_(plan.layers.front().index), signs_(plan.layers.size()),
-          layers_(statistics ? plan.layers.size() : 0), changes_(plan.layers.size()), parts_(parts) {}
+          gaps_(job.repair.close_gaps_mm ? plan.layers.size() : 0),
+          layers_(job.layer_statistics ? plan.layers.size() : 0), changes_(plan.layers.size()),
+          parts_(parts) {}
 
-    void add(std::span<const Layer> parts) {
+    /// `joins`: of the gaps that were closed in it.
+    void add(std::span<const Layer> parts, std::vector<GapJoin> joins) {
         const Layer& first = parts.front();
         const auto place = static_cast<std::size_t>(first.index - first_);
+        for (const GapJoin& join : joins) {
+            FileResult::Gaps& gaps = gaps_[place];
+            ++gaps.closed;
+            gaps.longest_mm = std::max(gaps.longest_mm, join.length_mm);
+            gaps.total_mm += join.length_mm;
+        }
         LayerMeasure together;
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const Layer& layer = parts[i];
@@ -128,11 +153,9 @@ class Gatherer {
                 together.add(measure(layer));
         }
         if (!layers_.empty())
-            layers_[place] = {first.index,
-                              first.z,
-                              first.thickness(),
-                              together,
-                              content_hash(parts.size() == 1 ? first : merged(parts)),
+            layers_[place] = {first.index,       first.z,
+                              first.thickness(), together,
+                              std::move(joins),  content_hash(parts.size() == 1 ? first : merged(parts)),
                               changes_[place]};
     }
 
@@ -150,6 +173,16 @@ class Gatherer {
         for (std::size_t i = 0; i < signs_.size(); ++i) {
             count(signs_[i].open, plan.layers[i].z, result.open);
             count(signs_[i].inside_out, plan.layers[i].z, result.inside_out);
+        }
+        for (std::size_t i = 0; i < gaps_.size(); ++i) {
+            if (gaps_[i].closed == 0)
+                continue;
+            FileResult::Gaps& all = result.gaps;
+            if (all.layers++ == 0)
+                all.first_z = plan.layers[i].z;
+            all.closed += gaps_[i].closed;
+            all.longest_mm = std::max(all.longest_mm, gaps_[i].longest_mm);
+            all.total_mm += gaps_[i].total_mm;
         }
         SliceReport& report = result.report;
         report.contours = report.open_chains = report.points = 0;
@@ -180,6 +213,7 @@ class Gatherer {
     };
     std::uint64_t first_;
     std::vector<Signs> signs_;
+    std::vector<FileResult::Gaps> gaps_; ///< of each layer, where gaps are closed
     std::vector<LayerStatistics> layers_;
     std::vector<LayerChanges> changes_; // of all parts
     std::atomic<double> step_seconds_{0};
@@ -236,6 +270,29 @@ bool has_indexed(const Plate& plate) {
                                [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
 }
 
+/// The layers of all parts with their gaps closed.
+std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, std::vector<GapJoin>& joins) {
+    std::vector<Layer> closed;
+    for (const Layer& layer : parts) {
+        ClosedGaps result = close_gaps(layer, within_mm);
+        joins.insert(joins.end(), result.joins.begin(), result.joins.end());
+        closed.push_back(std::move(result.layer));
+    }
+    return closed;
+}
+
+void repair_plate(Plate& plate, const RepairPolicies& policies, FileResult& result,
+                  const Execution& execution) {
+    for (PlateShape& shape : plate.shapes) {
+        FileResult::MeshRepair& done = result.repairs.emplace_back();
+        done.file = shape.input;
+        shape.mesh = repaired(shape.mesh, policies, done.repairs, execution);
+        if (shape.mesh.empty())
+            throw Error(ErrorKind::input, fmt::format("{}: nothing of the mesh is left after its repair",
+                                                      plate.files[shape.input].path));
+    }
+}
+
 LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     LayerFileInfo info{
         .box = plate.box, .layers = plan.layers.size(), .bottom = plan.layers.front().bottom, .parts = {}};
@@ -274,7 +331,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
             {.label = part.label, .triangles = plate.shapes[part.shape].mesh.size(), .box = part.box});
         result.triangles += result.parts.back().triangles;
     }
-    plan = job.z.empty() ? uniform_plan(job, plate.box) : listed_plan(job, std::move(plan), plate.box);
+    plan = plan_of(job, plate, std::move(plan), execution);
     result.bottom = plan.layers.front().bottom;
     result.top = plan.layers.back().top;
 
@@ -290,16 +347,28 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     if (job.layer_statistics)
         for (const PlatePart& part : plate.parts)
             result.mesh_volume_mm3 += volume(plate.shapes[part.shape].mesh, execution);
+    if (job.repair.change_the_mesh()) {
+        const Stopwatch repairing;
+        repair_plate(plate, job.repair, result, execution);
+        result.seconds.weld += repairing.seconds();
+    }
 
     std::unique_ptr<LayerWriter> writer;
     if (format != nullptr) {
         writer = open_layer_writer(job.output, *format, file_info(plate, plan), job.write);
         result.format = format->name;
     }
-    Gatherer gatherer(plan, plate.parts.size(), job.layer_statistics);
+    Gatherer gatherer(plan, plate.parts.size(), job);
     if (job.steps.any())
         result.changes.emplace();
-    const PlateSink sink = [&](std::span<const Layer> parts) -> std::function<void()> {
+    const PlateSink sink = [&](std::span<const Layer> sliced) -> std::function<void()> {
+        std::span<const Layer> parts = sliced;
+        std::vector<Layer> closed;
+        std::vector<GapJoin> joins;
+        if (job.repair.close_gaps_mm && std::ranges::any_of(parts, &Layer::open_chains)) {
+            closed = without_gaps(parts, *job.repair.close_gaps_mm, joins);
+            parts = closed;
+        }
         std::vector<Layer> made;
         if (job.steps.any()) {
             for (const Layer& layer : parts) {
@@ -310,7 +379,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
             }
             parts = made;
         }
-        gatherer.add(parts);
+        gatherer.add(parts, std::move(joins));
         if (writer == nullptr)
             return {};
         return [&result, write = writer->prepare(parts)] {

@@ -31,8 +31,8 @@ struct MeshRepairs {
     std::optional<OrientedMesh> oriented;
 };
 
-/// The mesh, welded exactly, after the policies that change meshes: first the tolerance, then duplicates, then
-/// orientation. Passed through where there are none. Throws what these throw.
+/// The mesh, welded exactly, after the policies that change meshes: first the tolerance, then duplicates,
+/// then orientation. Passed through where there are none. Throws what these throw.
 [[nodiscard]] Mesh repaired(const Mesh& mesh, const RepairPolicies& policies, MeshRepairs& repairs,
                             const Execution& execution = {});
 

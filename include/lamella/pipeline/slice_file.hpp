@@ -7,9 +7,11 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
+#include "lamella/slicing/varying_plan.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include <cstdint>
@@ -35,6 +37,14 @@ struct FileJob {
     /// count.
     std::vector<double> z;
 
+    /// Where not empty: layers of these heights, of `layers.layer_height` elsewhere; see plan_by_ranges.
+    std::vector<HeightRange> heights;
+    /// Where set: layers of varying height; see plan_adaptive. Of `layers`, the two ranges still count.
+    std::optional<AdaptiveLayers> adaptive;
+
+    /// What to mend before and after slicing. Inspection and `strict` look at the mesh before that.
+    RepairPolicies repair;
+
     std::string engine; ///< by name; "" is the default engine
     /// Weld the mesh and count its defects first.
     bool inspect = false;
@@ -55,7 +65,8 @@ struct LayerStatistics {
     std::uint64_t index = 0;
     double z = 0;
     double thickness = 0;
-    LayerMeasure measure;   ///< of all parts together
+    LayerMeasure measure;       ///< of all parts together
+    std::vector<GapJoin> joins; ///< with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
     LayerChanges changes;   ///< by FileJob::steps
 };
@@ -80,9 +91,24 @@ struct FileResult {
     /// Counts of all parts together.
     std::optional<Inspection> inspection;
 
+    /// What the policies did to the meshes: one entry for each mesh that is sliced.
+    struct MeshRepair {
+        std::size_t file = 0; ///< in `files`
+        MeshRepairs repairs;
+    };
+    std::vector<MeshRepair> repairs;
+    /// Ends of contours that were joined.
+    struct Gaps {
+        std::uint64_t closed = 0;
+        double longest_mm = 0;
+        double total_mm = 0;
+        std::uint64_t layers = 0; ///< with any
+        double first_z = 0;       ///< of the lowest of them
+    } gaps;
+
     std::string engine;
     unsigned threads = 0;
-    SliceReport report;
+    SliceReport report; ///< contours and chains as they are after gaps were closed
     /// Layers of one kind, and where the lowest of them was cut.
     struct Affected {
         std::uint64_t layers = 0;
@@ -103,9 +129,9 @@ struct FileResult {
     double volume_mm3 = 0;
 
     /// Wall time. `read` includes finding the bounding box, for that is when a mapped file is read;
-    /// `weld` includes the inspection, and the weld of engines that need one; `write` is the part of writing
-    /// that must be done in order, while formatting is done in parallel and part of `slice`. So is what is
-    /// made of the layers; `polygon` is its time on all threads added up.
+    /// `weld` includes the inspection, the repair of meshes, and the weld of engines that need one; `write`
+    /// is the part of writing that must be done in order, while formatting is done in parallel and part of
+    /// `slice`. So is what is made of the layers; `polygon` is its time on all threads added up.
     struct Seconds {
         double read = 0;
         double weld = 0;

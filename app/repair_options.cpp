@@ -1,0 +1,105 @@
+#include "repair_options.hpp"
+
+#include "numbers.hpp"
+#include "options.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json places_json(const std::vector<Point3>& places) {
+    Json list = Json::array();
+    for (const Point3& p : places)
+        list.push_back({p.x, p.y, p.z});
+    return list;
+}
+
+} // namespace
+
+OptionGroup repair_options(RepairPolicies& target) {
+    return {
+        "What is mended first",
+        {length("weld-tolerance", "join vertices that are no further apart, the closest pairs first",
+                target.weld_tolerance_mm),
+         flag("drop-duplicates",
+              "of triangles with the same corners keep one; those that run opposite ways cancel in pairs",
+              target.drop_duplicates),
+         flag("orient",
+              "turn triangles so that neighbours agree, and shells outward, or inward where they are voids",
+              target.orient),
+         length("close-gaps", "join ends of open contours that are no further apart, the closest first",
+                target.close_gaps_mm)}};
+}
+
+std::string repairs_text(const MeshRepairs& repairs) {
+    std::string text;
+    if (const auto& welded = repairs.welded)
+        text += fmt::format("welded   {} joined, moved by up to {} mm; {} dropped; {} left apart\n",
+                            fmt::format("{} {}", grouped(welded->joined_vertices),
+                                        welded->joined_vertices == 1 ? "vertex" : "vertices"),
+                            brief(welded->longest_move_mm), counted(welded->collapsed_triangles, "triangle"),
+                            counted(welded->pairs_apart, "pair"));
+    if (const auto& dropped = repairs.dropped)
+        text += fmt::format("dropped  {} repeated and {} opposite\n",
+                            counted(dropped->repeated_triangles, "triangle"),
+                            grouped(dropped->opposite_triangles));
+    if (const auto& oriented = repairs.oriented)
+        text += fmt::format(
+            "oriented {} turned; {} of {} outward, {} inward as voids\n",
+            counted(oriented->turned_triangles, "triangle"), grouped(oriented->turned_outward),
+            fmt::format("{} {}", grouped(oriented->patches), oriented->patches == 1 ? "patch" : "patches"),
+            grouped(oriented->turned_inward));
+    return text;
+}
+
+std::string gaps_text(const FileResult::Gaps& gaps) {
+    if (gaps.closed == 0)
+        return "gaps     none closed\n";
+    return fmt::format("gaps     {} closed in {}, the lowest at z = {} mm; the longest {} mm, {} mm in all\n",
+                       grouped(gaps.closed), counted(gaps.layers, "layer"), brief(gaps.first_z),
+                       brief(gaps.longest_mm), brief(gaps.total_mm));
+}
+
+Json gaps_json(const FileResult::Gaps& gaps) {
+    return {{"closed", gaps.closed},
+            {"layers", gaps.layers},
+            {"longest_mm", gaps.longest_mm},
+            {"total_mm", gaps.total_mm}};
+}
+
+Json joins_json(const std::vector<GapJoin>& joins) {
+    Json list = Json::array();
+    for (const GapJoin& join : joins)
+        list.push_back({{"from", {join.from.x, join.from.y}},
+                        {"to", {join.to.x, join.to.y}},
+                        {"length_mm", join.length_mm}});
+    return list;
+}
+
+Json repairs_json(const MeshRepairs& repairs) {
+    Json json = {{"weld_tolerance", nullptr}, {"drop_duplicates", nullptr}, {"orient", nullptr}};
+    if (const auto& welded = repairs.welded)
+        json["weld_tolerance"] = {{"joined_vertices", welded->joined_vertices},
+                                  {"collapsed_triangles", welded->collapsed_triangles},
+                                  {"pairs_apart", welded->pairs_apart},
+                                  {"longest_move_mm", welded->longest_move_mm},
+                                  {"places", places_json(welded->places)}};
+    if (const auto& dropped = repairs.dropped)
+        json["drop_duplicates"] = {{"repeated_triangles", dropped->repeated_triangles},
+                                   {"opposite_triangles", dropped->opposite_triangles},
+                                   {"places", places_json(dropped->places)}};
+    if (const auto& oriented = repairs.oriented)
+        json["orient"] = {
+            {"turned_triangles", oriented->turned_triangles},   {"patches", oriented->patches},
+            {"turned_outward", oriented->turned_outward},       {"turned_inward", oriented->turned_inward},
+            {"one_sided_patches", oriented->one_sided_patches}, {"places", places_json(oriented->places)}};
+    return json;
+}
+
+} // namespace lamella::app
