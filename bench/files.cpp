@@ -86,7 +86,8 @@ int report(int argc, char** argv) {
                  "added / copying", "peak MB", "checked"});
     bool all_right = true;
     for (const Part& part : standard_parts()) {
-        for (const char* name : {"cli", "cli-ascii", "svg", "slc", "json", "npz", "3mf", "dxf"}) {
+        for (const char* name :
+             {"cli", "cli-ascii", "svg", "slc", "json", "npz", "3mf", "dxf", "geojson", "wkt"}) {
             const LayerFormat& format = layer_format(name, "");
             const std::string path = part.path + "." + name;
             std::vector<double> memory;

@@ -4,6 +4,7 @@
 
 #include "write/common_layer.hpp"
 #include "write/dxf.hpp"
+#include "write/geojson.hpp"
 #include "write/layered_svg.hpp"
 #include "write/layers_json.hpp"
 #include "write/npz.hpp"
@@ -11,6 +12,7 @@
 #include "write/sl1.hpp"
 #include "write/slc.hpp"
 #include "write/slices_3mf.hpp"
+#include "write/wkt.hpp"
 
 #include <fmt/format.h>
 
@@ -31,6 +33,8 @@ constexpr std::array formats{
     LayerFormat{"slc", ".slc", "SLC of 3D Systems, binary; single precision; closed contours only"},
     LayerFormat{"3mf", ".3mf", "3MF with slice stacks; coordinates to 0.001 mm; closed contours only"},
     LayerFormat{"dxf", ".dxf", "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm"},
+    LayerFormat{"geojson", ".geojson", "GeoJSON, one feature per layer; coordinates to 0.001 mm"},
+    LayerFormat{"wkt", ".csv", "CSV with the layers as well-known text; coordinates to 0.001 mm"},
     LayerFormat{"json", ".json", "all that layers have as JSON; exact"},
     LayerFormat{"npz", ".npz", "NumPy arrays; exact"},
     LayerFormat{"svg-layers", "", "a folder with one SVG picture per layer; coordinates to 0.001 mm", true},
@@ -108,6 +112,10 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
         return open_slices_3mf(path, info);
     if (format.name == "dxf")
         return open_dxf(path, info);
+    if (format.name == "geojson")
+        return open_geojson(path, info);
+    if (format.name == "wkt")
+        return open_wkt(path, info);
     if (format.name == "json")
         return open_layers_json(path, info);
     if (format.name == "npz")

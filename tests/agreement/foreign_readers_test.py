@@ -1,8 +1,9 @@
-"""Slice files in the hands of programs that are not ours: NumPy, GDAL, ezdxf, lib3mf, Info-ZIP.
+"""Slice files in the hands of programs that are not ours: NumPy, GDAL, Shapely, ezdxf, lib3mf, Info-ZIP.
 
 Each must find the layers that our exact JSON has, to the resolution of its format.
 """
 
+import csv
 import ctypes
 import json
 import subprocess
@@ -11,12 +12,15 @@ from pathlib import Path
 
 import ezdxf
 import numpy
+import shapely.geometry
+import shapely.wkt
 from osgeo import ogr
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "app"))
 from program import ProgramTest, main  # noqa: E402
 
 ogr.UseExceptions()
+csv.field_size_limit(1 << 30)
 
 
 def area(ring):
@@ -68,10 +72,33 @@ class ForeignReaders(ProgramTest):
         piped = self.succeed("slice", "part.stl", "-o", "-", "--format", "npz", "--layer-height", "1")
         self.assertEqual(piped.out, self.bytes_of("part.npz"))
 
+    def test_gdal_reads_geojson_and_well_known_text(self):
+        for name in ["part.geojson", "part.csv"]:
+            with self.subTest(name):
+                source = ogr.Open(self.slice(name))
+                features = [(float(f.GetField("z")), f.GetGeometryRef().GetArea()) for f in source.GetLayer()]
+                self.assert_areas([a for _, a in features])
+                for (z, _), layer in zip(features, self.layers):
+                    self.assertAlmostEqual(z, layer["z"], delta=1e-8)
+
     def test_gdal_reads_dxf(self):
         source = ogr.Open(self.slice("part.dxf"))
         names = {feature.GetField("Layer") for feature in source.GetLayer()}
         self.assertEqual(len(names), sum(1 for layer in self.layers if layer["parts"][0]["rings"]))
+
+    def test_shapely_finds_valid_polygons(self):
+        found = []
+        self.slice("part.geojson")
+        for feature in json.loads(self.bytes_of("part.geojson"))["features"]:
+            polygons = shapely.geometry.shape(feature["geometry"])
+            self.assertTrue(polygons.is_valid)
+            for polygon in polygons.geoms:
+                self.assertTrue(polygon.exterior.is_ccw)
+                self.assertFalse(any(hole.is_ccw for hole in polygon.interiors))
+            found.append(polygons.area)
+        self.assert_areas(found)
+        with open(self.slice("part.csv"), newline="") as table:
+            self.assert_areas([shapely.wkt.loads(row["WKT"]).area for row in csv.DictReader(table)])
 
     def test_ezdxf_finds_closed_polylines(self):
         document = ezdxf.readfile(self.slice("part.dxf"))

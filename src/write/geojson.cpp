@@ -1,0 +1,121 @@
+#include "write/geojson.hpp"
+
+#include "write/decimal.hpp"
+#include "write/grid_polygons.hpp"
+#include "write/quoted.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+std::string height_text(double mm) {
+    return decimal_text(mm, 9, 0);
+}
+
+// "[[1,2],[3.5,4],[1,2]]"; a ring ends with its first point once more.
+void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& out) {
+    constexpr std::size_t per_point = 2 * (most_integer_digits + 6) + 4;
+    char* at = out.room((points.size() + 1) * per_point + 2);
+    const auto put = [&](const GridPoint& p) {
+        *at++ = '[';
+        at = put_thousandths(at, p.x);
+        *at++ = ',';
+        at = put_thousandths(at, p.y);
+        *at++ = ']';
+        *at++ = ',';
+    };
+    *at++ = '[';
+    for (const GridPoint& p : points)
+        put(p);
+    if (closed)
+        put(points.front());
+    at[-1] = ']';
+    out.end_at(at);
+}
+
+class GeoJsonWriter final : public SequentialWriter {
+  public:
+    GeoJsonWriter(const std::string& path, const LayerFileInfo& info)
+        : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = false}) {
+        for (const PartInfo& part : info.parts)
+            labels_.push_back(json_quoted(part.label));
+    }
+
+  private:
+    // The standard means degrees on the Earth and knows no other system any more; who reads millimetres out
+    // of it has to know. "units" is ours.
+    static std::string head(const LayerFileInfo& info) {
+        const Box3& box = info.box;
+        return fmt::format("{{\"type\":\"FeatureCollection\",\"units\":\"mm\",\"bbox\":[{},{},{},{}],"
+                           "\"features\":[",
+                           height_text(box.min.x), height_text(box.min.y), height_text(box.max.x),
+                           height_text(box.max.y));
+    }
+
+    std::string layer_head(const Place& place) override { return place.position == 0 ? "\n" : ",\n"; }
+
+    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            if (part > 0)
+                out.append(",\n");
+            format_part(parts[part], part, out);
+        }
+    }
+
+    void format_part(const Layer& layer, std::size_t part, ByteBuffer& out) const {
+        const Nesting nested = nesting(layer);
+        std::vector<GridPoint> scratch;
+        put_feature(layer, part, "MultiPolygon", out);
+        bool any = false;
+        for_each_polygon(layer, nested, grid_, scratch, [&](bool first, std::span<const GridPoint> points) {
+            if (first)
+                out.append(any ? "],[" : "[");
+            else
+                out.append(",");
+            put_positions(points, true, out);
+            any = true;
+        });
+        out.append(any ? "]]}}" : "]}}");
+        any = false;
+        for_each_line(layer, nested, grid_, scratch, [&](std::span<const GridPoint> points, bool closed) {
+            if (any) {
+                out.append(",");
+            } else {
+                out.append(",\n");
+                put_feature(layer, part, "MultiLineString", out);
+            }
+            put_positions(points, closed, out);
+            any = true;
+        });
+        if (any)
+            out.append("]}}");
+    }
+
+    // Up to the bracket of its coordinates.
+    void put_feature(const Layer& layer, std::size_t part, std::string_view type, ByteBuffer& out) const {
+        out.append(fmt::format("{{\"type\":\"Feature\",\"properties\":{{\"layer\":{},\"z\":{},\"bottom\":{},"
+                               "\"top\":{},\"part\":{},\"label\":{}}},\"geometry\":{{\"type\":\"{}\","
+                               "\"coordinates\":[",
+                               layer.index, height_text(layer.z), height_text(layer.bottom),
+                               height_text(layer.top), part + 1, labels_[part], type));
+    }
+
+    std::string tail() override { return "\n]}\n"; }
+
+    std::vector<std::string> labels_;
+    Grid grid_{text_step_mm};
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_geojson(const std::string& path, const LayerFileInfo& info) {
+    return std::make_unique<GeoJsonWriter>(path, info);
+}
+
+} // namespace lamella
