@@ -227,7 +227,7 @@ Command make_command() {
     output.letter = 'o';
     return {
         .name = "make",
-        .summary = "make a test body as STL, PLY or OBJ: a sheet with holes, a chess rook, ...",
+        .summary = "make a test body: a sheet with holes, a chess rook, ...",
         .description =
             "Makes a closed body to try things with. The same options give the same bytes on every "
             "machine.",

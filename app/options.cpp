@@ -211,13 +211,15 @@ std::vector<Option> read_limit_options(ReadLimits& target) {
 }
 
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
-    Option units = length(
-        "units-mm", "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded",
-        target.units_mm);
-    units.preset = exact(LayerWriteOptions{}.units_mm);
+    // Options of some formats have no preset: a configuration file that lists all presets must suit any
+    // format.
     return {choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
                    names_of(layer_formats()), target.format),
-            std::move(units), flag("short", "cli: 16-bit coordinates, half the size", target.short_form)};
+            length("units-mm",
+                   "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded; "
+                   "0.001 unless given",
+                   target.units_mm),
+            flag("short", "cli: 16-bit coordinates, half the size", target.short_form)};
 }
 
 LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) const {

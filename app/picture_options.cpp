@@ -88,15 +88,13 @@ std::uint32_t limited(std::uint64_t value) {
 OptionGroup picture_options(PictureArguments& target) {
     Option antialias = count("antialias", "N",
                              "strips per row of pixels, 1 to 64: how finely covered parts of pixels become "
-                             "grey; 1 is black and white, by the middles of pixels",
+                             "grey; 1 is black and white, by the middles of pixels; 8 unless given",
                              target.antialias);
-    antialias.preset = std::to_string(RasterOptions{}.antialias);
-    Option gamma =
-        positive("gamma", "G", "grey becomes 255 times the covered part to this power", target.gamma);
-    gamma.preset = exact(RasterOptions{}.gamma);
-    Option fade = count("fade-layers", "N", "sl1: layers in which the first exposure fades to the normal one",
+    Option gamma = positive(
+        "gamma", "G", "grey becomes 255 times the covered part to this power; 1 unless given", target.gamma);
+    Option fade = count("fade-layers", "N",
+                        "sl1: layers in which the first exposure fades to the normal one; 10 unless given",
                         target.fade_layers);
-    fade.preset = std::to_string(ExposureOptions{}.fade_layers);
     return {"Pictures (png, png-zip, sl1, sl1s)",
             {lengths("pixel-size", "MM|X,Y", "of a pixel; for png and png-zip 0.05 unless given",
                      target.pixel_mm),

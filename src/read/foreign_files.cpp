@@ -22,7 +22,6 @@ constexpr std::array foreign_files = {
     Foreign{"<!doctype html"sv, "is a web page, no mesh file; download the file itself"},
     Foreign{"<html"sv, "is a web page, no mesh file; download the file itself"},
     Foreign{"<?xml"sv, "is an XML file of an unknown kind, no mesh file"},
-    Foreign{"<amf"sv, "is an AMF file, no mesh file"},
     Foreign{"version https://git-lfs"sv,
             "is a pointer of Git LFS to the real file; fetch it with 'git lfs pull'"},
     Foreign{"\xff\xfe"sv, "is text in UTF-16; save it as UTF-8, or as a binary file"},

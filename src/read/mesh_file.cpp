@@ -85,14 +85,14 @@ MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, cons
     const ByteSource source =
         is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution.cancel) : opened;
     const std::string_view text = text_of(source);
+    const std::string extension = extension_of(source.name);
+    if (is_stl(source))
+        return read_stl(source, options, execution);
     if (is_zip(text))
         return holds_amf(source, options) ? read_amf(source, options, execution)
                                           : read_three_mf(source, options, execution);
     if (is_amf(text))
         return read_amf(source, options, execution);
-    const std::string extension = extension_of(source.name);
-    if (is_stl(source))
-        return read_stl(source, options, execution);
     if (is_ply(text))
         return read_ply(source, options, execution);
     if (is_off(text))

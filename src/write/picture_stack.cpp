@@ -7,6 +7,7 @@
 #include "container/zip_writer.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
+#include "write/left_out.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
@@ -86,9 +87,10 @@ class PictureStackWriter : public LayerWriter {
         LayerPicture picture = pictures_.picture(parts);
         const Layer& layer = parts.front();
         made(layer.index, picture);
-        return [this, picture = std::move(picture), index = layer.index, z = layer.z, bottom = layer.bottom,
-                top = layer.top] {
+        return [this, picture = std::move(picture), extras = extras_of(parts), index = layer.index,
+                z = layer.z, bottom = layer.bottom, top = layer.top] {
             order_.next(z);
+            left_out_.note(extras);
             add(index, picture);
             manifest_.add(index, z, bottom, top, picture.covered);
         };
@@ -98,6 +100,8 @@ class PictureStackWriter : public LayerWriter {
         order_.end();
         end(manifest_.text());
     }
+
+    std::vector<std::string> warnings() const final { return left_out_.warnings(); }
 
   protected:
     PictureStackWriter(const LayerFileInfo& info, const LayerWriteOptions& options)
@@ -113,6 +117,7 @@ class PictureStackWriter : public LayerWriter {
   private:
     Display display_;
     LayerOrder order_;
+    LeftOut left_out_{{.open_chains = false, .hatches = false}};
     LayerPictures pictures_;
     Manifest manifest_;
 };

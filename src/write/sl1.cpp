@@ -5,6 +5,7 @@
 #include "container/zip_writer.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
+#include "write/left_out.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
@@ -104,8 +105,10 @@ class Sl1Writer final : public LayerWriter {
     std::function<void()> prepare(std::span<const Layer> parts) override {
         order_.check_parts(parts.size());
         const Layer& layer = parts.front();
-        return [this, picture = pictures_.picture(parts), z = layer.z, thickness = layer.thickness()] {
+        return [this, picture = pictures_.picture(parts), extras = extras_of(parts), z = layer.z,
+                thickness = layer.thickness()] {
             order_.next(z);
+            left_out_.note(extras);
             count(picture.covered * display_.pixel_mm2(), thickness);
             archive_.add_ready(fmt::format("{}{:05}.png", job_, order_.count() - 1), ZipMethod::stored,
                                {picture.file->view(), picture.file->view().size(), picture.crc});
@@ -120,6 +123,7 @@ class Sl1Writer final : public LayerWriter {
     }
 
     std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
+    std::vector<std::string> warnings() const override { return left_out_.warnings(); }
 
   private:
     /// Counts the layer that `order_` has just let through.
@@ -197,6 +201,7 @@ class Sl1Writer final : public LayerWriter {
     PicturePrinter printer_;
     Display display_;
     LayerOrder order_;
+    LeftOut left_out_{{.open_chains = false, .hatches = false}};
     LayerPictures pictures_;
     double normal_s_;
     double first_s_;

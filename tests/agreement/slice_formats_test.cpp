@@ -191,14 +191,14 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
     ASSERT_GT(chains, 1U);
     ASSERT_GT(hatches, 1U);
     for (const LayerFormat& format : layer_formats()) {
-        if (format.directory)
+        if (format.directory || format.name.starts_with("sl1")) // whose display is smaller than these
             continue;
         std::vector<std::string> warnings;
         static_cast<void>(written(std::string(format.name).c_str(), parts, &warnings));
         std::string all;
         for (const std::string& warning : warnings)
             all += warning + '\n';
-        const bool closed_only = format.name == "slc" || format.name == "3mf";
+        const bool closed_only = format.name == "slc" || format.name == "3mf" || format.name == "png-zip";
         const bool no_hatches =
             format.name != "json" && format.name != "npz" && !format.name.starts_with("cli");
         EXPECT_EQ(all.find(std::to_string(chains) + " open contours") != std::string::npos, closed_only)
