@@ -83,7 +83,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     LayerFile file = read_layers(arguments.input, execution);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
-    VerifyOptions options{.mesh = {}, .quantum_mm = file.units_mm / 2};
+    VerifyOptions options{.mesh = {}, .quantum_mm = file.resolution_mm / 2};
     if (!arguments.slice_at.empty()) {
         const SliceAt at = slice_at_of(arguments.slice_at);
         for (LayerPart& part : file.parts)

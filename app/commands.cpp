@@ -7,8 +7,8 @@
 namespace lamella::app {
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands{slice_command(), info_command(),       verify_command(), convert_command(),
-                                  make_command(),  completion_command(), help_command()};
+    std::vector<Command> commands{slice_command(),   info_command(), verify_command(),     compare_command(),
+                                  convert_command(), make_command(), completion_command(), help_command()};
     commands.back().operands.front().choices = names_of(commands);
     return commands;
 }
@@ -19,7 +19,7 @@ std::span<const ExitCode> exit_codes() noexcept {
          {1, "a fault of Lamella itself: please report it"},
          {2, "the command line or a configuration file asks for what cannot be done"},
          {3, "an input cannot be read or holds nothing to work on"},
-         {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify)"},
+         {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify, compare)"},
          {5, "a limit was hit, such as memory or --timeout"},
          {6, "the output cannot be written; nothing was left at its path"},
          {130, "cancelled, by Ctrl-C or the terminate signal"}}};

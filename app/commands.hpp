@@ -8,6 +8,7 @@ namespace lamella::app {
 
 [[nodiscard]] Command slice_command();
 [[nodiscard]] Command info_command();
+[[nodiscard]] Command compare_command();
 [[nodiscard]] Command verify_command();
 [[nodiscard]] Command convert_command();
 [[nodiscard]] Command make_command();

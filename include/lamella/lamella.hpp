@@ -35,6 +35,7 @@
 #include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"
+#include "lamella/polygon/compare.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/layer_steps.hpp"

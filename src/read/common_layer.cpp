@@ -649,6 +649,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, con
     file.path = name;
     file.format = header.binary ? "cli" : "cli-ascii";
     file.units_mm = header.units_mm;
+    file.resolution_mm = header.units_mm;
 
     Collector collector(header, name);
     if (header.binary)

@@ -329,6 +329,7 @@ LayerFile read_layered_svg(std::string_view bytes, const std::string& name, cons
     file.path = name;
     file.format = "svg";
     file.units_mm = 1;
+    file.resolution_mm = 0.001;
     SvgReader reader(name, bytes.size(), file);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());

@@ -501,6 +501,7 @@ LayerFile read_slices_3mf(const OpcPackage& package, const Execution& execution)
     file.path = package.zip().name();
     file.format = "3mf";
     file.units_mm = 1;
+    file.resolution_mm = 0.001;
     file.warnings = package.zip().oddities();
     PackageReader(package, file, execution).read();
     return file;

@@ -22,6 +22,8 @@ struct LayerFile {
     std::string path;
     std::string format;  ///< "cli", "cli-ascii" or "svg"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
+    /// The step to which the format rounds coordinates and heights, mm; 0 where it keeps them as they are.
+    double resolution_mm = 0;
     std::vector<LayerPart> parts;      ///< at least one; all have the same planes
     std::vector<std::string> warnings; ///< one line each: what was odd and what was made of it
 

@@ -1,0 +1,214 @@
+#include "lamella/core/error.hpp"
+#include "lamella/polygon/compare.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "stats_json.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CompareArguments {
+    std::vector<std::string> inputs;
+    std::optional<double> tolerance;
+    bool json = false;
+    RunOptions run;
+};
+
+/// A layer of one file beside that of the other.
+struct Pair {
+    double z = 0;
+    const Layer* first = nullptr; ///< null: the file has none there
+    const Layer* second = nullptr;
+    LayerDifference difference = {};
+};
+
+/// Layers whose cuts lie no further apart than `reach` belong together. One without contours needs no
+/// partner.
+std::vector<Pair> pairs_of(const LayerStack& first, const LayerStack& second, double reach) {
+    std::vector<Pair> pairs;
+    std::size_t i = 0;
+    std::size_t j = 0;
+    while (i < first.size() || j < second.size()) {
+        const double z = i < first.size() ? first[i].z : std::numeric_limits<double>::infinity();
+        const double w = j < second.size() ? second[j].z : std::numeric_limits<double>::infinity();
+        if (std::abs(z - w) <= reach) {
+            pairs.push_back({z, &first[i++], &second[j++]});
+        } else if (z < w) {
+            if (first[i++].contours() > 0)
+                pairs.push_back({z, &first[i - 1], nullptr});
+        } else if (second[j++].contours() > 0) {
+            pairs.push_back({w, nullptr, &second[j - 1]});
+        }
+    }
+    return pairs;
+}
+
+bool agrees(const Pair& pair, double tolerance) {
+    return pair.first != nullptr && pair.second != nullptr && pair.difference.within(tolerance);
+}
+
+/// Orders differences by size: a layer that one file does not have is the largest.
+double size_of(const Pair& pair) {
+    return pair.first == nullptr || pair.second == nullptr ? std::numeric_limits<double>::infinity()
+                                                           : pair.difference.distance_mm;
+}
+
+std::string told(const Pair& pair, const CompareArguments& arguments) {
+    if (pair.first == nullptr || pair.second == nullptr)
+        return fmt::format("z = {} mm: only {} has contours there", brief(pair.z),
+                           one_line(arguments.inputs[pair.first == nullptr ? 1 : 0]));
+    const LayerDifference& found = pair.difference;
+    std::string text = fmt::format("z = {} mm: ", brief(pair.z));
+    if (std::isinf(found.distance_mm))
+        text += fmt::format("{} contours against {}", grouped(found.first.contours),
+                            grouped(found.second.contours));
+    else
+        text += fmt::format("{} mm apart at ({}, {})", brief(found.distance_mm), brief(found.where.x),
+                            brief(found.where.y));
+    if (found.first.contours != found.second.contours && !std::isinf(found.distance_mm))
+        text += fmt::format(", {} contours against {}", grouped(found.first.contours),
+                            grouped(found.second.contours));
+    if (found.first.open_chains != found.second.open_chains)
+        text += fmt::format(", {} open chains against {}", grouped(found.first.open_chains),
+                            grouped(found.second.open_chains));
+    return text +
+           fmt::format(", area {} against {} mm2", brief(found.first.area_mm2), brief(found.second.area_mm2));
+}
+
+Json pair_json(const Pair& pair) {
+    const bool both = pair.first != nullptr && pair.second != nullptr;
+    const LayerDifference& found = pair.difference;
+    const bool measured = both && std::isfinite(found.distance_mm);
+    return {{"z", pair.z},
+            {"in", both                    ? "both"
+                   : pair.first != nullptr ? "first"
+                                           : "second"},
+            {"distance_mm", measured ? Json(found.distance_mm) : Json()},
+            {"at", measured ? Json{found.where.x, found.where.y} : Json()},
+            {"contours", {found.first.contours, found.second.contours}},
+            {"open_chains", {found.first.open_chains, found.second.open_chains}},
+            {"area_mm2", {found.first.area_mm2, found.second.area_mm2}}};
+}
+
+int run_compare(const CompareArguments& arguments, const Context& context) {
+    if (arguments.inputs[0] == "-" && arguments.inputs[1] == "-")
+        throw Error(ErrorKind::usage, "standard input holds one file only");
+    const Execution execution = arguments.run.execution(context);
+    const LayerFile first = read_layers(arguments.inputs[0], execution);
+    const LayerFile second = read_layers(arguments.inputs[1], execution);
+    for (const LayerFile* file : {&first, &second})
+        for (const std::string& warning : file->warnings)
+            context.messages.warn(warning);
+
+    const double rounding = (first.resolution_mm + second.resolution_mm) / 2 * std::sqrt(2.0);
+    const double tolerance = arguments.tolerance.value_or(rounding);
+    const LayerStack stacks[2] = {first.merged(), second.merged()};
+    std::vector<Pair> pairs = pairs_of(stacks[0], stacks[1], std::max(tolerance, rounding) + 1e-9);
+    for (Pair& pair : pairs)
+        if (pair.first != nullptr && pair.second != nullptr)
+            pair.difference = compare(*pair.first, *pair.second);
+
+    std::vector<const Pair*> differing;
+    std::uint64_t same = 0;
+    for (const Pair& pair : pairs) {
+        same += pair.difference.same ? 1 : 0;
+        if (!agrees(pair, tolerance))
+            differing.push_back(&pair);
+    }
+    const auto largest =
+        std::ranges::max_element(differing, {}, [](const Pair* pair) { return size_of(*pair); });
+
+    if (arguments.json) {
+        Json layers = Json::array();
+        for (const Pair* pair : differing)
+            layers.push_back(pair_json(*pair));
+        context.messages.result(
+            json_text({{"first", arguments.inputs[0]},
+                       {"second", arguments.inputs[1]},
+                       {"agree", differing.empty()},
+                       {"tolerance_mm", tolerance},
+                       {"layers", pairs.size()},
+                       {"same", same},
+                       {"differing", differing.size()},
+                       {"first_difference", differing.empty() ? Json() : pair_json(*differing.front())},
+                       {"largest_difference", differing.empty() ? Json() : pair_json(**largest)},
+                       {"differences", std::move(layers)}}));
+    } else {
+        std::string text = fmt::format(
+            "{} and {}: {}\n  {} compared, {} of them the same to the last bit\n",
+            one_line(arguments.inputs[0]), one_line(arguments.inputs[1]),
+            differing.empty()
+                ? fmt::format("agree within {} mm", brief(tolerance))
+                : fmt::format("{} within {} mm",
+                              differing.size() == 1 ? "1 layer does not agree"
+                                                    : grouped(differing.size()) + " layers do not agree",
+                              brief(tolerance)),
+            counted(pairs.size(), "layer"), grouped(same));
+        if (!differing.empty()) {
+            text += fmt::format("  the first difference:   {}\n", told(*differing.front(), arguments));
+            text += fmt::format("  the largest difference: {}\n", told(**largest, arguments));
+        }
+        context.messages.result(text);
+    }
+    if (!differing.empty())
+        throw Error(ErrorKind::defect,
+                    fmt::format("{} and {} differ", arguments.inputs[0], arguments.inputs[1]));
+    return 0;
+}
+
+} // namespace
+
+Command compare_command() {
+    const auto arguments = std::make_shared<CompareArguments>();
+    const auto operand = [&](const char* placeholder, const char* help) {
+        return Operand{.placeholder = placeholder, .help = help, .set = [arguments](const std::string& text) {
+                           arguments->inputs.push_back(text);
+                       }};
+    };
+    return {
+        .name = "compare",
+        .summary = "tell how far two slice files are from each other",
+        .description =
+            "Compares the layers of two slice files, of any formats, plane by plane: how far the corners of "
+            "one are from the contours of the other, areas, and open chains. Tells the first and the largest "
+            "difference. Exit code 4 says that they do not agree within the tolerance.",
+        .operands = {operand("FIRST", "a slice file; - is standard input"), operand("SECOND", "another one")},
+        .groups = {{"What is compared",
+                    {row("tolerance", ValueKind::number, "MM",
+                         "how far contours may be apart; what the rounding of both formats explains unless "
+                         "given",
+                         [arguments](const std::string& text) {
+                             arguments->tolerance = parse_number(text);
+                             if (*arguments->tolerance < 0)
+                                 throw Error(ErrorKind::usage, "it cannot be negative");
+                         }),
+                     flag("json", "print JSON", arguments->json)}},
+                   run_options(arguments->run),
+                   common_options(true)},
+        .examples = {{"lamella compare part.cli part.svg", "is it the same part?"},
+                     {"lamella compare old.cli new.cli --tolerance 0.01 --json", "for programs"}},
+        .run = [arguments](const Context& context) {
+            return run_compare(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

@@ -1,0 +1,58 @@
+"""lamella compare: how far two slice files are from each other."""
+
+from program import ProgramTest, main
+
+
+class Compare(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.succeed("make", "torus", "-o", "torus.stl")
+        self.slice("torus.json")
+
+    def slice(self, name, *words):
+        self.succeed("slice", "torus.stl", "-o", name, "--layer-height", "0.5", *words)
+
+    def differ(self, *words):
+        result = self.run_program("compare", *words)
+        self.assertEqual(result.code, 4, result.err)
+        return result
+
+    def test_a_file_is_the_same_as_itself(self):
+        found = self.succeed("compare", "torus.json", "torus.json", "--json").json()
+        self.assertTrue(found["agree"])
+        self.assertEqual(found["same"], found["layers"])
+        self.assertEqual(found["tolerance_mm"], 0)
+        self.assertEqual(found["differences"], [])
+
+    def test_formats_agree_up_to_their_rounding(self):
+        for name in ["torus.cli", "torus.svg", "torus.npz", "torus.3mf"]:
+            with self.subTest(name):
+                self.slice(name)
+                self.assertTrue(self.succeed("compare", "torus.json", name, "--json").json()["agree"])
+        self.differ("torus.json", "torus.svg", "--tolerance", "0")
+
+    def test_a_part_that_was_moved_is_told_with_how_far_and_where(self):
+        self.slice("moved.json", "--translate", "0.25,0,0")
+        found = self.differ("torus.json", "moved.json", "--json").json()
+        self.assertEqual(found["differing"], found["layers"])
+        self.assertAlmostEqual(found["largest_difference"]["distance_mm"], 0.25, places=2)
+        self.assertEqual(found["first_difference"]["z"], found["differences"][0]["z"])
+        self.succeed("compare", "torus.json", "moved.json", "--tolerance", "0.25")
+        self.assertRegex(self.differ("torus.json", "moved.json").text, r"largest difference: .* mm apart at \(")
+
+    def test_layers_that_one_file_does_not_have(self):
+        self.slice("part.json", "--layers", "2:5")
+        found = self.differ("torus.json", "part.json", "--json").json()
+        self.assertEqual({d["in"] for d in found["differences"]}, {"first"})
+        self.assertEqual(found["same"], 3)
+        self.assertIn("only torus.json has contours", self.differ("torus.json", "part.json").text)
+
+    def test_what_cannot_be(self):
+        self.fail_with(3, "missing.cli", "compare", "torus.json", "missing.cli")
+        self.fail_with(2, "needs SECOND", "compare", "torus.json")
+        self.fail_with(2, "one file only", "compare", "-", "-")
+        self.fail_with(2, "negative", "compare", "torus.json", "torus.json", "--tolerance=-1")
+
+
+if __name__ == "__main__":
+    main()
