@@ -1,5 +1,7 @@
 #include "input_kind.hpp"
 
+#include "lamella/core/error.hpp"
+
 #include "text_file.hpp"
 
 #include <array>
@@ -14,7 +16,7 @@ namespace {
 
 /// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag, SLC files with
 /// a keyword, JSON with a bracket; NumPy arrays are entries of a zip archive. Of files of meshes only AMF
-/// begins with a tag, and 3MF with an archive.
+/// begins with a tag.
 bool holds_layers(std::string_view head) {
     if (head.starts_with("\xEF\xBB\xBF"))
         head.remove_prefix(3);
@@ -39,21 +41,46 @@ std::string head_of(const std::string& path) {
     return head;
 }
 
+/// A 3MF file may hold meshes, slices, or both: then its meshes are mostly stand-ins.
+bool may_hold_slices(std::string_view head) {
+    return head.starts_with("PK\3\4");
+}
+
+/// What `layers` reads, or what `mesh` reads when there are no layers.
+template <class ReadLayers, class ReadMesh>
+std::variant<MeshFile, LayerFile> layers_or_mesh(const ReadLayers& layers, const ReadMesh& mesh) {
+    try {
+        return layers();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input)
+            throw;
+    }
+    return mesh();
+}
+
 } // namespace
 
 std::variant<MeshFile, LayerFile> read_either(const std::string& path, const MeshReadOptions& options,
                                               const Execution& execution) {
+    const auto choose = [](std::string_view head, const auto& layers,
+                           const auto& mesh) -> std::variant<MeshFile, LayerFile> {
+        if (holds_layers(head))
+            return layers();
+        if (may_hold_slices(head))
+            return layers_or_mesh(layers, mesh);
+        return mesh();
+    };
     if (path == "-") {
         // Standard input can be read only once.
         const std::string content = read_text_file("/dev/stdin");
         const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
-        if (holds_layers(content))
-            return read_layers(bytes, path, execution);
-        return read_mesh(bytes, path, options, execution);
+        return choose(
+            content, [&] { return read_layers(bytes, path, execution); },
+            [&] { return read_mesh(bytes, path, options, execution); });
     }
-    if (holds_layers(head_of(path)))
-        return read_layers(path, execution);
-    return read_mesh(path, options, execution);
+    return choose(
+        head_of(path), [&] { return read_layers(path, execution); },
+        [&] { return read_mesh(path, options, execution); });
 }
 
 } // namespace lamella::app

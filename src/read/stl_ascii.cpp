@@ -6,6 +6,7 @@
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "read/coordinate_text.hpp"
+#include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 #include "read/text_pieces.hpp"
 
@@ -480,6 +481,8 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
     if (sum.garbage != nowhere)
         remarks.add(fmt::format("line {}: left out '{}' and what follows it, after the last 'endsolid'",
                                 line(sum.garbage), printable(Words(text, sum.garbage).peek(), 40)));
+
+    ReadLimits(source.name, options).add_triangles(sum.stored);
 
     MeshFile file;
     file.format = MeshFormat::stl_ascii;

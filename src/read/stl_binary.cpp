@@ -5,6 +5,7 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
+#include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 
 #include <fmt/format.h>
@@ -189,6 +190,7 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
             fmt::format("{}: holds no triangle: a binary STL file whose count is {} and that ends after "
                         "{} bytes (its first triangle would end at byte {})",
                         source.name, declared, source.bytes.size(), stl_head_bytes + stl_record_bytes));
+    ReadLimits(source.name, options).add_triangles(stored);
     Remarks remarks(source.name, options.strict);
     if (!remark.empty())
         remarks.add(remark);

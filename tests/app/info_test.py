@@ -10,6 +10,11 @@ class Info(ProgramTest):
     def info(self, *arguments, **keywords):
         return self.succeed("info", "--json", *arguments, **keywords).json()
 
+    def test_a_3mf_file_of_slices_is_a_slice_file(self):
+        self.succeed("slice", self.box(), "-o", "box.3mf")
+        self.assertEqual(self.succeed("info", "box.3mf", "--json").json()["format"], "3mf")
+        self.assertIn("slice file", self.succeed("info", "box.3mf").text)
+
     def test_a_box(self):
         found = self.info(self.box())
         self.assertEqual(list(found), MESH_KEYS)

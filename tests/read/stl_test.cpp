@@ -102,6 +102,15 @@ TEST(Stl, RefusesWhatIsTooShortToBeAnything) {
     EXPECT_NE(error_of("s").find("expected 'solid'"), std::string::npos);
 }
 
+TEST(Stl, StopsAtMoreTrianglesThanAllowed) {
+    for (const std::string& bytes : {binary(many), solid(many)}) {
+        EXPECT_EQ(read(bytes, {.max_triangles = many.size()}).stored_triangles, many.size());
+        EXPECT_NE(
+            error_of(bytes, {.max_triangles = many.size() - 1}, ErrorKind::limit).find("--max-triangles"),
+            std::string::npos);
+    }
+}
+
 TEST(Stl, SaysWhichFileCannotBeOpened) {
     EXPECT_THROW((void)read_mesh("/nowhere/part.stl"), Error);
     try {
