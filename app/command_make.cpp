@@ -175,6 +175,14 @@ OptionGroup shape_options(MakeArguments& target) {
              {"wall", "hole", "split", "shuffle"}, target.order)}};
 }
 
+/// Meshes of these formats are read, but not written.
+void check_extension(const std::string& output) {
+    const std::string extension = std::filesystem::path(output).extension().string();
+    constexpr std::array<std::string_view, 3> only_read{".3mf", ".amf", ".off"};
+    if (std::ranges::find(only_read, extension) != only_read.end())
+        throw Error(ErrorKind::usage, fmt::format("{}: bodies are written as .stl, .ply or .obj", output));
+}
+
 /// In the format of the extension: STL unless it is that of another one.
 void write(const std::string& output, const TriangleSoup& soup, const MakeArguments& arguments) {
     const std::string extension = std::filesystem::path(output).extension().string();
@@ -197,6 +205,7 @@ int run_make(const MakeArguments& arguments, const Context& context) {
     const Transform pose = arguments.pose.pose();
     const std::string output = arguments.output.empty() ? arguments.body + ".stl" : arguments.output;
 
+    check_extension(output);
     TriangleSoup soup = body.make(arguments);
     if (arguments.shuffle && arguments.order != "shuffle")
         soup = shuffled(soup, *arguments.shuffle);

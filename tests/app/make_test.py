@@ -29,6 +29,8 @@ class Make(ProgramTest):
                 self.succeed("slice", name, "-o", "other.cli")
                 self.assertEqual((self.folder / "other.cli").read_bytes(), (self.folder / "stl.cli").read_bytes())
         self.fail_with(2, "--ascii: PLY files are written as binary", "make", "rook", "--ascii", "-o", "other.ply")
+        for name in ["rook.off", "rook.3mf"]:
+            self.fail_with(2, "written as .stl, .ply or .obj", "make", "rook", "-o", name)
 
     def test_a_lattice_is_one_closed_surface(self):
         self.succeed("make", "lattice", "--cells", "2", "--detail", "2")
