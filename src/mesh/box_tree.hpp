@@ -52,8 +52,10 @@ class BoxTree {
         }
         [[nodiscard]] bool overlaps(const Bounds& other) const noexcept {
             // Without branches: which of the six decides is a toss-up.
-            return ((min[0] <= other.max[0]) & (other.min[0] <= max[0]) & (min[1] <= other.max[1]) &
-                    (other.min[1] <= max[1]) & (min[2] <= other.max[2]) & (other.min[2] <= max[2])) != 0;
+            int apart = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                apart |= static_cast<int>(min[k] > other.max[k]) | static_cast<int>(other.min[k] > max[k]);
+            return apart == 0;
         }
     };
     static constexpr std::size_t leaf_size = 4;
@@ -141,10 +143,10 @@ BoxTree::BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, c
 template <class Visit>
 void BoxTree::close_to_leaf(std::size_t leaf, const Visit& visit) const {
     const Bounds& mine = levels_[0][leaf];
-    const auto [begin, end] = places(leaf);
+    const auto mine_at = places(leaf);
     const auto compare_with = [&](std::size_t other) {
         const auto [from, to] = places(other);
-        for (std::size_t a = begin; a < end; ++a) {
+        for (std::size_t a = mine_at.first; a < mine_at.second; ++a) {
             if (other != leaf && !boxes_[a].overlaps(levels_[0][other]))
                 continue;
             for (std::size_t b = std::max(a + 1, from); b < to; ++b)

@@ -81,9 +81,9 @@ int compare_right_of(double x, const Segment& s, const Segment& t) noexcept {
 
 /// Whether all points lie on the line through the smallest and the largest of them.
 bool collinear(std::span<const Point2> ring) noexcept {
-    const auto [lo, hi] = std::minmax_element(ring.begin(), ring.end());
+    const auto ends = std::minmax_element(ring.begin(), ring.end());
     return std::all_of(ring.begin(), ring.end(),
-                       [&](const Point2& p) { return orientation(*lo, *hi, p) == 0; });
+                       [&](const Point2& p) { return orientation(*ends.first, *ends.second, p) == 0; });
 }
 
 LeftEnd left_end(std::span<const Point2> ring) {
