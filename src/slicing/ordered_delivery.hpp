@@ -24,13 +24,8 @@ class OrderedDelivery {
     OrderedDelivery(const LayerSink& sink, const Executor& executor, ProgressMeter& progress)
         : sink_(sink), executor_(executor), progress_(progress) {}
 
-    static constexpr std::uint32_t all_planes = ~std::uint32_t{0};
-
-    /// Thread-safe. `plane` is the position in the plan; each is delivered once. Ordered parts of planes from
-    /// `until` on are left to later calls: so a team that delivers together need not wait, at its end, for
-    /// the one that writes. Calls at the same time have the same `until`; the last ones must have
-    /// `all_planes`.
-    void deliver(std::uint32_t plane, Layer&& layer, std::uint32_t until = all_planes) {
+    /// Thread-safe. `plane` is the position in the plan; each is delivered once.
+    void deliver(std::uint32_t plane, Layer&& layer) {
         std::function<void()> action = sink_(std::move(layer));
         std::unique_lock lock(mutex_);
         waiting_.emplace(plane, std::move(action));
@@ -38,7 +33,7 @@ class OrderedDelivery {
             return; // whoever drains will come to it
         draining_ = true;
         try {
-            while (!waiting_.empty() && waiting_.begin()->first == next_ && next_ < until) {
+            while (!waiting_.empty() && waiting_.begin()->first == next_) {
                 const std::function<void()> ready = std::move(waiting_.begin()->second);
                 waiting_.erase(waiting_.begin());
                 lock.unlock();

@@ -82,10 +82,7 @@ inline std::vector<Slab> deal_out(const std::vector<std::uint64_t>& points, std:
     const std::uint64_t per_slab = points_in_flight / (workers + 1ULL); // one may wait for its turn
     const std::uint64_t largest_layer = std::max<std::uint64_t>(1, most_points);
     if (points_in_flight != 0 && per_slab / largest_layer < std::min<std::uint64_t>(planes, worth_a_slab)) {
-        // As many for each worker: they take whole layers.
-        auto group = std::max<std::uint64_t>(1, points_in_flight / largest_layer);
-        if (group > workers)
-            group -= group % workers;
+        const auto group = std::max<std::uint64_t>(1, points_in_flight / largest_layer);
         return {
             {0, planes, {}, static_cast<std::uint32_t>(std::min<std::uint64_t>(group, planes)), workers > 1}};
     }

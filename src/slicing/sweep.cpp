@@ -525,10 +525,6 @@ class SlabSweep {
                 write_run(run, std::max(run.begin, written_), std::min(run.end, end), benches_.front());
         }
 
-        // In a shared slab, the last layers of a group are written beside the formatting of the next group.
-        const std::uint32_t until = slab_->shared && end < slab_->end
-                                        ? end - std::min(end, executor_.workers())
-                                        : OrderedDelivery::all_planes;
         for_all(outgoing.size(), [&](std::uint64_t from, std::uint64_t to, Bench&) {
             for (std::uint64_t i = from; i < to; ++i) {
                 const auto plane = static_cast<std::uint32_t>(written_ + i);
@@ -541,7 +537,7 @@ class SlabSweep {
                 if (layer.offsets.back() != 0)
                     layer.points =
                         PointArray(piece.owner, piece.points + outgoing[i].begin, layer.offsets.back());
-                delivery_.deliver(plane, std::move(layer), until);
+                delivery_.deliver(plane, std::move(layer));
             }
         });
         written_ = end;

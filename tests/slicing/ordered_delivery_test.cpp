@@ -57,26 +57,6 @@ TEST(OrderedDelivery, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
     }
 }
 
-TEST(OrderedDelivery, LeavesTheLastOrderedPartsToALaterTeam) {
-    const Execution execution{};
-    const Executor executor(execution);
-    std::vector<std::uint64_t> ordered;
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-        return [&ordered, index = layer.index] {
-            ordered.push_back(index);
-        };
-    };
-    ProgressMeter progress(execution, Stage::slice, 8);
-    OrderedDelivery delivery(sink, executor, progress);
-    for (const std::uint32_t plane : {2U, 0U, 3U, 1U})
-        delivery.deliver(plane, layer_number(plane), 2);
-    EXPECT_EQ(ordered, (std::vector<std::uint64_t>{0, 1}));
-    delivery.deliver(5, layer_number(5), 4);
-    EXPECT_EQ(ordered, (std::vector<std::uint64_t>{0, 1, 2, 3}));
-    delivery.deliver(4, layer_number(4));
-    EXPECT_EQ(ordered, (std::vector<std::uint64_t>{0, 1, 2, 3, 4, 5}));
-}
-
 TEST(OrderedDelivery, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
     constexpr std::uint32_t planes = 2000;
     const Execution execution{.threads = 7};
