@@ -20,7 +20,7 @@ struct LayerPart {
 
 struct LayerFile {
     std::string path;
-    std::string format;  ///< "cli", "cli-ascii" or "svg"
+    std::string format;  ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json" or "npz"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
     /// The step to which the format rounds coordinates and heights, mm; 0 where it keeps them as they are.
     double resolution_mm = 0;
@@ -31,8 +31,8 @@ struct LayerFile {
     [[nodiscard]] LayerStack merged() const;
 };
 
-/// Reads a slice file: Common Layer Interface (binary or ASCII) or layered SVG, by its content. "-" reads
-/// standard input. Layers come in normal form and in ascending z; what the format does not say is made from
+/// Reads a slice file, by its content: Common Layer Interface (binary or ASCII), layered SVG, SLC, 3MF with
+/// slice stacks, JSON of layers or NumPy arrays. "-" reads standard input. Layers come in normal form and in ascending z; what the format does not say is made from
 /// what it does (a Common Layer Interface layer knows its top: its cut is taken half-way up). Throws
 /// Error{input} with file, byte or line, what was found and what was expected.
 [[nodiscard]] LayerFile read_layers(const std::string& path, const Execution& execution = {});

@@ -51,7 +51,7 @@ struct LayerFormat {
     bool directory = false;     ///< writes one file per layer into a directory
 };
 
-/// cli, cli-ascii, svg, svg-layers, png, png-zip, sl1, sl1s.
+/// All formats, in the order in which help lists them.
 [[nodiscard]] std::span<const LayerFormat> layer_formats() noexcept;
 
 /// By name; by extension of the path where the name is empty. Throws Error{usage} that lists what there is.
