@@ -93,67 +93,49 @@ class Groups {
     std::vector<bool> marked_;
 };
 
-/// A piece of a ring that goes one way in x and one way in y: its box is that of its ends, and it does not
-/// meet itself.
-struct Chain {
-    std::uint32_t ring;
-    std::uint32_t first;    ///< number of its first point in the layer
-    std::uint32_t segments; ///< its last point may be the first one of the ring
-    bool goes_on;           ///< the next chain is the same way's continuation
-};
-
 class Search {
   public:
-    explicit Search(const Layer& layer) : layer_(layer), groups_(layer.rings) {}
+    Search(const Layer& layer, const MonotoneChains& chains)
+        : layer_(layer), all_(chains), groups_(layer.rings) {}
 
     Contacts run() && {
-        make_chains();
+        take_chains();
         if (!chains_.empty() && !search_grid() && (found_ || !free_of_contacts()))
             group_by_boxes();
         return groups_.contacts();
     }
 
   private:
-    [[nodiscard]] const Point2& point(const Chain& chain, std::uint32_t i) const noexcept {
-        const std::uint64_t at = chain.first + i;
-        return layer_.points[at == layer_.offsets[chain.ring + 1] ? layer_.offsets[chain.ring] : at];
+    /// Chains of long segments are cut further: one around a corner of the layer has all of it in its box.
+    void take_chains() {
+        const std::span<const Chain> all = all_.all();
+        if (all.empty())
+            return;
+        Box box = box_of(all.front());
+        for (const Chain& chain : all)
+            box.add(box_of(chain));
+        chains_.reserve(all.size() + all.size() / 8);
+        boxes_.reserve(chains_.capacity());
+        const double longest =
+            4 * std::max(box.x1 - box.x0, box.y1 - box.y0) / std::sqrt(static_cast<double>(all.size()));
+        for (const Chain& chain : all)
+            take(chain, longest);
     }
 
-    void make_chains() {
-        chains_.reserve(layer_.points.size() / (longest / 2) + 4 * layer_.rings);
-        boxes_.reserve(chains_.capacity());
-        for (std::uint32_t ring = 0; ring < layer_.rings; ++ring) {
-            const std::uint64_t begin = layer_.offsets[ring];
-            const std::uint64_t end = layer_.offsets[ring + 1];
-            if (end - begin < 2)
-                continue;
-            Chain chain{ring, static_cast<std::uint32_t>(begin), 0, false};
-            unsigned ways = 0;
-            for (std::uint64_t i = begin; i < end; ++i) {
-                const Point2& a = layer_.points[i];
-                const Point2& b = layer_.points[i + 1 == end ? begin : i + 1];
-                const unsigned way =
-                    static_cast<unsigned>(b.x > a.x) | static_cast<unsigned>(b.x < a.x) << 1 |
-                    static_cast<unsigned>(b.y > a.y) << 2 | static_cast<unsigned>(b.y < a.y) << 3;
-                const unsigned both = ways | way;
-                const bool turns = (both & 3) == 3 || (both & 12) == 12;
-                if (turns || chain.segments == longest) {
-                    chain.goes_on = !turns;
-                    add(chain);
-                    chain = {ring, static_cast<std::uint32_t>(i), 0, false};
-                    ways = turns ? way : both;
-                } else {
-                    ways = both;
-                }
-                ++chain.segments;
-            }
-            add(chain);
+    void take(const Chain& chain, double longest) {
+        const Box box = box_of(chain);
+        if (chain.segments > 1 && std::max(box.x1 - box.x0, box.y1 - box.y0) > longest) {
+            const std::uint32_t half = chain.segments / 2;
+            take({chain.first, chain.ring, half, chain.ways}, longest);
+            take({chain.first + half, chain.ring, chain.segments - half, chain.ways}, longest);
+        } else {
+            chains_.push_back(chain);
+            boxes_.push_back(box);
         }
     }
 
-    void add(const Chain& chain) {
-        chains_.push_back(chain);
-        boxes_.push_back(Box::of(point(chain, 0), point(chain, chain.segments)));
+    [[nodiscard]] Box box_of(const Chain& chain) const noexcept {
+        return Box::of(all_.front(chain), all_.back(chain));
     }
 
     /// False when it would take too long.
@@ -213,9 +195,14 @@ class Search {
                 return false;
             patience_ -= m * m / 16;
             for (std::uint32_t a = ends[i]; a < ends[i + 1]; ++a)
-                for (std::uint32_t b = a + 1; b < ends[i + 1]; ++b)
-                    if (boxes_[sorted[a]].meets(boxes_[sorted[b]]))
+                for (std::uint32_t b = a + 1; b < ends[i + 1]; ++b) {
+                    const Box& s = boxes_[sorted[a]];
+                    const Box& t = boxes_[sorted[b]];
+                    // Boxes may meet in many cells: one of them will do.
+                    if (s.meets(t) && i == cell(std::max(s.y0, t.y0), all.y0, rows) * columns +
+                                               cell(std::max(s.x0, t.x0), all.x0, columns))
                         look_into(sorted[a], sorted[b]);
+                }
         }
         return patience_ > 0;
     }
@@ -223,22 +210,56 @@ class Search {
     void look_into(std::uint32_t i, std::uint32_t j) {
         const Chain& a = chains_[i];
         const Chain& b = chains_[j];
-        if (patience_ == 0 || !groups_.open(a.ring, b.ring) || (a.goes_on && j == i + 1))
+        if (patience_ == 0 || !groups_.open(a.ring, b.ring))
             return;
-        if (in_contact(a, 0, a.segments, b, 0, b.segments)) {
+        if (in_contact(a, b)) {
             groups_.connect(a.ring, b.ring);
             found_ = true;
         }
+    }
+
+    /// a comes before b in the layer.
+    bool in_contact(const Chain& a, const Chain& b) {
+        if (a.ring == b.ring && a.first + a.segments == b.first) {
+            // The one goes on where the other one ends. If it does so the same way, they meet nowhere else.
+            // If it turns in x alone, one lies above that point and the other one below it, but for level
+            // pieces right beside it: these fold. The same for y.
+            const unsigned ways = a.ways | b.ways;
+            if (!way::turns_in_y(ways))
+                return way::turns_in_x(ways) && last_step(a).y == 0 && first_step(b).y == 0;
+            if (!way::turns_in_x(ways))
+                return last_step(a).x == 0 && first_step(b).x == 0;
+        }
+        return in_contact(a, 0, a.segments, b, 0, b.segments);
+    }
+
+    /// Of the first segment of a chain that is no point: 1 in what changes along it, 0 in what does not.
+    [[nodiscard]] Point2 first_step(const Chain& chain) const noexcept {
+        std::uint32_t i = 1;
+        while (i < chain.segments && all_.point(chain, i) == all_.front(chain))
+            ++i;
+        return step(all_.front(chain), all_.point(chain, i));
+    }
+    [[nodiscard]] Point2 last_step(const Chain& chain) const noexcept {
+        std::uint32_t i = chain.segments - 1;
+        while (i > 0 && all_.point(chain, i) == all_.back(chain))
+            --i;
+        return step(all_.point(chain, i), all_.back(chain));
+    }
+    static Point2 step(const Point2& a, const Point2& b) noexcept {
+        return {a.x != b.x ? 1.0 : 0.0, a.y != b.y ? 1.0 : 0.0};
     }
 
     /// Whether the segments [a0, a1) of chain a are in contact with the segments [b0, b1) of b.
     bool in_contact(const Chain& a, std::uint32_t a0, std::uint32_t a1, const Chain& b, std::uint32_t b0,
                     std::uint32_t b1) {
         patience_ -= patience_ > 0 ? 1 : 0;
-        if (!Box::of(point(a, a0), point(a, a1)).meets(Box::of(point(b, b0), point(b, b1))))
+        if (!Box::of(all_.point(a, a0), all_.point(a, a1))
+                 .meets(Box::of(all_.point(b, b0), all_.point(b, b1))))
             return false;
         if (a1 - a0 == 1 && b1 - b0 == 1)
-            return in_contact(a.ring, a.first + a0, b.ring, b.first + b0);
+            return in_contact(a.ring, static_cast<std::uint32_t>(a.first + a0), b.ring,
+                              static_cast<std::uint32_t>(b.first + b0));
         if (a1 - a0 >= b1 - b0) {
             const std::uint32_t middle = a0 + (a1 - a0) / 2;
             return in_contact(a, a0, middle, b, b0, b1) || in_contact(a, middle, a1, b, b0, b1);
@@ -393,23 +414,22 @@ class Search {
         }
     }
 
-    static constexpr std::uint32_t longest = 16;
-
     const Layer& layer_;
+    const MonotoneChains& all_;
+    std::vector<Chain> chains_; // and pieces of chains
     Groups groups_;
-    std::vector<Chain> chains_;
-    std::vector<Box> boxes_;     // of the chains
+    std::vector<Box> boxes_;     // of them
     std::uint64_t patience_ = 0; // steps until the grid is given up
     bool found_ = false;
 };
 
 } // namespace
 
-Contacts find_contacts(const Layer& layer) {
+Contacts find_contacts(const Layer& layer, const MonotoneChains& chains) {
     if (layer.points.size() >= Contacts::none)
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967294 points; contacts are found in smaller ones");
-    return Search(layer).run();
+    return Search(layer, chains).run();
 }
 
 } // namespace lamella

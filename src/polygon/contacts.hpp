@@ -4,6 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "polygon/monotone_chains.hpp"
+
 #include <cstdint>
 #include <vector>
 
@@ -23,10 +25,10 @@ struct Contacts {
 /// Groups are connected by contacts, and numbered by the first of their rings. Decided exactly. Open chains
 /// do not count; points that repeat the one before them do not either.
 ///
-/// Meant for layers that are clean, in O(n) for most of them: rings are cut into short chains that go one
-/// way in x and in y; a grid tells which of their boxes overlap, and those alone are looked into. O(n log n)
+/// Meant for layers that are clean, in O(chains) for most of them: a grid tells which of the chains' boxes
+/// overlap, and those alone are looked into. O(n log n)
 /// for layers that defeat the grid, such as long walls aslant side by side. Where such a layer has contacts,
 /// rings whose boxes overlap are put in one group: groups may be larger than contacts ask for, never smaller.
-[[nodiscard]] Contacts find_contacts(const Layer& layer);
+[[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains);
 
 } // namespace lamella

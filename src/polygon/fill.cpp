@@ -5,6 +5,8 @@
 
 #include "polygon/arrangement.hpp"
 #include "polygon/contacts.hpp"
+#include "polygon/known_nesting.hpp"
+#include "polygon/monotone_chains.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -149,8 +151,9 @@ std::string_view fill_rule_name(FillRule rule) noexcept {
 Filled fill(const Layer& layer, FillRule rule) {
     if (rule == FillRule::none)
         return {.layer = layer};
-    const Contacts contacts = find_contacts(layer);
-    const Nesting nest = nesting(layer);
+    const MonotoneChains chains(layer);
+    const Contacts contacts = find_contacts(layer, chains);
+    const Nesting nest = nesting(layer, chains, contacts);
     if (clean(contacts, nest))
         return {.layer = layer};
     return Filler(layer, rule, contacts, nest).run();

@@ -41,7 +41,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
     changes = {};
     if (!steps.any())
         return layer;
-    changes.area_before_mm2 = area(layer);
+    const Layer before = layer; // shares its points
     bool changed = false;
     if (steps.fill != FillRule::none) {
         Filled filled = fill(layer, steps.fill);
@@ -72,8 +72,11 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
         changed = changed || changes.points_dropped > 0;
         layer = std::move(simplified);
     }
-    changes.changed_layers = changed ? 1 : 0;
-    changes.area_after_mm2 = changed ? area(layer) : changes.area_before_mm2;
+    if (changed) {
+        changes.changed_layers = 1;
+        changes.area_before_mm2 = area(before);
+        changes.area_after_mm2 = area(layer);
+    }
     return layer;
 }
 

@@ -4,6 +4,8 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 
+#include "polygon/known_nesting.hpp"
+#include "polygon/monotone_chains.hpp"
 #include "polygon/orientation.hpp"
 
 #include <algorithm>
@@ -40,18 +42,16 @@ struct LeftEnd {
     Point2 smallest; ///< of the ring's points
 };
 
-/// Calls visit(segment, rightwards) for the edges of a ring that are not vertical.
+/// Calls visit(segment, rightwards) for the edges of a chain that are not vertical.
 template <class Visit>
-void for_edges(std::span<const Point2> ring, Visit visit) {
-    if (ring.empty())
-        return;
-    const Point2* previous = &ring.back();
-    for (const Point2& p : ring) {
-        if (previous->x < p.x)
-            visit(Segment{*previous, p}, true);
-        else if (p.x < previous->x)
-            visit(Segment{p, *previous}, false);
-        previous = &p;
+void for_edges(const MonotoneChains& chains, const Chain& chain, Visit visit) {
+    for (std::uint32_t i = 0; i < chain.segments; ++i) {
+        const Point2& a = chains.point(chain, i);
+        const Point2& b = chains.point(chain, i + 1);
+        if (a.x < b.x)
+            visit(Segment{a, b}, true);
+        else if (b.x < a.x)
+            visit(Segment{b, a}, false);
     }
 }
 
@@ -86,18 +86,22 @@ bool collinear(std::span<const Point2> ring) noexcept {
                        [&](const Point2& p) { return orientation(*ends.first, *ends.second, p) == 0; });
 }
 
-LeftEnd left_end(std::span<const Point2> ring) {
+/// Of ring i, which has points. Only the chains that reach as far to the left as any are looked into.
+LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t i) {
+    const std::span<const Point2> ring = layer.contour(i);
     LeftEnd result;
-    result.smallest = *std::min_element(ring.begin(), ring.end());
+    result.smallest = ring.front();
+    double left = ring.front().x;
+    for (const Chain& chain : chains.of_ring(i))
+        left = std::min(left, chains.back(chain).x);
     bool found = false;
     bool folded = false; // an edge that runs there and back says nothing about the direction of the ring
-    for_edges(ring, [&](const Segment& line, bool rightwards) {
-        if (found && line.lo.x > result.line.lo.x)
+    const auto look_at = [&](const Segment& line, bool rightwards) {
+        if (line.lo.x > left)
             return;
-        int order = -1;
-        if (found && line.lo.x == result.line.lo.x)
-            order = line.lo.y != result.line.lo.y ? (line.lo.y < result.line.lo.y ? -1 : 1)
-                                                  : compare_at(line, result.line);
+        const int order = !found                          ? -1
+                          : line.lo.y != result.line.lo.y ? (line.lo.y < result.line.lo.y ? -1 : 1)
+                                                          : compare_at(line, result.line);
         if (order < 0) {
             result.line = line;
             result.rightwards = rightwards;
@@ -106,7 +110,14 @@ LeftEnd left_end(std::span<const Point2> ring) {
             folded = true;
         }
         found = true;
-    });
+    };
+    for (const Chain& chain : chains.of_ring(i)) {
+        if (chains.front(chain).x > left && chains.back(chain).x > left)
+            continue;
+        for (std::uint32_t k = 0; k <= chain.segments; ++k)
+            result.smallest = std::min(result.smallest, chains.point(chain, k));
+        for_edges(chains, chain, look_at);
+    }
     if (!found) {
         result.flat = true;
         result.line = {result.smallest, {std::numeric_limits<double>::max(), result.smallest.y}};
@@ -139,9 +150,12 @@ struct Copies {
     std::vector<std::uint32_t> representative; ///< of each ring
     std::vector<std::uint32_t> next;           ///< the next copy of a ring, or none
 
-    Copies(const Layer& layer, std::span<const LeftEnd> ends) : next(ends.size(), Nesting::none) {
+    /// `apart`: there are none.
+    Copies(const Layer& layer, std::span<const LeftEnd> ends, bool apart) : next(ends.size(), Nesting::none) {
         representative.resize(ends.size());
         std::iota(representative.begin(), representative.end(), 0U);
+        if (apart)
+            return;
         std::vector<std::uint32_t> order = representative;
         std::erase_if(order, [&](std::uint32_t i) { return layer.contour(i).empty(); });
         const auto begins_before = [&](std::uint32_t i, std::uint32_t j) {
@@ -384,7 +398,9 @@ Surroundings surroundings(const EdgesByAbscissa& edges, const Edge& left_end) {
 
 class Search {
   public:
-    explicit Search(const Layer& layer) : layer_(layer), ends_(ends_of(layer)), copies_(layer, ends_) {
+    Search(const Layer& layer, const MonotoneChains& chains, bool apart)
+        : layer_(layer), chains_(chains), apart_(apart), ends_(ends_of(layer, chains)),
+          copies_(layer, ends_, apart) {
         for (std::uint32_t i = 0; i < ends_.size(); ++i)
             if (layer.contour(i).empty())
                 result_.order.push_back(i);
@@ -423,15 +439,21 @@ class Search {
         std::uint32_t missing = 0;          ///< how many clockwise rings are too many
     };
 
-    static std::vector<LeftEnd> ends_of(const Layer& layer) {
+    static std::vector<LeftEnd> ends_of(const Layer& layer, const MonotoneChains& chains) {
         std::vector<LeftEnd> ends(layer.rings);
         for (std::size_t i = 0; i < layer.rings; ++i)
             if (!layer.contour(i).empty())
-                ends[i] = left_end(layer.contour(i));
+                ends[i] = left_end(layer, chains, i);
         return ends;
     }
 
+    /// Ranks only count where edges coincide, and areas take a look at all points.
     void rank_by_area() {
+        rank_.resize(ends_.size());
+        if (apart_) {
+            std::iota(rank_.begin(), rank_.end(), 0U);
+            return;
+        }
         std::vector<double> area(ends_.size());
         for (const std::uint32_t ring : order_)
             area[ring] = ends_[ring].flat ? 0 : std::abs(ring_area(layer_.contour(ring)));
@@ -439,7 +461,6 @@ class Search {
         std::sort(by_area.begin(), by_area.end(), [&](std::uint32_t a, std::uint32_t b) {
             return area[a] != area[b] ? area[a] > area[b] : a < b;
         });
-        rank_.resize(ends_.size());
         for (std::uint32_t i = 0; i < by_area.size(); ++i)
             rank_[by_area[i]] = i;
     }
@@ -462,28 +483,38 @@ class Search {
         for (const std::uint32_t ring : order_)
             abscissae.push_back(ends_[ring].line.lo.x);
         EdgesByAbscissa edges(std::move(abscissae));
+        std::size_t near = 0;
         for (const std::uint32_t ring : order_) {
             if (ends_[ring].flat)
                 continue;
             const std::int32_t net = net_winding(ring);
-            const std::span<const Point2> points = layer_.contour(ring);
-            const Point2* previous = &points.back();
-            std::size_t previous_leaf = edges.leaf(previous->x, 0);
-            for (const Point2& p : points) {
-                const std::size_t leaf = edges.leaf(p.x, previous_leaf);
-                if (leaf != previous_leaf) { // others reach over no left end
-                    const bool rightwards = previous->x < p.x;
-                    const Segment line = rightwards ? Segment{*previous, p} : Segment{p, *previous};
-                    const bool inside_above = rightwards == ends_[ring].rightwards;
-                    edges.add({line, ring, inside_above ? net : -net, place_in_order(ring, inside_above)},
-                              std::min(leaf, previous_leaf), std::max(leaf, previous_leaf));
-                }
-                previous = &p;
-                previous_leaf = leaf;
+            for (const Chain& chain : chains_.of_ring(ring)) {
+                const std::size_t from = edges.leaf(chains_.front(chain).x, near);
+                near = edges.leaf(chains_.back(chain).x, from);
+                if (from != near) // others reach over no left end
+                    add_edges(chain, net, from, edges);
             }
         }
         edges.order();
         return edges;
+    }
+
+    /// The edges of a chain that reach over left ends. `net`: of its ring; `leaf`: of its first point.
+    void add_edges(const Chain& chain, std::int32_t net, std::size_t leaf, EdgesByAbscissa& edges) const {
+        const std::uint32_t ring = chain.ring;
+        const bool rightwards = (chain.ways & way::right) != 0;
+        const bool inside_above = rightwards == ends_[ring].rightwards;
+        const std::int32_t step = inside_above ? net : -net;
+        const std::int64_t order = place_in_order(ring, inside_above);
+        for (std::uint32_t i = 0; i < chain.segments; ++i) {
+            const Point2& a = chains_.point(chain, i);
+            const Point2& b = chains_.point(chain, i + 1);
+            const std::size_t next = edges.leaf(b.x, leaf);
+            if (next != leaf)
+                edges.add({rightwards ? Segment{a, b} : Segment{b, a}, ring, step, order},
+                          std::min(leaf, next), std::max(leaf, next));
+            leaf = next;
+        }
     }
 
     [[nodiscard]] std::int64_t place_in_order(std::uint32_t ring, bool inside_above) const noexcept {
@@ -575,6 +606,8 @@ class Search {
     }
 
     const Layer& layer_;
+    const MonotoneChains& chains_;
+    bool apart_; ///< no two rings have a point in common
     std::vector<LeftEnd> ends_;
     Copies copies_;
     std::vector<std::uint32_t> order_; ///< the representatives
@@ -586,13 +619,22 @@ class Search {
     std::vector<std::uint32_t> innermost_; ///< of a representative: the last of its copies
 };
 
-} // namespace
-
-Nesting nesting(const Layer& layer) {
+void check_size(const Layer& layer) {
     if (layer.rings >= Nesting::none)
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967294 rings; nesting is found for fewer of them");
-    return Search(layer).run();
+}
+
+} // namespace
+
+Nesting nesting(const Layer& layer) {
+    check_size(layer);
+    return Search(layer, MonotoneChains(layer), false).run();
+}
+
+Nesting nesting(const Layer& layer, const MonotoneChains& chains, const Contacts& contacts) {
+    check_size(layer);
+    return Search(layer, chains, contacts.groups == 0).run();
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {

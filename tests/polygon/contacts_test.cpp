@@ -21,8 +21,12 @@ using test::reversed;
 using Numbers = std::vector<std::uint32_t>;
 constexpr std::uint32_t none = Contacts::none;
 
+Contacts contacts(const Layer& layer) {
+    return find_contacts(layer, MonotoneChains(layer));
+}
+
 Numbers groups(const std::vector<Contour>& rings) {
-    return find_contacts(layer_of(rings)).group;
+    return contacts(layer_of(rings)).group;
 }
 
 TEST(Contacts, OfRingsApartAreNone) {
@@ -58,7 +62,7 @@ TEST(Contacts, DoNotCountPointsThatRepeat) {
 }
 
 TEST(Contacts, DoNotCountChains) {
-    EXPECT_EQ(find_contacts(layer_of({rectangle(0, 0, 4, 4)}, {{{-1, 1}, {9, 1}}})).groups, 0U);
+    EXPECT_EQ(contacts(layer_of({rectangle(0, 0, 4, 4)}, {{{-1, 1}, {9, 1}}})).groups, 0U);
 }
 
 /// By all pairs, for small integer coordinates and rings without repeated points.
@@ -169,10 +173,10 @@ TEST(Contacts, OfLongWallsAslantAreFoundWithoutLookingAtAllPairs) {
         const double x = 4.0 * i;
         walls.push_back({{x, 0}, {x + 2, 0}, {x + 2 + 3.0 * n, 4.0 * n}, {x + 3.0 * n, 4.0 * n}});
     }
-    EXPECT_EQ(find_contacts(layer_of(walls)).groups, 0U);
+    EXPECT_EQ(contacts(layer_of(walls)).groups, 0U);
     walls.push_back(rectangle(-9, 7, -1, 8)); // apart
     walls.push_back(rectangle(0, 2.0 * n, 9.0 * n, 2.0 * n + 1));
-    const Contacts found = find_contacts(layer_of(walls));
+    const Contacts found = contacts(layer_of(walls));
     EXPECT_EQ(found.groups, 2U); // more than are in contact: their boxes meet
     EXPECT_EQ(found.group[0], 0U);
     EXPECT_EQ(found.group[n - 1], 0U);

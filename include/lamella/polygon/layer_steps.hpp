@@ -33,7 +33,7 @@ struct LayerChanges {
     std::uint64_t rings_reversed = 0; ///< by `fill`
     std::uint64_t rings_dropped = 0;  ///< by `fill`, `largest_body` and `without_small_rings`
     std::uint64_t points_dropped = 0; ///< by `simplify`
-    double area_before_mm2 = 0;
+    double area_before_mm2 = 0;       ///< of the layers that were changed
     double area_after_mm2 = 0;
 
     LayerChanges& operator+=(const LayerChanges& other) noexcept;
