@@ -18,26 +18,6 @@ namespace lamella {
 
 namespace {
 
-struct Box {
-    double x0;
-    double y0;
-    double x1;
-    double y1;
-
-    static Box of(const Point2& a, const Point2& b) noexcept {
-        return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
-    }
-    void add(const Box& other) noexcept {
-        x0 = std::min(x0, other.x0);
-        y0 = std::min(y0, other.y0);
-        x1 = std::max(x1, other.x1);
-        y1 = std::max(y1, other.y1);
-    }
-    [[nodiscard]] bool meets(const Box& other) const noexcept {
-        return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
-    }
-};
-
 /// Whether two segments have a point in common. Neither is a point.
 bool meet(const Segment& s, const Segment& t) noexcept {
     const int a = side(s, t.lo) * side(s, t.hi);
@@ -98,118 +78,37 @@ class Search {
     Search(const Layer& layer, const MonotoneChains& chains)
         : layer_(layer), all_(chains), groups_(layer.rings) {}
 
-    Contacts run() && {
-        take_chains();
-        if (!chains_.empty() && !search_grid() && (found_ || !free_of_contacts()))
+    Contacts run(const ChainGrid* grid) && {
+        const bool told = grid != nullptr && search(*grid);
+        if (!told && !all_.all().empty() && (found_ || !free_of_contacts()))
             group_by_boxes();
         return groups_.contacts();
     }
 
   private:
-    /// Chains of long segments are cut further: one around a corner of the layer has all of it in its box.
-    void take_chains() {
-        const std::span<const Chain> all = all_.all();
-        if (all.empty())
-            return;
-        Box box = box_of(all.front());
-        for (const Chain& chain : all)
-            box.add(box_of(chain));
-        chains_.reserve(all.size() + all.size() / 8);
-        boxes_.reserve(chains_.capacity());
-        const double longest =
-            4 * std::max(box.x1 - box.x0, box.y1 - box.y0) / std::sqrt(static_cast<double>(all.size()));
-        for (const Chain& chain : all)
-            take(chain, longest);
-    }
-
-    void take(const Chain& chain, double longest) {
-        const Box box = box_of(chain);
-        if (chain.segments > 1 && std::max(box.x1 - box.x0, box.y1 - box.y0) > longest) {
-            const std::uint32_t half = chain.segments / 2;
-            take({chain.first, chain.ring, half, chain.ways}, longest);
-            take({chain.first + half, chain.ring, chain.segments - half, chain.ways}, longest);
-        } else {
-            chains_.push_back(chain);
-            boxes_.push_back(box);
-        }
-    }
-
-    [[nodiscard]] Box box_of(const Chain& chain) const noexcept {
-        return Box::of(all_.front(chain), all_.back(chain));
-    }
-
     /// False when it would take too long.
-    bool search_grid() {
-        const std::size_t n = chains_.size();
-        Box all = boxes_[0];
-        double sides = 0;
-        for (const Box& box : boxes_) {
-            all.add(box);
-            sides += (box.x1 - box.x0) + (box.y1 - box.y0);
-        }
-        const double width = all.x1 - all.x0;
-        const double height = all.y1 - all.y0;
-        const auto count = static_cast<double>(n);
-        const double size = std::max({sides / (2 * count), std::sqrt(width * height / count),
-                                      (width + height) / count, std::max(width, height) / 0x1p15});
-        if (!(size > 0 && std::isfinite(width) && std::isfinite(height) && std::isfinite(width / size) &&
-              std::isfinite(height / size)))
-            return false;
-        const double scale = 1 / size;
-        if (!std::isfinite(scale))
-            return false;
-        const auto columns = static_cast<std::size_t>(width * scale) + 1;
-        const auto rows = static_cast<std::size_t>(height * scale) + 1;
-        const auto cell = [scale](double x, double from, std::size_t cells) {
-            return std::min(cells - 1, static_cast<std::size_t>((x - from) * scale));
-        };
-        // Rounding keeps the order of numbers, so boxes that meet have a cell in common.
-        const auto for_cells = [&](const Box& box, auto visit) {
-            const std::size_t i1 = cell(box.x1, all.x0, columns);
-            const std::size_t j1 = cell(box.y1, all.y0, rows);
-            for (std::size_t j = cell(box.y0, all.y0, rows); j <= j1; ++j)
-                for (std::size_t i = cell(box.x0, all.x0, columns); i <= i1; ++i)
-                    visit(j * columns + i);
-        };
-        std::size_t entries = 0;
-        for (const Box& box : boxes_) {
-            entries += (cell(box.x1, all.x0, columns) - cell(box.x0, all.x0, columns) + 1) *
-                       (cell(box.y1, all.y0, rows) - cell(box.y0, all.y0, rows) + 1);
-            if (entries > 16 * n + 4096)
+    bool search(const ChainGrid& grid) {
+        patience_ = 64 * grid.pieces().size() + 4096;
+        for (std::size_t i = 0; i < grid.cells(); ++i) {
+            const std::span<const std::uint32_t> here = grid.in_cell(i);
+            const std::uint64_t pairs = here.size() * here.size() / 16;
+            if (patience_ < pairs)
                 return false;
-        }
-        std::vector<std::uint32_t> ends(columns * rows + 1, 0);
-        for (const Box& box : boxes_)
-            for_cells(box, [&](std::size_t i) { ++ends[i]; });
-        std::uint32_t sum = 0;
-        for (std::uint32_t& end : ends)
-            end = sum += end;
-        std::vector<std::uint32_t> sorted(sum);
-        for (std::size_t k = n; k-- > 0;)
-            for_cells(boxes_[k], [&](std::size_t i) { sorted[--ends[i]] = static_cast<std::uint32_t>(k); });
-
-        patience_ = 64 * n + 4096;
-        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-            const std::uint64_t m = ends[i + 1] - ends[i];
-            if (patience_ < m * m / 16)
-                return false;
-            patience_ -= m * m / 16;
-            for (std::uint32_t a = ends[i]; a < ends[i + 1]; ++a)
-                for (std::uint32_t b = a + 1; b < ends[i + 1]; ++b) {
-                    const Box& s = boxes_[sorted[a]];
-                    const Box& t = boxes_[sorted[b]];
+            patience_ -= pairs;
+            for (std::size_t a = 0; a < here.size(); ++a)
+                for (std::size_t b = a + 1; b < here.size(); ++b) {
+                    const ChainBox& s = grid.box(here[a]);
+                    const ChainBox& t = grid.box(here[b]);
                     // Boxes may meet in many cells: one of them will do.
-                    if (s.meets(t) && i == cell(std::max(s.y0, t.y0), all.y0, rows) * columns +
-                                               cell(std::max(s.x0, t.x0), all.x0, columns))
-                        look_into(sorted[a], sorted[b]);
+                    if (s.meets(t) && i == grid.cell(std::max(s.x0, t.x0), std::max(s.y0, t.y0)))
+                        look_into(grid.pieces()[here[a]], grid.pieces()[here[b]]);
                 }
         }
         return patience_ > 0;
     }
 
-    void look_into(std::uint32_t i, std::uint32_t j) {
-        const Chain& a = chains_[i];
-        const Chain& b = chains_[j];
+    /// a comes before b in the layer.
+    void look_into(const Chain& a, const Chain& b) {
         if (patience_ == 0 || !groups_.open(a.ring, b.ring))
             return;
         if (in_contact(a, b)) {
@@ -218,7 +117,6 @@ class Search {
         }
     }
 
-    /// a comes before b in the layer.
     bool in_contact(const Chain& a, const Chain& b) {
         if (a.ring == b.ring && a.first + a.segments == b.first) {
             // The one goes on where the other one ends. If it does so the same way, they meet nowhere else.
@@ -254,8 +152,8 @@ class Search {
     bool in_contact(const Chain& a, std::uint32_t a0, std::uint32_t a1, const Chain& b, std::uint32_t b0,
                     std::uint32_t b1) {
         patience_ -= patience_ > 0 ? 1 : 0;
-        if (!Box::of(all_.point(a, a0), all_.point(a, a1))
-                 .meets(Box::of(all_.point(b, b0), all_.point(b, b1))))
+        if (!ChainBox::of(all_.point(a, a0), all_.point(a, a1))
+                 .meets(ChainBox::of(all_.point(b, b0), all_.point(b, b1))))
             return false;
         if (a1 - a0 == 1 && b1 - b0 == 1)
             return in_contact(a.ring, static_cast<std::uint32_t>(a.first + a0), b.ring,
@@ -373,15 +271,15 @@ class Search {
 
     /// Puts all rings in groups, connected by boxes that meet.
     void group_by_boxes() {
-        std::vector<Box> boxes(layer_.rings, {0, 0, 0, 0});
+        std::vector<ChainBox> boxes(layer_.rings, {0, 0, 0, 0});
         std::vector<std::uint32_t> order;
-        for (std::size_t i = 0; i < chains_.size(); ++i) {
-            const std::uint32_t ring = chains_[i].ring;
-            if (order.empty() || order.back() != ring) {
-                boxes[ring] = boxes_[i];
-                order.push_back(ring);
+        for (const Chain& chain : all_.all()) {
+            const ChainBox box = ChainBox::of(all_.front(chain), all_.back(chain));
+            if (order.empty() || order.back() != chain.ring) {
+                boxes[chain.ring] = box;
+                order.push_back(chain.ring);
             } else {
-                boxes[ring].add(boxes_[i]);
+                boxes[chain.ring].add(box);
             }
         }
         std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -416,20 +314,18 @@ class Search {
 
     const Layer& layer_;
     const MonotoneChains& all_;
-    std::vector<Chain> chains_; // and pieces of chains
     Groups groups_;
-    std::vector<Box> boxes_;     // of them
     std::uint64_t patience_ = 0; // steps until the grid is given up
     bool found_ = false;
 };
 
 } // namespace
 
-Contacts find_contacts(const Layer& layer, const MonotoneChains& chains) {
+Contacts find_contacts(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid) {
     if (layer.points.size() >= Contacts::none)
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967294 points; contacts are found in smaller ones");
-    return Search(layer, chains).run();
+    return Search(layer, chains).run(grid);
 }
 
 } // namespace lamella

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "polygon/chain_grid.hpp"
 #include "polygon/monotone_chains.hpp"
 
 #include <cstdint>
@@ -25,10 +26,12 @@ struct Contacts {
 /// Groups are connected by contacts, and numbered by the first of their rings. Decided exactly. Open chains
 /// do not count; points that repeat the one before them do not either.
 ///
-/// Meant for layers that are clean, in O(chains) for most of them: a grid tells which of the chains' boxes
-/// overlap, and those alone are looked into. O(n log n)
-/// for layers that defeat the grid, such as long walls aslant side by side. Where such a layer has contacts,
-/// rings whose boxes overlap are put in one group: groups may be larger than contacts ask for, never smaller.
-[[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains);
+/// Meant for layers that are clean, in O(chains) for most of them: the grid tells which of the chains' boxes
+/// overlap, and those alone are looked into. O(n log n) for layers that have no grid or defeat it, such as
+/// long walls aslant side by side. Where such a layer has contacts, rings whose boxes overlap are put in one
+/// group: groups may be larger than contacts ask for, never smaller.
+///
+/// `grid`: of these chains; null where there is none.
+[[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid);
 
 } // namespace lamella

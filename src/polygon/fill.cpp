@@ -152,8 +152,9 @@ Filled fill(const Layer& layer, FillRule rule) {
     if (rule == FillRule::none)
         return {.layer = layer};
     const MonotoneChains chains(layer);
-    const Contacts contacts = find_contacts(layer, chains);
-    const Nesting nest = nesting(layer, chains, contacts);
+    const std::optional<ChainGrid> grid = ChainGrid::of(chains);
+    const Contacts contacts = find_contacts(layer, chains, grid ? &*grid : nullptr);
+    const Nesting nest = nesting(layer, chains, grid ? &*grid : nullptr, contacts);
     if (clean(contacts, nest))
         return {.layer = layer};
     return Filler(layer, rule, contacts, nest).run();

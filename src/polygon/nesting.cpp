@@ -4,6 +4,7 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 
+#include "polygon/edge_below.hpp"
 #include "polygon/known_nesting.hpp"
 #include "polygon/monotone_chains.hpp"
 #include "polygon/orientation.hpp"
@@ -14,6 +15,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -60,23 +62,6 @@ void for_edges(const MonotoneChains& chains, const Chain& chain, Visit visit) {
 int compare_at(const Segment& edge, const Segment& probe) noexcept {
     const int by_place = -side(edge, probe.lo);
     return by_place != 0 ? by_place : -side(edge, probe.hi);
-}
-
-double height_at(const Segment& s, double x) noexcept {
-    return s.lo.y + (x - s.lo.x) * ((s.hi.y - s.lo.y) / (s.hi.x - s.lo.x));
-}
-
-/// How s lies to t just to the right of x, where both exist: -1 below, 0 on it, 1 above. Exact unless they
-/// cross somewhere.
-int compare_right_of(double x, const Segment& s, const Segment& t) noexcept {
-    const int left = s.lo.x > t.lo.x ? side(t, s.lo) : -side(s, t.lo);
-    const int right = s.hi.x < t.hi.x ? side(t, s.hi) : -side(s, t.hi);
-    if (left * right >= 0)
-        return left != 0 ? left : right;
-    if (std::max(s.lo.x, t.lo.x) >= x)
-        return left;
-    const double difference = height_at(s, x) - height_at(t, x);
-    return difference != 0 ? (difference > 0 ? 1 : -1) : right;
 }
 
 /// Whether all points lie on the line through the smallest and the largest of them.
@@ -398,6 +383,7 @@ Surroundings surroundings(const EdgesByAbscissa& edges, const Edge& left_end) {
 
 class Search {
   public:
+    /// `apart`: no two rings have a point in common, nor has one with itself.
     Search(const Layer& layer, const MonotoneChains& chains, bool apart)
         : layer_(layer), chains_(chains), apart_(apart), ends_(ends_of(layer, chains)),
           copies_(layer, ends_, apart) {
@@ -408,7 +394,8 @@ class Search {
                 order_.push_back(i);
     }
 
-    Nesting run() && {
+    /// `grid`: null where there is none.
+    Nesting run(const ChainGrid* grid) && {
         const std::size_t n = ends_.size();
         result_.kind.assign(n, RingKind::flat);
         result_.parent.assign(n, Nesting::none);
@@ -424,11 +411,10 @@ class Search {
             return std::move(result_);
         rank_by_area();
         order_from_left_to_right();
-        const EdgesByAbscissa edges = sorted_edges();
-        for (const std::uint32_t ring : order_) {
-            const Surroundings around = surroundings(edges, left_edge(ring));
-            place(ring, parent_of(around), static_cast<std::int32_t>(around.winding));
-        }
+        if (apart_ && grid != nullptr && std::ranges::none_of(ends_, &LeftEnd::flat))
+            place_apart(*grid);
+        else
+            place_any();
         return std::move(result_);
     }
 
@@ -438,6 +424,27 @@ class Search {
         std::uint32_t body = Nesting::none; ///< the innermost one
         std::uint32_t missing = 0;          ///< how many clockwise rings are too many
     };
+
+    void place_any() {
+        const EdgesByAbscissa edges = sorted_edges();
+        for (const std::uint32_t ring : order_) {
+            const Surroundings around = surroundings(edges, left_edge(ring));
+            place(ring, parent_of(around), static_cast<std::int32_t>(around.winding));
+        }
+    }
+
+    /// What is next below a left end tells all: the ring is inside of that one, or beside it.
+    void place_apart(const ChainGrid& grid) {
+        for (const std::uint32_t ring : order_) {
+            const std::optional<EdgeBelow> below = edge_below(ends_[ring].line.lo, chains_, grid);
+            if (!below)
+                place(ring, Nesting::none, 0);
+            else if (below->rightwards == ends_[below->ring].rightwards)
+                place(ring, below->ring, result_.winding_inside[below->ring]);
+            else
+                place(ring, result_.parent[below->ring], result_.winding[below->ring]);
+        }
+    }
 
     static std::vector<LeftEnd> ends_of(const Layer& layer, const MonotoneChains& chains) {
         std::vector<LeftEnd> ends(layer.rings);
@@ -607,7 +614,7 @@ class Search {
 
     const Layer& layer_;
     const MonotoneChains& chains_;
-    bool apart_; ///< no two rings have a point in common
+    bool apart_;
     std::vector<LeftEnd> ends_;
     Copies copies_;
     std::vector<std::uint32_t> order_; ///< the representatives
@@ -629,12 +636,16 @@ void check_size(const Layer& layer) {
 
 Nesting nesting(const Layer& layer) {
     check_size(layer);
-    return Search(layer, MonotoneChains(layer), false).run();
+    const MonotoneChains chains(layer);
+    const std::optional<ChainGrid> grid = ChainGrid::of(chains);
+    return nesting(layer, chains, grid ? &*grid : nullptr,
+                   find_contacts(layer, chains, grid ? &*grid : nullptr));
 }
 
-Nesting nesting(const Layer& layer, const MonotoneChains& chains, const Contacts& contacts) {
+Nesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
+                const Contacts& contacts) {
     check_size(layer);
-    return Search(layer, chains, contacts.groups == 0).run();
+    return Search(layer, chains, contacts.groups == 0).run(grid);
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 namespace lamella {
 namespace {
@@ -22,7 +23,9 @@ using Numbers = std::vector<std::uint32_t>;
 constexpr std::uint32_t none = Contacts::none;
 
 Contacts contacts(const Layer& layer) {
-    return find_contacts(layer, MonotoneChains(layer));
+    const MonotoneChains chains(layer);
+    const std::optional<ChainGrid> grid = ChainGrid::of(chains);
+    return find_contacts(layer, chains, grid ? &*grid : nullptr);
 }
 
 Numbers groups(const std::vector<Contour>& rings) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace lamella {
 namespace {
@@ -101,10 +102,12 @@ TEST(KnownNesting, IsTheNestingOfTheLayer) {
         }
         const Layer layer = layer_of(rings);
         const MonotoneChains chains(layer);
-        const Contacts contacts = find_contacts(layer, chains);
+        const std::optional<ChainGrid> grid = ChainGrid::of(chains);
+        const Contacts contacts = find_contacts(layer, chains, grid ? &*grid : nullptr);
         EXPECT_TRUE(!apart || contacts.groups == 0);
-        const Nesting expected = nesting(layer);
-        const Nesting found = nesting(layer, chains, contacts);
+        // Who is told of contacts looks at all edges.
+        const Nesting expected = nesting(layer, chains, nullptr, {.group = {}, .groups = 1});
+        const Nesting found = nesting(layer, chains, grid ? &*grid : nullptr, contacts);
         EXPECT_EQ(found.kind, expected.kind);
         EXPECT_EQ(found.parent, expected.parent);
         EXPECT_EQ(found.winding, expected.winding);

@@ -1,0 +1,51 @@
+#include "polygon/edge_below.hpp"
+
+#include "polygon/orientation.hpp"
+
+#include <algorithm>
+
+namespace lamella {
+
+namespace {
+
+/// The edge of a chain over the abscissa x and a little more, which the chain reaches over.
+Segment edge_over(double x, const MonotoneChains& chains, const Chain& chain) {
+    const bool rightwards = (chain.ways & way::right) != 0;
+    std::uint32_t low = 0; // point `low` is on the near side of x, point `high` on the far side
+    std::uint32_t high = chain.segments;
+    while (high - low > 1) {
+        const std::uint32_t middle = low + (high - low) / 2;
+        const bool beyond = chains.point(chain, middle).x > x;
+        (beyond == rightwards ? high : low) = middle;
+    }
+    const Point2& a = chains.point(chain, low);
+    const Point2& b = chains.point(chain, high);
+    return rightwards ? Segment{a, b} : Segment{b, a};
+}
+
+} // namespace
+
+std::optional<EdgeBelow> edge_below(const Point2& p, const MonotoneChains& chains, const ChainGrid& grid) {
+    std::optional<EdgeBelow> found;
+    Segment highest{};
+    const std::size_t column = grid.column(p.x);
+    for (std::size_t row = grid.row(p.y) + 1; row-- > 0;) {
+        for (const std::uint32_t i : grid.in_cell(grid.cell_at(column, row))) {
+            const ChainBox& box = grid.box(i);
+            if (p.x < box.x0 || box.x1 <= p.x || p.y < box.y0)
+                continue;
+            const Chain& piece = grid.pieces()[i];
+            const Segment edge = edge_over(p.x, chains, piece);
+            if (side(edge, p) > 0 && (!found || compare_right_of(p.x, edge, highest) > 0)) {
+                highest = edge;
+                found = {piece.ring, (piece.ways & way::right) != 0};
+            }
+        }
+        // What was not seen yet lies in lower rows from end to end.
+        if (found && grid.row(std::min(highest.lo.y, highest.hi.y)) >= row)
+            break;
+    }
+    return found;
+}
+
+} // namespace lamella
