@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 namespace lamella {
@@ -57,18 +59,56 @@ std::size_t read_piece(std::string_view text, std::size_t begin, std::size_t end
     return stopped;
 }
 
-std::uint64_t count_rows(std::string_view text, std::size_t begin, std::size_t end, char comment) {
-    const char* const last = text.data() + end;
-    // Where lines end with LF alone, memchr finds the ends several times faster than a look at each byte,
-    // which was a quarter of the time of reading.
-    const bool any_return = std::memchr(text.data() + begin, '\r', end - begin) != nullptr;
+/// How many rows there are, if each line is one for certain, as in most texts: none begins with a blank or
+/// ends with a CR alone, and there are no comments. Sixteen bytes at a time, which is many times faster than
+/// to look at what each line holds.
+std::optional<std::uint64_t> count_plain_rows(std::string_view text, char comment) {
+    if (text.empty() || text[0] <= ' ' || text[0] == comment)
+        return std::nullopt;
+    using Bytes = signed char __attribute__((vector_size(16)));
+    const auto load = [&](std::size_t at) {
+        Bytes bytes;
+        std::memcpy(&bytes, text.data() + at, sizeof bytes);
+        return bytes;
+    };
+    const auto comment_byte = static_cast<signed char>(comment);
     std::uint64_t count = 0;
-    for_rows(text.data() + begin, last, comment, [&](const char* at) {
+    std::size_t at = 1;
+    while (at + sizeof(Bytes) <= text.size()) {
+        Bytes line_feeds{};
+        Bytes doubtful{};
+        for (int i = 0; i < 127 && at + sizeof(Bytes) <= text.size();
+             ++i, at += sizeof(Bytes)) { // counts fit
+            const Bytes before = load(at - 1);
+            const Bytes here = load(at);
+            line_feeds -= here == '\n';
+            doubtful |= ((before == '\n') & (here <= ' ')) | ((before == '\r') & (here != '\n')) |
+                        (here == comment_byte);
+        }
+        for (std::size_t k = 0; k < sizeof(Bytes); ++k) {
+            if (doubtful[k] != 0)
+                return std::nullopt;
+            count += static_cast<std::uint64_t>(line_feeds[k]);
+        }
+    }
+    for (; at < text.size(); ++at) {
+        const char before = text[at - 1];
+        if ((before == '\n' && text[at] <= ' ') || (before == '\r' && text[at] != '\n') ||
+            text[at] == comment)
+            return std::nullopt;
+        count += text[at] == '\n' ? 1 : 0;
+    }
+    return text.back() == '\n' ? count : count + 1;
+}
+
+std::uint64_t count_rows(std::string_view text, char comment) {
+    if (const std::optional<std::uint64_t> count = count_plain_rows(text, comment))
+        return *count;
+    const char* const end = text.data() + text.size();
+    std::uint64_t count = 0;
+    for_rows(text.data(), end, comment, [&](const char* at) {
         ++count;
-        if (any_return)
-            return skip_to_line_end(at, last);
-        const void* const line_end = std::memchr(at, '\n', static_cast<std::size_t>(last - at));
-        return line_end == nullptr ? last : static_cast<const char*>(line_end);
+        return skip_to_line_end(at, end);
     });
     return count;
 }
@@ -116,8 +156,34 @@ void RowWords::skip_word() {
     at_ += word_at(at_, end_).size();
 }
 
+/// Takes "3 17 4 2", as nearly all rows of most files are: all short numbers with one blank between them.
+bool RowWords::take_triangle(FacePiece& piece) {
+    const char* at = at_;
+    if (end_ - at < 2 || at[0] != '3' || at[1] != ' ')
+        return false;
+    ++at;
+    std::array<std::uint32_t, 3> corners{};
+    for (std::uint32_t& corner : corners) {
+        if (at == end_ || *at != ' ')
+            return false;
+        const char* const digits = ++at;
+        for (; at != end_ && static_cast<unsigned char>(*at - '0') < 10; ++at)
+            corner = corner * 10 + static_cast<unsigned char>(*at - '0'); // wraps round for long ones only
+        constexpr std::ptrdiff_t most_digits = 9;
+        if (at == digits || at - digits > most_digits)
+            return false;
+    }
+    if (at != end_ && !is_blank(*at))
+        return false;
+    piece.triangles.push_back(corners);
+    at_ = at;
+    return true;
+}
+
 void RowWords::add_face(FacePiece& piece) {
     at_ = skip_spaces(at_, end_);
+    if (take_triangle(piece))
+        return;
     const std::size_t begin = offset();
     const std::int64_t count = integer();
     if (count < 0)
@@ -146,7 +212,7 @@ MeshFile read_face_rows(const ByteSource& source, const FaceRows& rows, Remarks&
     ProgressMeter progress(execution, Stage::read, text.size());
     executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i)
-            first_row[i + 1] = count_rows(text, cuts[i], cuts[i + 1], rows.comment);
+            first_row[i + 1] = count_rows(text.substr(cuts[i], cuts[i + 1] - cuts[i]), rows.comment);
     });
     for (std::size_t i = 1; i < first_row.size(); ++i)
         first_row[i] += first_row[i - 1];

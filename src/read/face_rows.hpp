@@ -38,6 +38,7 @@ class RowWords {
 
   private:
     void to_word(std::string_view expected);
+    bool take_triangle(FacePiece& piece);
 
     const char* begin_;
     const char* at_;

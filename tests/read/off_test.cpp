@@ -30,6 +30,35 @@ TEST(Off, SkipsColoursNormalsAndComments) {
                 name, corners, {{0, 1, 2}, {2, 1, 0}});
 }
 
+// Texts are cut into pieces by counting their rows; what a line holds or how it ends must not change the
+// count.
+TEST(Off, CountsRowsInAnyLayout) {
+    constexpr std::uint32_t n = 60'000; // several pieces
+    for (const std::string odd :
+         {"\n", " \n", "\r\n", "\t 7 7 7\n", "# note\n", " # note\n", "\r", "7 7 7\r"}) {
+        const bool is_row = odd.find('7') != std::string::npos;
+        for (const std::string end : {"\n", "\r\n", " \n", "\r"}) {
+            std::string text = fmt::format("OFF\n{} {} 0\n", n + (is_row ? 1 : 0), n - 2);
+            for (std::uint32_t i = 0; i < n; ++i) {
+                text += fmt::format("{} {} {}{}", i, i % 7, i % 11, end);
+                if (i == n / 2)
+                    text += odd;
+            }
+            const std::uint32_t shift = is_row ? 1 : 0;
+            for (std::uint32_t i = 0; i + 2 < n; ++i)
+                text += fmt::format("3 0 1 {}{}", i + 2 + (i + 2 > n / 2 ? shift : 0), end);
+            const MeshFile file = read(text, name);
+            const IndexedMesh& mesh = *file.objects.front().mesh.indexed();
+            ASSERT_EQ(mesh.triangles.size(), n - 2);
+            for (std::uint32_t i = 0; i + 2 < n; i += 1111) {
+                const Point3 third = mesh.vertices[mesh.triangles[i][2]];
+                EXPECT_EQ(third.x, i + 2);
+                EXPECT_EQ(third.z, (i + 2) % 11);
+            }
+        }
+    }
+}
+
 TEST(Off, DividesHomogeneousCoordinates) {
     expect_mesh("4OFF\n3 1 0\n0 0 0 1\n2 0 0 2\n0 3 -0.5 2\n3 0 1 2\n", name,
                 {{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.25}}, {{0, 1, 2}});
