@@ -85,7 +85,7 @@ rivals: build packages-rivals  ## compare with other slicers on the same parts: 
 
 read-meshes: build packages-rivals  ## compare with other readers of meshes: out/read_meshes/ (bench/README.md)
 	cmake --preset bench
-	cmake --build build-bench --target lamella_mesh_reader lamella_assimp_reader
+	cmake --build build-bench --target bench/read_meshes/all
 	python3 -B -m bench.read_meshes $(OPTIONS)
 
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)

@@ -8,7 +8,8 @@ from typing import Callable, Optional
 
 from bench.rivals.library import answer
 
-ALL = ("stl", "stl-ascii", "ply", "ply-ascii", "obj", "off")
+PLAIN = ("stl", "stl-ascii", "ply", "ply-ascii", "obj", "off")
+ALL = (*PLAIN, "3mf", "amf")
 PYTHON = "/usr/bin/python3"  # Debian's packages belong to Debian's interpreter, whichever comes first in the path
 PYTHON_READER = Path(__file__).with_name("python_reader.py")
 
@@ -51,8 +52,10 @@ def readers(folder, lamella):
         Reader("lamella", "Lamella", ALL, (folder / "lamella_reader",), lambda: answer([lamella, "--version"]), told_by_us),
         Reader("assimp", "assimp", ALL, (folder / "assimp_reader",),
                lambda: answer([folder / "assimp_reader", "--version"]), told_by_us),
+        Reader("lib3mf", "lib3mf", ("3mf",), (folder / "lib3mf_reader",),
+               lambda: answer([folder / "lib3mf_reader", "--version"]), told_by_us),
         Reader("admesh", "ADMesh", ("stl", "stl-ascii"), ("admesh", "--no-check"), admesh_version, told_by_admesh),
         python_reader("numpy-stl", ("stl", "stl-ascii")),
-        python_reader("meshio", ALL),
+        python_reader("meshio", PLAIN),
         python_reader("vtk", ("stl", "stl-ascii", "ply", "ply-ascii", "obj")),
     ]
