@@ -68,8 +68,10 @@ class Grid {
         const double height = whole.y1 - whole.y0;
         size_ = std::max({length / (2 * count), std::sqrt(width * height / (2 * count)),
                           (width + height) / count, std::max(width, height) / largest_side});
-        columns_ = static_cast<std::size_t>(width / size_) + 1;
-        rows_ = static_cast<std::size_t>(height / size_) + 1;
+        if (size_ > 0) { // rounding can leave cells without any extent
+            columns_ = static_cast<std::size_t>(width / size_) + 1;
+            rows_ = static_cast<std::size_t>(height / size_) + 1;
+        }
     }
 
     [[nodiscard]] std::size_t cells() const noexcept { return columns_ * rows_; }
@@ -134,8 +136,8 @@ class Grid {
 
     Cell whole_;
     double size_;
-    std::size_t columns_;
-    std::size_t rows_;
+    std::size_t columns_ = 1;
+    std::size_t rows_ = 1;
 };
 
 /// The first and last point of a pair's segments in common is a touch at most.

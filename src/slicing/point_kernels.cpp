@@ -15,19 +15,22 @@ namespace {
 
 template <int width>
 struct Vector {
-    typedef double Doubles
-        __attribute__((vector_size(width * sizeof(double)), aligned(sizeof(double)), may_alias));
-    typedef double AlignedDoubles __attribute__((vector_size(width * sizeof(double)), may_alias));
+    typedef double Doubles __attribute__((vector_size(width * sizeof(double)), may_alias));
+    /// One that may begin at any double. (A vector type that is aligned less does not do: clang 14 forgets
+    /// about the alignment behind a template.)
+    struct __attribute__((packed, may_alias)) Anywhere {
+        Doubles v;
+    };
 };
 
 template <int width>
-[[gnu::always_inline]] inline const typename Vector<width>::Doubles& load(const double* from) {
-    return *reinterpret_cast<const typename Vector<width>::Doubles*>(from);
+[[gnu::always_inline]] inline const typename Vector<width>::Anywhere& at(const double* from) {
+    return *reinterpret_cast<const typename Vector<width>::Anywhere*>(from);
 }
 
 template <int width>
 [[gnu::always_inline]] inline void store(const typename Vector<width>::Doubles& v, double* to) {
-    *reinterpret_cast<typename Vector<width>::Doubles*>(to) = v;
+    reinterpret_cast<typename Vector<width>::Anywhere*>(to)->v = v;
 }
 
 /// EdgeCut::shortened.
@@ -48,12 +51,12 @@ template <int width>
     const std::size_t stride = edges.stride();
     for (std::size_t i = 0; i < edges.size; i += width) { // the last lanes compute on padding
         double* column = edges.data + i;
-        V v = load<width>(column + stride);
-        v = 1.0 / (v - load<width>(column));
+        V v = at<width>(column + stride).v;
+        v = 1.0 / (v - at<width>(column).v);
         store<width>(v, column + stride);
         for (std::size_t base = 2; base < EdgeColumns::columns; base += 2) {
-            V from = load<width>(column + base * stride);
-            v = load<width>(column + (base + 1) * stride);
+            V from = at<width>(column + base * stride).v;
+            v = at<width>(column + (base + 1) * stride).v;
             shorten<width>(from, v);
             from = from + 0.0;
             store<width>(from, column + base * stride);
@@ -71,10 +74,10 @@ template <int width>
     const double* column = edges.data + i;
     const std::size_t stride = edges.stride();
     const V one = V{} + 1.0;
-    const V t = (z - load<width>(column)) * load<width>(column + stride);
+    const V t = (z - at<width>(column).v) * at<width>(column + stride).v;
     const V s = t < one ? t : one;
-    x = load<width>(column + 2 * stride) + s * load<width>(column + 3 * stride);
-    y = load<width>(column + 4 * stride) + s * load<width>(column + 5 * stride);
+    x = at<width>(column + 2 * stride).v + s * at<width>(column + 3 * stride).v;
+    y = at<width>(column + 4 * stride).v + s * at<width>(column + 5 * stride).v;
 }
 
 /// (before[last], v[0], ..., v[last - 1])
@@ -147,7 +150,7 @@ interleave(const typename Vector<width>::Doubles& x, const typename Vector<width
 /// Stores past the cache. `to` is a multiple of the vector's size.
 template <int width>
 [[gnu::always_inline]] inline void stream(const typename Vector<width>::Doubles& v, double* to) {
-    [[maybe_unused]] auto& place = *reinterpret_cast<typename Vector<width>::AlignedDoubles*>(to);
+    [[maybe_unused]] auto& place = *reinterpret_cast<typename Vector<width>::Doubles*>(to);
 #if defined(__clang__)
     __builtin_nontemporal_store(v, &place);
 #elif defined(__x86_64__)
@@ -215,9 +218,9 @@ template <int width>
         16 * width; // to look into the lanes of a vector costs as much as many comparisons
     std::size_t i = from;
     for (; i + step <= n; i += step) {
-        V least = load<width>(x + i);
+        V least = at<width>(x + i).v;
         for (std::size_t k = width; k < step; k += width)
-            least = load<width>(x + i + k) < least ? load<width>(x + i + k) : least;
+            least = at<width>(x + i + k).v < least ? at<width>(x + i + k).v : least;
         bool hit = false;
         for (int k = 0; k < width; ++k)
             hit |= least[k] <= value;
