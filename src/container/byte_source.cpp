@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/growing_memory.hpp"
+#include "container/spill_file.hpp"
 #include "core/pages.hpp"
 
 #include <fcntl.h>
@@ -14,6 +15,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -94,18 +96,45 @@ void wait_for_bytes(int descriptor, const std::stop_token& cancel) {
     }
 }
 
-ByteSource read_to_end(int descriptor, std::string name, const std::stop_token& cancel) {
-    const auto memory = std::make_shared<GrowingMemory>();
+/// Reads some bytes, once there are any. 0 at the end.
+std::size_t read_some(int descriptor, std::span<std::byte> room, const std::string& name,
+                      const std::stop_token& cancel) {
     for (;;) {
-        const std::span<std::byte> room = memory->room();
         wait_for_bytes(descriptor, cancel);
         const ssize_t got = read(descriptor, room.data(), room.size());
-        if (got > 0)
-            memory->use(static_cast<std::size_t>(got));
-        else if (got == 0)
-            break;
-        else if (errno != EINTR && errno != EAGAIN)
+        if (got >= 0)
+            return static_cast<std::size_t>(got);
+        if (errno != EINTR && errno != EAGAIN)
             fail_with_errno(name, errno);
+    }
+}
+
+/// What has come already, and all that is still to come, by way of a spill file.
+ByteSource spool(int descriptor, std::string name, std::span<const std::byte> begin,
+                 const std::stop_token& cancel) {
+    SpillFile file;
+    file.write(0, begin);
+    std::uint64_t size = begin.size();
+    constexpr std::size_t at_once = std::size_t{1} << 20;
+    const Pages memory(at_once);
+    const std::span<std::byte> room(static_cast<std::byte*>(memory.data()), at_once);
+    while (const std::size_t got = read_some(descriptor, room, name, cancel)) {
+        file.write(size, room.first(got));
+        size += got;
+    }
+    const auto mapping = map_file(file.descriptor(), size);
+    if (!mapping)
+        fail_with_errno(name, errno);
+    return {std::move(name), {mapping->data(), size}, mapping, true};
+}
+
+ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_memory,
+                       const std::stop_token& cancel) {
+    auto memory = std::make_shared<GrowingMemory>();
+    while (const std::size_t got = read_some(descriptor, memory->room(), name, cancel)) {
+        memory->use(got);
+        if (memory->size() > most_in_memory)
+            return spool(descriptor, std::move(name), memory->bytes(), cancel);
     }
     if (memory->size() == 0)
         fail(name, "is empty, expected a file with content");
@@ -113,7 +142,8 @@ ByteSource read_to_end(int descriptor, std::string name, const std::stop_token& 
     return {std::move(name), memory->bytes(), memory};
 }
 
-ByteSource take(const Descriptor& descriptor, std::string name, const std::stop_token& cancel) {
+ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t most_in_memory,
+                const std::stop_token& cancel) {
     struct stat status {};
     if (fstat(descriptor.number(), &status) != 0)
         fail_with_errno(name, errno);
@@ -126,21 +156,38 @@ ByteSource take(const Descriptor& descriptor, std::string name, const std::stop_
     if (S_ISREG(status.st_mode) && status.st_size > 0 && lseek(descriptor.number(), 0, SEEK_CUR) == 0) {
         const auto size = static_cast<std::size_t>(status.st_size);
         if (const auto mapping = map_file(descriptor.number(), size))
-            return {std::move(name), {mapping->data(), size}, mapping};
+            return {std::move(name), {mapping->data(), size}, mapping, true};
     }
-    return read_to_end(descriptor.number(), std::move(name), cancel);
+    return read_to_end(descriptor.number(), std::move(name), most_in_memory, cancel);
 }
 
 } // namespace
 
 ByteSource open_bytes(const std::string& path, const std::stop_token& cancel) {
+    return open_bytes(path, std::numeric_limits<std::uint64_t>::max(), cancel);
+}
+
+ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory, const std::stop_token& cancel) {
     if (path == "-")
-        return take(Descriptor(STDIN_FILENO, false), "standard input", cancel);
+        return take(Descriptor(STDIN_FILENO, false), "standard input", most_in_memory, cancel);
     // Not blocking: a pipe that nobody writes to yet must not hold up a request to stop.
     const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (number < 0)
         fail_with_errno(path, errno);
-    return take(Descriptor(number, true), path, cancel);
+    return take(Descriptor(number, true), path, most_in_memory, cancel);
+}
+
+void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {
+    if (!source.mapped)
+        return;
+    // The first and the last page may be in use by others: then those bring them back.
+    static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const std::byte* const base = source.bytes.data(); // at the beginning of a page
+    const auto begin = static_cast<std::size_t>(stretch.data() - base);
+    const std::size_t first = begin / page * page;
+    const std::size_t last = begin + stretch.size();
+    if (first < last)
+        madvise(const_cast<std::byte*>(base) + first, last - first, MADV_DONTNEED);
 }
 
 ByteSource copy_bytes(std::span<const std::byte> bytes, std::string name) {

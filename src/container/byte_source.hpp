@@ -3,6 +3,7 @@
 // A file as bytes in memory, wherever they come from.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -15,6 +16,7 @@ struct ByteSource {
     std::string name; ///< as errors call it: the path, or "standard input"
     std::span<const std::byte> bytes;
     std::shared_ptr<const void> owner; ///< the bytes live as long as any copy of this
+    bool mapped = false;               ///< they are those of a file, and come from it when they are touched
 };
 
 /// Opens a file of any size. A regular file is memory-mapped: nothing is read before it is touched, and the
@@ -25,6 +27,16 @@ struct ByteSource {
 /// Throws Error{input} when the file is missing, empty, a directory, a device or may not be read, and
 /// Error{cancelled} soon after a stop is requested, also while it waits for the other end of a pipe.
 [[nodiscard]] ByteSource open_bytes(const std::string& path, const std::stop_token& cancel = {});
+
+/// The same, but of what cannot be mapped no more than `most_in_memory` bytes are kept in memory: what is
+/// longer goes to a spill file (container/spill_file.hpp), and that is mapped. Throws Error{output} when
+/// there is no room for it.
+[[nodiscard]] ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory,
+                                    const std::stop_token& cancel = {});
+
+/// Lets go of the memory that a stretch of mapped bytes takes; when touched again, they come from the file
+/// again. So a file larger than memory can be gone through. Does nothing for bytes that are not mapped.
+void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept;
 
 /// A copy of bytes in memory; `name` stands for the path in errors. Throws Error{input} when there are none.
 [[nodiscard]] ByteSource copy_bytes(std::span<const std::byte> bytes, std::string name);

@@ -1,6 +1,7 @@
 #include "lamella/read/mesh_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/read/mesh_input.hpp"
 
 #include "container/byte_source.hpp"
 #include "container/gzip.hpp"
@@ -80,32 +81,37 @@ std::string extension_of(std::string name) {
     return point == std::string::npos || name[point] == '/' ? std::string() : name.substr(point + 1);
 }
 
+using Reader = MeshFile (*)(const ByteSource&, const MeshReadOptions&, const Execution&);
+
 /// By the content, where that tells; else by the extension.
-MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, const Execution& execution) {
-    const ByteSource source =
-        is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution.cancel) : opened;
+Reader reader_of(const ByteSource& source, const MeshReadOptions& options) {
     const std::string_view text = text_of(source);
     const std::string extension = extension_of(source.name);
     if (is_stl(source))
-        return read_stl(source, options, execution);
+        return read_stl;
     if (is_zip(text))
-        return holds_amf(source, options) ? read_amf(source, options, execution)
-                                          : read_three_mf(source, options, execution);
+        return holds_amf(source, options) ? read_amf : read_three_mf;
     if (is_amf(text))
-        return read_amf(source, options, execution);
+        return read_amf;
     if (is_ply(text))
-        return read_ply(source, options, execution);
+        return read_ply;
     if (is_off(text))
-        return read_off(source, options, execution);
+        return read_off;
     if (const std::string_view advice = foreign_advice(text); !advice.empty())
         throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, advice));
     if (extension == "obj" || (extension != "off" && extension != "ply" && looks_like_obj(text)))
-        return read_obj(source, options, execution);
+        return read_obj;
     if (extension == "off")
-        return read_off(source, options, execution);
+        return read_off;
     if (extension == "ply")
-        return read_ply(source, options, execution);
-    return read_stl(source, options, execution);
+        return read_ply;
+    return read_stl;
+}
+
+MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, const Execution& execution) {
+    const ByteSource source =
+        is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution.cancel) : opened;
+    return reader_of(source, options)(source, options, execution);
 }
 
 } // namespace
@@ -120,6 +126,40 @@ MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, co
                    const Execution& execution) {
     MeshFile file = read_any(copy_bytes(bytes, name), options, execution);
     file.path = name;
+    return file;
+}
+
+MeshInput::MeshInput(const std::string& path, std::uint64_t most_in_memory, const std::stop_token& cancel)
+    : path_(path), source_(std::make_shared<const ByteSource>(open_bytes(path, most_in_memory, cancel))) {}
+
+std::uint64_t MeshInput::bytes() const noexcept {
+    return source_->bytes.size();
+}
+
+bool MeshInput::can_stream() const {
+    if (is_stl(*source_))
+        return true;
+    return !is_gzip(source_->bytes) && !is_zip(text_of(*source_)) && reader_of(*source_, {}) == read_stl;
+}
+
+std::optional<std::uint64_t> MeshInput::records() const {
+    return can_stream() ? stl_records(*source_) : std::nullopt;
+}
+
+MeshFile MeshInput::read(const MeshReadOptions& options, const Execution& execution) const {
+    MeshFile file = read_any(*source_, options, execution);
+    file.path = path_;
+    return file;
+}
+
+MeshFile MeshInput::stream(const TriangleSink& sink, const MeshReadOptions& options,
+                           const Execution& execution, const std::optional<RecordRange>& share) const {
+    if (!can_stream())
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{}: only STL files that are not packed can be read batch by batch", source_->name));
+    MeshFile file = stream_stl(*source_, sink, options, execution, share);
+    file.path = path_;
     return file;
 }
 

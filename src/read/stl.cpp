@@ -44,19 +44,16 @@ bool has_stl_size(const ByteSource& source) {
            size == stl_head_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(source.bytes);
 }
 
-} // namespace
+enum class Form { binary, ascii };
 
-bool is_stl(const ByteSource& source) {
-    return has_stl_size(source) || is_stl_ascii(text_of(source));
-}
-
-MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
+/// Throws Error{input} when it is neither.
+Form form_of(const ByteSource& source) {
     const std::uint64_t size = source.bytes.size();
     const std::string_view text = text_of(source);
     if (has_stl_size(source))
-        return read_stl_binary(source, options, execution);
+        return Form::binary;
     if (is_stl_ascii(text))
-        return read_stl_ascii(source, options, execution);
+        return Form::ascii;
 
     const auto fail = [&](std::string_view what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
@@ -64,7 +61,7 @@ MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, cons
     const std::string_view begin = content(text);
     if (looks_like_text(text)) {
         if (begins_with_solid(text))
-            return read_stl_ascii(source, options, execution); // it names the line where it goes wrong
+            return Form::ascii; // its reader names the line where it goes wrong
         const std::string_view line = begin.substr(0, begin.find_first_of("\r\n"));
         fail(fmt::format("line {}: is a text, but no mesh file: found '{}', expected 'solid'",
                          line_at(text, text.size() - begin.size()), printable(line, 40)));
@@ -74,7 +71,36 @@ MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, cons
             "is not an STL file, or cut off: found {} bytes, expected at least {} (binary) or the "
             "word 'solid' (ASCII)",
             size, stl_head_bytes));
-    return read_stl_binary(source, options, execution);
+    return Form::binary;
+}
+
+} // namespace
+
+bool is_stl(const ByteSource& source) {
+    return has_stl_size(source) || is_stl_ascii(text_of(source));
+}
+
+MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
+    return form_of(source) == Form::binary ? read_stl_binary(source, options, execution)
+                                           : read_stl_ascii(source, options, execution);
+}
+
+std::optional<std::uint64_t> stl_records(const ByteSource& source) {
+    if (form_of(source) == Form::ascii)
+        return std::nullopt;
+    return stl_extent(source.bytes.size(), stl_declared_count(source.bytes)).triangles;
+}
+
+MeshFile stream_stl(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
+                    const Execution& execution, const std::optional<RecordRange>& share) {
+    if (form_of(source) == Form::binary)
+        return stream_stl_binary(source, sink, options, execution, share);
+    if (share)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: is an ASCII STL file, which can be read as a whole only; a share of "
+                                "its triangles can be read of a binary one",
+                                source.name));
+    return stream_stl_ascii(source, sink, options, execution);
 }
 
 } // namespace lamella

@@ -4,8 +4,12 @@
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
+#include "lamella/read/mesh_input.hpp"
 
 #include "container/byte_source.hpp"
+
+#include <cstdint>
+#include <optional>
 
 namespace lamella {
 
@@ -20,5 +24,14 @@ namespace lamella {
 ///   4. at least 84 bytes: binary with a wrong count.
 [[nodiscard]] MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options,
                                 const Execution& execution);
+
+/// By the same rules: how many records a binary file holds, as far as its head and its length tell; nothing
+/// for an ASCII file.
+[[nodiscard]] std::optional<std::uint64_t> stl_records(const ByteSource& source);
+
+/// Hands the triangles of either form to the sink; see MeshInput::stream.
+[[nodiscard]] MeshFile stream_stl(const ByteSource& source, const TriangleSink& sink,
+                                  const MeshReadOptions& options, const Execution& execution,
+                                  const std::optional<RecordRange>& share);
 
 } // namespace lamella

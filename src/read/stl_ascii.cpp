@@ -327,61 +327,81 @@ std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit)
     return nowhere;
 }
 
-/// Pieces that are parsed ahead, on the guess that they begin between two facets.
-std::vector<Piece> cut_in_pieces(std::string_view text, std::size_t begin) {
+/// Pieces of [begin, end) that are parsed ahead, on the guess that they begin between two facets.
+std::vector<Piece> cut_in_pieces(std::string_view text, std::size_t begin, std::size_t end, bool in_solid) {
     std::vector<Piece> pieces;
-    pieces.push_back({.begin = begin, .begins_in_solid = false, .limit = text.size()});
-    for (std::size_t from = begin + piece_bytes; from < text.size(); from += piece_bytes) {
-        const std::size_t cut = find_cut(text, from, std::min(from + piece_bytes, text.size()));
+    pieces.push_back({.begin = begin, .begins_in_solid = in_solid, .limit = end});
+    for (std::size_t from = begin + piece_bytes; from < end; from += piece_bytes) {
+        const std::size_t cut = find_cut(text, from, std::min(from + piece_bytes, end));
         if (cut == nowhere || cut <= pieces.back().begin)
             continue;
         pieces.back().limit = cut;
-        pieces.push_back({.begin = cut, .begins_in_solid = true, .limit = text.size()});
+        pieces.push_back({.begin = cut, .begins_in_solid = true, .limit = end});
     }
     return pieces;
 }
 
-/// Parses the text. The pieces of the result follow one another without a gap from its begin to its end or to
-/// the first fault, exactly as if it had been parsed from front to back: a piece that was parsed ahead counts
-/// only when the one before it ended where it begins.
-std::vector<Piece> parse(std::string_view text, const Execution& execution) {
-    std::vector<Piece> ahead = cut_in_pieces(text, after_byte_order_mark(text));
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, text.size());
-    executor.for_chunks(ahead.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            PieceParser(text, ahead[i]).run();
-            progress.add(ahead[i].limit - ahead[i].begin);
-        }
-    });
+/// Parses a text stretch by stretch, with no more than a stretch parsed ahead.
+class Parser {
+  public:
+    Parser(std::string_view text, const Execution& execution)
+        : text_(text), executor_(execution), progress_(execution, Stage::read, text.size()),
+          at_(after_byte_order_mark(text)) {}
 
-    std::vector<Piece> pieces;
-    std::size_t at = ahead.front().begin;
-    bool in_solid = false;
-    auto candidate = ahead.begin();
-    do {
-        executor.check_cancelled();
-        while (candidate != ahead.end() && candidate->begin < at)
-            ++candidate;
-        if (candidate != ahead.end() && candidate->begin == at && candidate->begins_in_solid == in_solid) {
-            pieces.push_back(std::move(*candidate++));
-        } else {
-            const auto following =
-                std::find_if(candidate, ahead.end(), [&](const Piece& piece) { return piece.begin > at; });
-            Piece piece{.begin = at,
-                        .begins_in_solid = in_solid,
-                        .limit = following == ahead.end() ? text.size() : following->begin};
-            PieceParser(text, piece).run();
-            pieces.push_back(std::move(piece));
-        }
-        at = pieces.back().end;
-        in_solid = pieces.back().ends_in_solid;
-    } while (at < text.size() && !pieces.back().fault);
-    progress.finish();
-    return pieces;
-}
+    /// What follows, up to about `bytes` further. The pieces of all results follow one another without a gap
+    /// from the begin of the text to its end or to the first fault, exactly as if it had been parsed from
+    /// front to back: a piece that was parsed ahead counts only when the one before it ended where it begins.
+    std::vector<Piece> next(std::size_t bytes) {
+        const std::size_t limit = bytes < text_.size() - at_ ? at_ + bytes : text_.size();
+        std::vector<Piece> ahead = cut_in_pieces(text_, at_, limit, in_solid_);
+        executor_.for_chunks(ahead.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = begin; i < end; ++i) {
+                PieceParser(text_, ahead[i]).run();
+                progress_.add(ahead[i].limit - ahead[i].begin);
+            }
+        });
 
-TriangleSoup join(std::vector<Piece>& pieces, const Execution& execution) {
+        std::vector<Piece> pieces;
+        auto candidate = ahead.begin();
+        do {
+            executor_.check_cancelled();
+            while (candidate != ahead.end() && candidate->begin < at_)
+                ++candidate;
+            if (candidate != ahead.end() && candidate->begin == at_ &&
+                candidate->begins_in_solid == in_solid_) {
+                pieces.push_back(std::move(*candidate++));
+            } else {
+                const auto following = std::find_if(candidate, ahead.end(),
+                                                    [&](const Piece& piece) { return piece.begin > at_; });
+                Piece piece{.begin = at_,
+                            .begins_in_solid = in_solid_,
+                            .limit = following == ahead.end() ? limit : following->begin};
+                PieceParser(text_, piece).run();
+                pieces.push_back(std::move(piece));
+            }
+            at_ = pieces.back().end;
+            in_solid_ = pieces.back().ends_in_solid;
+            done_ = at_ >= text_.size() || pieces.back().fault;
+        } while (at_ < limit && !done_);
+        if (done_)
+            progress_.finish();
+        return pieces;
+    }
+
+    [[nodiscard]] bool done() const { return done_; }
+    [[nodiscard]] std::size_t at() const { return at_; }
+    [[nodiscard]] Executor& executor() { return executor_; }
+
+  private:
+    std::string_view text_;
+    Executor executor_;
+    ProgressMeter progress_;
+    std::size_t at_;
+    bool in_solid_ = false;
+    bool done_ = false;
+};
+
+TriangleSoup join(std::vector<Piece>& pieces, Executor& executor) {
     std::vector<std::size_t> first(pieces.size());
     std::size_t count = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -389,7 +409,6 @@ TriangleSoup join(std::vector<Piece>& pieces, const Execution& execution) {
         count += pieces[i].triangles.size();
     }
     const auto memory = std::make_shared<PageArray<Triangle3f>>(count);
-    Executor executor(execution);
     executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
             std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), memory->data() + first[i]);
@@ -399,57 +418,49 @@ TriangleSoup join(std::vector<Piece>& pieces, const Execution& execution) {
     return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
 }
 
-/// Adds up what the pieces counted, and takes the first of each kind of oddity.
-Piece summary(const std::vector<Piece>& pieces) {
-    Piece sum = {};
-    for (const Piece& piece : pieces) {
-        sum.stored += piece.stored;
-        sum.nonfinite += piece.nonfinite;
-        sum.first_nonfinite = std::min(sum.first_nonfinite, piece.first_nonfinite);
-        sum.first_unended = std::min(sum.first_unended, piece.first_unended);
-        sum.cut_off = std::min(sum.cut_off, piece.cut_off);
-        sum.garbage = std::min(sum.garbage, piece.garbage);
+/// Adds up what the pieces count, which come in order, and keeps the first of each kind of oddity.
+void add(Piece& sum, const Piece& piece) {
+    sum.stored += piece.stored;
+    sum.nonfinite += piece.nonfinite;
+    sum.first_nonfinite = std::min(sum.first_nonfinite, piece.first_nonfinite);
+    sum.first_unended = std::min(sum.first_unended, piece.first_unended);
+    sum.cut_off = std::min(sum.cut_off, piece.cut_off);
+    sum.garbage = std::min(sum.garbage, piece.garbage);
+    sum.ends_in_solid = piece.ends_in_solid;
+    sum.fault = piece.fault;
+}
+
+std::string_view text_of(const ByteSource& source) {
+    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
+}
+
+/// line_at, in little memory.
+std::uint64_t line_of(const ByteSource& source, std::size_t offset) {
+    constexpr std::size_t stretch = std::size_t{1} << 24;
+    std::uint64_t line = 1;
+    for (std::size_t at = 0; at < offset; at += stretch) {
+        const std::size_t bytes = std::min(stretch, offset - at);
+        line += line_at(text_of(source).substr(at, bytes + 1), bytes) - 1;
+        release(source, source.bytes.subspan(at, bytes));
     }
-    sum.ends_in_solid = pieces.back().ends_in_solid;
-    return sum;
+    return line;
 }
 
-} // namespace
-
-bool begins_with_solid(std::string_view text) {
-    Words words(text, after_byte_order_mark(text));
-    words.skip_blanks();
-    return words.take("solid");
-}
-
-bool is_stl_ascii(std::string_view text) {
-    Words words(text, after_byte_order_mark(text));
-    words.skip_blanks();
-    if (!words.take("solid"))
-        return false;
-    take_name(words);
-    words.skip_blanks();
-    return matches(words.peek(), "facet") || matches(words.peek(), "endsolid");
-}
-
-MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
-                        const Execution& execution) {
-    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+/// What is to be said of the text as a whole.
+MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOptions& options) {
+    const std::string_view text = text_of(source);
     const auto line = [&](std::size_t offset) {
-        return line_at(text, offset);
+        return line_of(source, offset);
     };
     const auto fail = [&](const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
     };
-
-    std::vector<Piece> pieces = parse(text, execution);
-    if (const auto& fault = pieces.back().fault) {
+    if (const auto& fault = sum.fault) {
         if (!fault->found)
             fail(fmt::format("line {}: {}", line(fault->offset), fault->text));
         fail(fmt::format("line {}: found '{}', expected {}", line(fault->offset),
                          printable(Words(text, fault->offset).peek(), 40), fault->text));
     }
-    const Piece sum = summary(pieces);
     if (sum.stored == 0)
         fail(sum.cut_off == nowhere
                  ? fmt::format("holds no triangle: an ASCII STL file without a facet, {} lines long",
@@ -482,8 +493,6 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
         remarks.add(fmt::format("line {}: left out '{}' and what follows it, after the last 'endsolid'",
                                 line(sum.garbage), printable(Words(text, sum.garbage).peek(), 40)));
 
-    ReadLimits(source.name, options).add_triangles(sum.stored);
-
     MeshFile file;
     file.format = MeshFormat::stl_ascii;
     Words words(text, after_byte_order_mark(text));
@@ -491,12 +500,68 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
     words.skip_word(); // "solid"
     constexpr std::size_t longest_name = 1000;
     file.name = printable(take_name(words), longest_name);
-    file.objects.push_back({file.name, Mesh(join(pieces, execution))});
+    file.objects.push_back({file.name, Mesh()});
     file.instances.push_back({});
     file.stored_triangles = sum.stored;
     file.nonfinite_triangles = sum.nonfinite;
     file.warnings = remarks.take();
     return file;
+}
+
+} // namespace
+
+bool begins_with_solid(std::string_view text) {
+    Words words(text, after_byte_order_mark(text));
+    words.skip_blanks();
+    return words.take("solid");
+}
+
+bool is_stl_ascii(std::string_view text) {
+    Words words(text, after_byte_order_mark(text));
+    words.skip_blanks();
+    if (!words.take("solid"))
+        return false;
+    take_name(words);
+    words.skip_blanks();
+    return matches(words.peek(), "facet") || matches(words.peek(), "endsolid");
+}
+
+MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
+                        const Execution& execution) {
+    const std::string_view text = text_of(source);
+    Parser parser(text, execution);
+    std::vector<Piece> pieces = parser.next(text.size());
+    Piece sum;
+    for (const Piece& piece : pieces)
+        add(sum, piece);
+    MeshFile file = describe(source, sum, options);
+    ReadLimits(source.name, options).add_triangles(sum.stored);
+    file.objects.front().mesh = Mesh(join(pieces, parser.executor()));
+    return file;
+}
+
+MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
+                          const Execution& execution) {
+    constexpr std::size_t stretch = 32 * piece_bytes;
+    ReadLimits limits(source.name, options);
+    Parser parser(text_of(source), execution);
+    Piece sum;
+    std::uint64_t batches = 0;
+    while (!parser.done()) {
+        const std::size_t begin = parser.at();
+        std::vector<Piece> pieces = parser.next(stretch);
+        for (const Piece& piece : pieces) {
+            add(sum, piece);
+            limits.add_triangles(piece.stored);
+        }
+        parser.executor().for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            if (!pieces[i].triangles.empty())
+                sink(TriangleSoup(std::move(pieces[i].triangles)), batches + i);
+        });
+        batches += pieces.size();
+        release(source, source.bytes.subspan(begin, parser.at() - begin));
+    }
+    return describe(source, sum, options);
 }
 
 } // namespace lamella

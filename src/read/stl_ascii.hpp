@@ -14,6 +14,7 @@
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
+#include "lamella/read/mesh_input.hpp"
 
 #include "container/byte_source.hpp"
 
@@ -33,5 +34,9 @@ namespace lamella {
 /// to back.
 [[nodiscard]] MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                                       const Execution& execution);
+
+/// Hands the same triangles to the sink; see MeshInput::stream.
+[[nodiscard]] MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink,
+                                        const MeshReadOptions& options, const Execution& execution);
 
 } // namespace lamella

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -30,6 +31,10 @@ constexpr std::size_t normal_bytes = 12;
 
 /// Some megabyte at a time: small enough to share out, large enough not to matter.
 constexpr std::uint64_t chunk_triangles = 20'000;
+
+/// In a batch of a stream: as many as in a piece of a fold, so that sums over batches have the same bits as
+/// sums over the whole.
+constexpr std::uint64_t batch_triangles = std::uint64_t{1} << 15;
 
 // A float is NaN or infinite when all bits of its exponent are set.
 constexpr std::uint32_t exponent_bits = 0x7F800000;
@@ -180,8 +185,14 @@ StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared) {
     return extent;
 }
 
-MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
-                         const Execution& execution) {
+namespace {
+
+const std::byte* corners_of(const ByteSource& source) {
+    return source.bytes.data() + stl_head_bytes + normal_bytes;
+}
+
+/// How many triangles the head promises and the file has.
+std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& options, Remarks& remarks) {
     const std::uint32_t declared = stl_declared_count(source.bytes);
     const auto [stored, remark] = stl_extent(source.bytes.size(), declared);
     if (stored == 0)
@@ -191,42 +202,104 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
                         "{} bytes (its first triangle would end at byte {})",
                         source.name, declared, source.bytes.size(), stl_head_bytes + stl_record_bytes));
     ReadLimits(source.name, options).add_triangles(stored);
-    Remarks remarks(source.name, options.strict);
     if (!remark.empty())
         remarks.add(remark);
+    return stored;
+}
 
-    const std::byte* corners = source.bytes.data() + stl_head_bytes + normal_bytes;
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, source.bytes.size());
-    const NonFinite nonfinite = find_nonfinite(corners, stored, executor, progress);
+/// Of `stored` triangles, `count` are not finite; `first` is the first of those.
+void judge_nonfinite(const ByteSource& source, std::uint64_t count, std::uint64_t first, std::uint64_t stored,
+                     Remarks& remarks) {
+    if (count == 0)
+        return;
+    const std::string where = fmt::format("the first is triangle {} at byte {}", first + 1,
+                                          stl_head_bytes + stl_record_bytes * first);
+    if (count == stored)
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: holds no usable triangle: each of the {} has a corner that is NaN or "
+                                "infinite ({})",
+                                source.name, stored, where));
+    remarks.add(fmt::format("left out {} of {} triangles, which have a corner that is NaN or infinite ({})",
+                            count, stored, where));
+}
 
+/// Without its triangles.
+MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t nonfinite, Remarks& remarks) {
     MeshFile file;
-    TriangleSoup mesh;
     file.format = MeshFormat::stl_binary;
     file.name = header_text(source.bytes);
     file.stored_triangles = stored;
-    file.nonfinite_triangles = nonfinite.total;
-    if (nonfinite.total == 0) {
-        mesh = TriangleSoup(source.owner, corners, stl_record_bytes, stored, nonfinite.box);
-    } else {
-        const std::string first = fmt::format("the first is triangle {} at byte {}", nonfinite.first + 1,
-                                              stl_head_bytes + stl_record_bytes * nonfinite.first);
-        if (nonfinite.total == stored)
-            throw Error(
-                ErrorKind::input,
-                fmt::format("{}: holds no usable triangle: each of the {} has a corner that is NaN or "
-                            "infinite ({})",
-                            source.name, stored, first));
-        remarks.add(
-            fmt::format("left out {} of {} triangles, which have a corner that is NaN or infinite ({})",
-                        nonfinite.total, stored, first));
-        mesh = copy_finite(corners, stored, nonfinite, executor);
-    }
-    file.objects.push_back({file.name, Mesh(std::move(mesh))});
+    file.nonfinite_triangles = nonfinite;
+    file.objects.push_back({file.name, Mesh()});
     file.instances.push_back({});
     file.warnings = remarks.take();
+    return file;
+}
+
+} // namespace
+
+MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
+                         const Execution& execution) {
+    Remarks remarks(source.name, options.strict);
+    const std::uint64_t stored = check_head(source, options, remarks);
+    const std::byte* corners = corners_of(source);
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, source.bytes.size());
+    const NonFinite nonfinite = find_nonfinite(corners, stored, executor, progress);
+    judge_nonfinite(source, nonfinite.total, nonfinite.first, stored, remarks);
+
+    MeshFile file = describe(source, stored, nonfinite.total, remarks);
+    file.objects.front().mesh =
+        nonfinite.total == 0
+            ? Mesh(TriangleSoup(source.owner, corners, stl_record_bytes, stored, nonfinite.box))
+            : Mesh(copy_finite(corners, stored, nonfinite, executor));
     progress.finish();
     return file;
+}
+
+MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
+                           const Execution& execution, const std::optional<RecordRange>& share) {
+    Remarks remarks(source.name, options.strict);
+    const std::uint64_t stored = check_head(source, options, remarks);
+    const RecordRange records = share.value_or(RecordRange{0, stored});
+    if (records.begin > records.end || records.end > stored)
+        throw Error(ErrorKind::usage, fmt::format("{}: asked for triangles {} to {}, and there are {}",
+                                                  source.name, records.begin, records.end, stored));
+    const std::uint64_t count = records.end - records.begin;
+    const std::byte* const corners = corners_of(source) + records.begin * stl_record_bytes;
+    std::atomic<std::uint64_t> nonfinite{0};
+    std::atomic<std::uint64_t> first_nonfinite{stored};
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, stl_record_bytes * count);
+    executor.for_chunks(count, batch_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        const std::byte* const at = corners + begin * stl_record_bytes;
+        const Survey surveyed = survey(at, end - begin);
+        if (surveyed.finite) {
+            sink(TriangleSoup(source.owner, at, stl_record_bytes, end - begin, surveyed.box),
+                 begin / batch_triangles);
+        } else {
+            std::vector<Triangle3f> finite;
+            for (std::uint64_t i = 0; i < end - begin; ++i) {
+                if (is_finite(at + i * stl_record_bytes)) {
+                    std::memcpy(&finite.emplace_back(), at + i * stl_record_bytes, sizeof(Triangle3f));
+                    continue;
+                }
+                nonfinite.fetch_add(1);
+                const std::uint64_t number = records.begin + begin + i;
+                for (std::uint64_t before = first_nonfinite;
+                     number < before && !first_nonfinite.compare_exchange_weak(before, number);) {
+                }
+            }
+            if (!finite.empty())
+                sink(TriangleSoup(std::move(finite)), begin / batch_triangles);
+        }
+        release(source, {at, (end - begin) * stl_record_bytes - normal_bytes});
+        progress.add((end - begin) * stl_record_bytes);
+    });
+    executor.check_cancelled();
+    judge_nonfinite(source, nonfinite, first_nonfinite, share ? stored + 1 : stored, remarks);
+    progress.finish();
+    return describe(source, stored, nonfinite, remarks);
 }
 
 } // namespace lamella

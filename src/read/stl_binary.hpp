@@ -5,11 +5,13 @@
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
+#include "lamella/read/mesh_input.hpp"
 
 #include "container/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -34,5 +36,10 @@ struct StlExtent {
 /// Reads a file of at least stl_head_bytes that is taken for binary.
 [[nodiscard]] MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
                                        const Execution& execution);
+
+/// Hands the same triangles to the sink; see MeshInput::stream.
+[[nodiscard]] MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink,
+                                         const MeshReadOptions& options, const Execution& execution,
+                                         const std::optional<RecordRange>& share);
 
 } // namespace lamella

@@ -49,8 +49,10 @@ LayerStack slice(const MeshRef& mesh, const Plan& plan, const Execution& executi
 }
 
 void slice_to(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution,
-              SliceReport* report, const Engine& with) {
-    run(sink, mesh, plan, execution, points_in_flight_per_thread * thread_count(execution), report, with);
+              SliceReport* report, const Engine& with, std::uint64_t points_in_flight) {
+    if (points_in_flight == 0)
+        points_in_flight = points_in_flight_per_thread * thread_count(execution);
+    run(sink, mesh, plan, execution, points_in_flight, report, with);
 }
 
 } // namespace lamella

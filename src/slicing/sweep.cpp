@@ -6,10 +6,10 @@
 #include "core/pages.hpp"
 #include "slicing/cut_graph.hpp"
 #include "slicing/ordered_delivery.hpp"
+#include "slicing/plane_index.hpp"
 #include "slicing/point_arena.hpp"
 #include "slicing/point_kernels.hpp"
 #include "slicing/shrunken_contours.hpp"
-#include "slicing/slabs.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +19,7 @@
 // The sweep engine
 //
 // Ranks turn heights into integers, the cut graph links every cut edge to its successors (cut_graph.hpp).
-// What is left is to read contours off the graph, slab by slab (slabs.hpp), each slab by one worker:
+// What is left is to read contours off the graph, slab by slab (plane_index.hpp), each slab by one worker:
 //
 // Walk. On plane i start from every node that begins there, and follow `next` until the start is reached. A
 // contour without a new node is the continuation of one on the plane before; it is not searched for.

@@ -124,9 +124,10 @@ struct Engine {
 
 /// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
 /// flight (some 56 MB per thread, or two layers per thread where single layers are larger). Layers that the
-/// sink has let go of take no memory.
+/// sink has let go of take no memory. `points_in_flight`: so many instead, where they are not 0.
 void slice_to(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution = {},
-              SliceReport* report = nullptr, const Engine& with = engines().front());
+              SliceReport* report = nullptr, const Engine& with = engines().front(),
+              std::uint64_t points_in_flight = 0);
 
 /// The area of the section at each plane of the plan, in mm^2, straight from the triangles: no linking, no
 /// contours. For closed meshes it equals the area of the layers, whichever engine made them: the check that

@@ -1,0 +1,180 @@
+#pragma once
+
+// Slabs: runs of planes that are sliced on their own, because one memory or one machine is not enough for
+// all.
+//
+//     count      what the triangles bring to each plane: one pass over them, in any number of shares
+//     divide     the planes into slabs of equal work, or into slabs that fit a memory
+//     find       which slabs a triangle touches: a slab's layers need those triangles and no others
+//     slice      each slab alone: `slice_to` with its triangles, in any order, and its part of the plan
+//
+// Put together, the layers are those of the whole mesh on the whole plan, bit for bit.
+
+#include "lamella/mesh/triangle_soup.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// A slab: the planes [begin, end) of a plan, by their positions in it.
+struct PlaneRange {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
+    friend bool operator==(const PlaneRange&, const PlaneRange&) = default;
+};
+
+/// The plan of a slab.
+[[nodiscard]] Plan part_of(const Plan& plan, PlaneRange slab);
+
+/// How many triangles begin, turn and end on each plane. Counts of shares of a mesh are added up; those of
+/// the whole do not depend on the order of the triangles nor on how they were shared out.
+class PlaneCounts {
+  public:
+    explicit PlaneCounts(std::size_t planes) : planes_(planes), counts_(3 * (planes + 1)) {}
+
+    /// A triangle with corners of these ranks (the number of planes below a corner), in ascending order.
+    void add(std::uint32_t low, std::uint32_t middle, std::uint32_t high) noexcept {
+        if (low == high)
+            return;
+        ++counts_[low];
+        ++counts_[planes_ + 1 + high];
+        counts_[2 * (planes_ + 1) + middle] += low < middle && middle < high ? 1 : 0;
+    }
+
+    /// Of the same plan.
+    void add(const PlaneCounts& other) noexcept;
+
+    [[nodiscard]] std::size_t planes() const noexcept { return planes_; }
+
+    /// Everything there is, to be added up element by element where shares meet (as MPI_Allreduce does):
+    /// three numbers for each plane and one more.
+    [[nodiscard]] std::span<std::uint64_t> numbers() noexcept { return counts_; }
+
+    /// Triangles that begin on plane p: their lowest corner lies below it and above the plane before.
+    [[nodiscard]] std::uint64_t begins(std::size_t p) const noexcept { return counts_[p]; }
+    /// Triangles whose uppermost plane is p - 1.
+    [[nodiscard]] std::uint64_t ends(std::size_t p) const noexcept { return counts_[planes_ + 1 + p]; }
+    /// Triangles whose middle corner lies between planes p - 1 and p, both of which cut them.
+    [[nodiscard]] std::uint64_t turns(std::size_t p) const noexcept { return counts_[2 * (planes_ + 1) + p]; }
+
+  private:
+    std::size_t planes_;
+    std::vector<std::uint64_t> counts_;
+};
+
+/// Counts triangles from any number of threads at once.
+class PlaneCounter {
+  public:
+    explicit PlaneCounter(const Plan& plan);
+    ~PlaneCounter();
+    PlaneCounter(const PlaneCounter&) = delete;
+    PlaneCounter& operator=(const PlaneCounter&) = delete;
+
+    /// On the calling thread, O(triangles); the placement of a soup counts.
+    void add(const MeshRef& mesh);
+    /// Of all that was added.
+    [[nodiscard]] PlaneCounts total() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The same for a mesh in memory, on all threads.
+[[nodiscard]] PlaneCounts count_planes(const MeshRef& mesh, const Plan& plan,
+                                       const Execution& execution = {});
+
+/// What a slab asks for, from the counts of all planes.
+struct SlabNeeds {
+    std::uint64_t triangles = 0;   ///< that a plane of it cuts
+    std::uint64_t edges = 0;       ///< their edges that a plane of it cuts: one that two share counts twice
+    std::uint64_t points = 0;      ///< on all its planes together, where the mesh is closed
+    std::uint64_t most_points = 0; ///< on one of them
+};
+
+/// Answers for any slab.
+class SlabSurvey {
+  public:
+    explicit SlabSurvey(const PlaneCounts& counts);
+
+    [[nodiscard]] std::uint32_t planes() const noexcept {
+        return static_cast<std::uint32_t>(points_before_.size() - 1);
+    }
+    /// Triangles that plane p cuts, which is the number of its points where the mesh is closed.
+    [[nodiscard]] std::uint64_t points(std::uint32_t p) const noexcept {
+        return points_before_[p + std::size_t{1}] - points_before_[p];
+    }
+    [[nodiscard]] std::uint64_t triangles(PlaneRange slab) const noexcept {
+        return begun_before_[slab.end] - ended_before_[slab.begin];
+    }
+    /// O(planes of the slab)
+    [[nodiscard]] SlabNeeds needs(PlaneRange slab) const noexcept;
+    /// O(1), where the most points on one of its planes are known.
+    [[nodiscard]] SlabNeeds needs(PlaneRange slab, std::uint64_t most_points) const noexcept;
+    /// O(1). The time that slicing the slab takes, in the time of a point: its points, and what each of its
+    /// triangles and planes costs besides.
+    [[nodiscard]] std::uint64_t work(PlaneRange slab) const noexcept;
+
+  private:
+    // Sums over the planes before p, at [p].
+    std::vector<std::uint64_t> begun_before_;
+    std::vector<std::uint64_t> ended_before_; ///< up to plane p: those that have left it
+    std::vector<std::uint64_t> turned_before_;
+    std::vector<std::uint64_t> points_before_;
+};
+
+/// How a slab is sliced, as far as its memory depends on it.
+struct SlabMemory {
+    unsigned threads = 1;
+    bool placed = false; ///< its soup has a placement: coordinates are kept in double precision
+    std::uint64_t points_in_flight = 0; ///< as handed to `slice_to`
+
+    /// Bytes that slicing a slab takes at most: its triangles (36 bytes each), the cut graph and what belongs
+    /// to it, and points on their way through a sink that formats them as text. For a mesh whose triangles
+    /// are in no order; others take about half.
+    [[nodiscard]] std::uint64_t bytes(const SlabNeeds& slab) const noexcept;
+};
+
+/// Exactly so many slabs, with the largest work as small as possible. The same on every machine. Throws
+/// Error{usage} when there are fewer planes, or none are asked for.
+[[nodiscard]] std::vector<PlaneRange> divide_evenly(const SlabSurvey& survey, std::uint32_t slabs);
+
+/// As few slabs as may be, `at_least` of them where there are so many planes, each of which takes no more
+/// than `most_bytes`; with the largest work as small as possible then. Throws Error{limit} when a single
+/// plane takes more, saying where it lies and how much it takes.
+[[nodiscard]] std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan,
+                                                    const SlabMemory& memory, std::uint64_t most_bytes,
+                                                    std::uint32_t at_least = 1);
+
+/// Tells which slabs triangles touch. Immutable; for any number of threads at once.
+class SlabFinder {
+  public:
+    /// Slabs of the plan, ascending and without overlap; gaps between them are allowed.
+    SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs);
+    ~SlabFinder();
+    SlabFinder(const SlabFinder&) = delete;
+    SlabFinder& operator=(const SlabFinder&) = delete;
+
+    /// Slabs [begin, end), by their positions in the division; none where begin == end.
+    struct Touched {
+        std::uint32_t begin = 0;
+        std::uint32_t end = 0;
+    };
+
+    /// One entry for each triangle; its content before does not matter. The soup's placement counts.
+    void find(const TriangleSoup& triangles, std::vector<Touched>& touched) const;
+
+  private:
+    struct State;
+    std::unique_ptr<const State> state_;
+};
+
+} // namespace lamella

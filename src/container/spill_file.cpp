@@ -1,0 +1,118 @@
+#include "container/spill_file.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+
+namespace lamella {
+
+namespace {
+
+std::string spill_folder() {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody here changes the environment
+    const char* const wished = std::getenv("TMPDIR");
+    if (wished != nullptr && *wished != '\0')
+        return wished;
+    return access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
+}
+
+/// A file that never has a name or has lost it already; -1 and errno where there can be none.
+int open_nameless(const std::string& folder) {
+    const int number = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    // Not every file system can do that, and what it says then differs.
+    if (number >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL))
+        return number;
+    std::string pattern = folder + "/lamella-XXXXXX";
+    const int named = mkostemp(pattern.data(), O_CLOEXEC);
+    if (named >= 0)
+        unlink(pattern.c_str());
+    return named;
+}
+
+/// "3.2 GB"; what is smaller than a gigabyte in MB.
+std::string amount(std::uint64_t bytes) {
+    const double mb = static_cast<double>(bytes) / 1e6;
+    return mb < 1000 ? fmt::format("{:.1f} MB", mb) : fmt::format("{:.1f} GB", mb / 1000);
+}
+
+} // namespace
+
+SpillFile::SpillFile(std::uint64_t bytes) : folder_(spill_folder()), bytes_(bytes) {
+    descriptor_ = open_nameless(folder_);
+    if (descriptor_ < 0)
+        fail(errno);
+    if (bytes == 0)
+        return;
+    int failed = 0;
+    do
+        failed = fallocate(descriptor_, 0, 0, static_cast<off_t>(bytes)) == 0 ? 0 : errno;
+    while (failed == EINTR);
+    if (failed == ENOSPC || failed == EDQUOT || failed == EFBIG) {
+        close(descriptor_);
+        fail(failed);
+    }
+}
+
+SpillFile::~SpillFile() {
+    close(descriptor_);
+}
+
+void SpillFile::write(std::uint64_t place, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (written >= 0) {
+            bytes = bytes.subspan(static_cast<std::size_t>(written));
+            place += static_cast<std::uint64_t>(written);
+        } else if (errno != EINTR) {
+            fail(errno);
+        }
+    }
+}
+
+void SpillFile::read(std::uint64_t place, std::span<std::byte> bytes) const {
+    while (!bytes.empty()) {
+        const ssize_t got = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        if (got == 0)
+            fail(EIO); // it was longer when it was written
+        if (got > 0) {
+            bytes = bytes.subspan(static_cast<std::size_t>(got));
+            place += static_cast<std::uint64_t>(got);
+        } else if (errno != EINTR) {
+            fail(errno);
+        }
+    }
+}
+
+void SpillFile::forget(std::uint64_t place, std::uint64_t bytes) noexcept {
+    const int before = errno;
+    fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(place),
+              static_cast<off_t>(bytes));
+    errno = before; // a wish
+}
+
+void SpillFile::fail(int system_error) const {
+    const std::string what = bytes_ != 0 ? amount(bytes_) + " of temporary data" : "temporary data";
+    std::string text = fmt::format("{}: cannot hold {}: ", folder_, what);
+    struct statvfs status {};
+    if (system_error == ENOSPC && statvfs(folder_.c_str(), &status) == 0)
+        text += fmt::format("the disk is full ({} free)",
+                            amount(std::uint64_t{status.f_bavail} * status.f_frsize));
+    else if (system_error == EDQUOT)
+        text += "the disk quota is used up";
+    else if (system_error == EFBIG)
+        text += "files may not grow so large there (see ulimit -f)";
+    else
+        text += std::generic_category().message(system_error);
+    throw Error(ErrorKind::output,
+                text + "; set the environment variable TMPDIR to a folder with more room, or raise "
+                       "--max-memory");
+}
+
+} // namespace lamella

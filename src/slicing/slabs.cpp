@@ -1,0 +1,305 @@
+#include "lamella/slicing/slabs.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "slicing/cut_graph.hpp"
+#include "slicing/ranks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+namespace lamella {
+
+namespace {
+
+/// Calls body(i, ranks) for triangles [begin, end), with the ranks of its corners.
+template <class Body>
+void for_ranks(const MeshRef& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
+               const Body& body) {
+    const TriangleSoup* const soup = mesh.soup();
+    std::array<std::uint32_t, 3> rank;
+    if (soup == nullptr) {
+        const IndexedMesh& indexed = *mesh.mesh();
+        for (std::uint64_t i = begin; i < end; ++i) {
+            for (std::size_t k = 0; k < 3; ++k)
+                rank[k] = ranks(indexed.vertices[indexed.triangles[i][k]].z);
+            body(i, rank);
+        }
+    } else if (soup->has_placement()) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            const Triangle3 corners = soup->placed(i);
+            for (std::size_t k = 0; k < 3; ++k)
+                rank[k] = ranks(corners[k].z);
+            body(i, rank);
+        }
+    } else {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            Triangle3f corners;
+            std::memcpy(&corners, soup->data() + i * soup->stride(), sizeof corners);
+            for (std::size_t k = 0; k < 3; ++k)
+                rank[k] = ranks(corners[k].z);
+            body(i, rank);
+        }
+    }
+}
+
+void count(const MeshRef& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
+           PlaneCounts& counts) {
+    for_ranks(mesh, ranks, begin, end, [&](std::uint64_t, const std::array<std::uint32_t, 3>& rank) {
+        const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
+        const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
+        const std::uint32_t middle =
+            std::max(std::min(rank[0], rank[1]), std::min(std::max(rank[0], rank[1]), rank[2]));
+        counts.add(low, middle, high);
+    });
+}
+
+} // namespace
+
+Plan part_of(const Plan& plan, PlaneRange slab) {
+    const auto begin = plan.layers.begin();
+    return {{begin + slab.begin, begin + slab.end}, plan.rule};
+}
+
+void PlaneCounts::add(const PlaneCounts& other) noexcept {
+    for (std::size_t i = 0; i < counts_.size(); ++i)
+        counts_[i] += other.counts_[i];
+}
+
+// ----------------------------------------------------------------------------------------------- count
+
+struct PlaneCounter::State {
+    explicit State(const Plan& plan) : ranks(plan) {}
+
+    Ranks ranks;
+    std::mutex mutex;
+    std::vector<std::unique_ptr<PlaneCounts>> idle; ///< as many in all as ever counted at the same time
+};
+
+PlaneCounter::PlaneCounter(const Plan& plan) : state_(std::make_unique<State>(plan)) {}
+PlaneCounter::~PlaneCounter() = default;
+
+void PlaneCounter::add(const MeshRef& mesh) {
+    std::unique_ptr<PlaneCounts> counts;
+    {
+        const std::lock_guard lock(state_->mutex);
+        if (!state_->idle.empty()) {
+            counts = std::move(state_->idle.back());
+            state_->idle.pop_back();
+        }
+    }
+    if (!counts)
+        counts = std::make_unique<PlaneCounts>(state_->ranks.count());
+    count(mesh, state_->ranks, 0, mesh.triangles(), *counts);
+    const std::lock_guard lock(state_->mutex);
+    state_->idle.push_back(std::move(counts));
+}
+
+PlaneCounts PlaneCounter::total() const {
+    PlaneCounts sum(state_->ranks.count());
+    for (const auto& counts : state_->idle)
+        sum.add(*counts);
+    return sum;
+}
+
+PlaneCounts count_planes(const MeshRef& mesh, const Plan& plan, const Execution& execution) {
+    const Ranks ranks(plan);
+    Executor executor(execution);
+    std::vector<std::optional<PlaneCounts>> counts(executor.workers());
+    constexpr std::uint64_t chunk = std::uint64_t{1} << 15;
+    executor.for_chunks(mesh.triangles(), chunk,
+                        [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+                            if (!counts[worker])
+                                counts[worker].emplace(ranks.count());
+                            count(mesh, ranks, begin, end, *counts[worker]);
+                        });
+    executor.check_cancelled();
+    PlaneCounts sum(ranks.count());
+    for (const auto& part : counts)
+        if (part)
+            sum.add(*part);
+    return sum;
+}
+
+// ---------------------------------------------------------------------------------------------- survey
+
+SlabSurvey::SlabSurvey(const PlaneCounts& counts) {
+    const std::size_t planes = counts.planes();
+    begun_before_.assign(planes + 1, 0);
+    ended_before_.assign(planes + 1, 0);
+    turned_before_.assign(planes + 1, 0);
+    points_before_.assign(planes + 1, 0);
+    ended_before_[0] = counts.ends(0);
+    for (std::size_t p = 0; p < planes; ++p) {
+        begun_before_[p + 1] = begun_before_[p] + counts.begins(p);
+        ended_before_[p + 1] = ended_before_[p] + counts.ends(p + 1);
+        turned_before_[p + 1] = turned_before_[p] + counts.turns(p);
+        points_before_[p + 1] = points_before_[p] + (begun_before_[p + 1] - ended_before_[p]);
+    }
+}
+
+SlabNeeds SlabSurvey::needs(PlaneRange slab) const noexcept {
+    std::uint64_t most_points = 0;
+    for (std::uint32_t p = slab.begin; p < slab.end; ++p)
+        most_points = std::max(most_points, points(p));
+    return needs(slab, most_points);
+}
+
+SlabNeeds SlabSurvey::needs(PlaneRange slab, std::uint64_t most_points) const noexcept {
+    if (slab.begin >= slab.end)
+        return {};
+    SlabNeeds needs;
+    needs.triangles = triangles(slab);
+    // Planes cut two edges of a triangle, and all three where the middle corner lies between two of them.
+    needs.edges =
+        2 * needs.triangles + turned_before_[slab.end] - turned_before_[slab.begin + std::size_t{1}];
+    needs.points = points_before_[slab.end] - points_before_[slab.begin];
+    needs.most_points = most_points;
+    return needs;
+}
+
+std::uint64_t SlabSurvey::work(PlaneRange slab) const noexcept {
+    constexpr std::uint64_t triangle_cost = 4; // in points
+    constexpr std::uint64_t plane_cost = 64;
+    if (slab.begin >= slab.end)
+        return 0;
+    return points_before_[slab.end] - points_before_[slab.begin] + triangle_cost * triangles(slab) +
+           plane_cost * slab.size();
+}
+
+std::uint64_t SlabMemory::bytes(const SlabNeeds& slab) const noexcept {
+    // While nodes are joined, each has its hash and a record beside it; afterwards its place in the order of
+    // starts, and each worker marks in an array of all nodes where it has been.
+    constexpr std::uint64_t joining = sizeof(std::uint64_t) + 16;
+    const std::uint64_t walking = 4 + 5 * std::uint64_t{threads};
+    const std::uint64_t node =
+        (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) + std::max(joining, walking);
+    // A point, and the text that a sink makes of it.
+    constexpr std::uint64_t point = sizeof(Point2) + 40;
+    const std::uint64_t flying =
+        std::min(std::max(points_in_flight, 2 * slab.most_points), slab.points + slab.most_points);
+    return sizeof(Triangle3f) * slab.triangles + node * slab.edges + point * flying;
+}
+
+// ---------------------------------------------------------------------------------------------- divide
+
+namespace {
+
+/// Slabs filled one after the other, each as long as fits(its needs) and its work is at most `most_work`; at
+/// least `wanted` slabs where there are so many planes.
+template <class Fits>
+std::vector<PlaneRange> fill(const SlabSurvey& survey, std::uint64_t most_work, std::uint32_t wanted,
+                             const Fits& fits) {
+    std::vector<PlaneRange> slabs;
+    const std::uint32_t planes = survey.planes();
+    for (std::uint32_t begin = 0; begin < planes;) {
+        const auto others = static_cast<std::uint32_t>(slabs.size() + 1);
+        const std::uint32_t for_others = wanted > others ? wanted - others : 0;
+        PlaneRange slab{begin, begin + 1};
+        std::uint64_t most_points = survey.points(begin);
+        while (slab.end + for_others < planes) {
+            const PlaneRange longer{begin, slab.end + 1};
+            most_points = std::max(most_points, survey.points(slab.end));
+            if (survey.work(longer) > most_work || !fits(survey.needs(longer, most_points)))
+                break;
+            slab = longer;
+        }
+        slabs.push_back(slab);
+        begin = slab.end;
+    }
+    return slabs;
+}
+
+/// No more slabs than `most`, and no fewer than `least`, with the smallest largest work that allows it.
+template <class Fits>
+std::vector<PlaneRange> level(const SlabSurvey& survey, std::uint32_t least, std::size_t most,
+                              const Fits& fits) {
+    std::uint64_t low = 0;
+    std::uint64_t high = survey.work({0, survey.planes()});
+    while (low < high) {
+        const std::uint64_t middle = low + (high - low) / 2;
+        if (fill(survey, middle, least, fits).size() <= most)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return fill(survey, high, least, fits);
+}
+
+} // namespace
+
+std::vector<PlaneRange> divide_evenly(const SlabSurvey& survey, std::uint32_t slabs) {
+    if (slabs == 0 || slabs > survey.planes())
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} layers cannot be divided into {} parts with layers in each",
+                                survey.planes(), slabs));
+    return level(survey, slabs, slabs, [](const SlabNeeds&) { return true; });
+}
+
+std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan, const SlabMemory& memory,
+                                      std::uint64_t most_bytes, std::uint32_t at_least) {
+    const auto fits = [&](const SlabNeeds& needs) {
+        return memory.bytes(needs) <= most_bytes;
+    };
+    for (std::uint32_t p = 0; p < survey.planes(); ++p)
+        if (const SlabNeeds needs = survey.needs({p, p + 1}); !fits(needs))
+            throw Error(
+                ErrorKind::limit,
+                fmt::format("the layer at z = {:.6g} mm alone is cut from {} triangles and takes {} MB "
+                            "of memory, and there are {} MB for a layer",
+                            plan.layers[p].z, needs.triangles, memory.bytes(needs) / 1'000'000 + 1,
+                            most_bytes / 1'000'000));
+    const std::uint64_t any_work = std::numeric_limits<std::uint64_t>::max();
+    const std::size_t most = fill(survey, any_work, at_least, fits).size();
+    return level(survey, at_least, most, fits);
+}
+
+// ------------------------------------------------------------------------------------------------ find
+
+struct SlabFinder::State {
+    explicit State(const Plan& plan) : ranks(plan) {}
+
+    Ranks ranks;
+    std::vector<std::uint32_t> first; ///< by a triangle's lowest plane: the first slab that ends above it
+    std::vector<std::uint32_t>
+        behind; ///< by the plane behind its uppermost one: the first slab from there on
+};
+
+SlabFinder::SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs) {
+    auto state = std::make_unique<State>(plan);
+    const std::uint32_t planes = state->ranks.count();
+    std::uint32_t ended = 0;
+    std::uint32_t begun = 0;
+    for (std::uint32_t p = 0; p <= planes; ++p) {
+        while (ended < slabs.size() && slabs[ended].end <= p)
+            ++ended;
+        while (begun < slabs.size() && slabs[begun].begin < p)
+            ++begun;
+        state->first.push_back(ended);
+        state->behind.push_back(begun);
+    }
+    state_ = std::move(state);
+}
+
+SlabFinder::~SlabFinder() = default;
+
+void SlabFinder::find(const TriangleSoup& triangles, std::vector<Touched>& touched) const {
+    touched.resize(triangles.size());
+    for_ranks(triangles, state_->ranks, 0, triangles.size(),
+              [&](std::uint64_t i, const std::array<std::uint32_t, 3>& rank) {
+                  const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
+                  const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
+                  // Between two slabs, or between two planes, the first one ends behind the last one.
+                  const std::uint32_t begin = state_->first[low];
+                  touched[i] = {begin, low == high ? begin : std::max(begin, state_->behind[high])};
+              });
+}
+
+} // namespace lamella

@@ -1,0 +1,274 @@
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/shapes.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/slicing/slabs.hpp"
+
+#include "even_planes.hpp"
+#include "expect_error.hpp"
+#include "expect_layers.hpp"
+#include "fixtures/named_solids.hpp"
+#include "fixtures/random.hpp"
+#include "fixtures/solids.hpp"
+#include "slicing/ranks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <mutex>
+#include <thread>
+
+namespace lamella {
+namespace {
+
+using test::even_planes;
+using test::expect_same;
+using test::Random;
+using test::Triangles;
+
+Triangles triangles_of(const TriangleSoup& soup) {
+    Triangles triangles;
+    for (std::size_t i = 0; i < soup.size(); ++i)
+        triangles.push_back(soup.stored(i));
+    return triangles;
+}
+
+/// Triangles of all kinds, level ones and ones without area among them, between z = -2 and 2. No body.
+Triangles litter(std::size_t count) {
+    Random random(11);
+    Triangles triangles(count);
+    for (Triangle3f& t : triangles)
+        for (Point3f& p : t)
+            p = {static_cast<float>(random.integer(-9, 9)), static_cast<float>(random.integer(-9, 9)),
+                 static_cast<float>(random.integer(-8, 8)) / 4};
+    return triangles;
+}
+
+Plan crossing_plan(PlaneRule rule) {
+    Plan plan;
+    plan.rule = rule;
+    for (int i = 0; i < 40; ++i)
+        plan.layers.push_back({static_cast<std::uint64_t>(i), i * 0.125 - 2.5, 0, 0});
+    return plan;
+}
+
+/// Ranks of a triangle's corners, in ascending order.
+std::array<std::uint32_t, 3> ranks_of(const Ranks& ranks, const Triangle3f& t) {
+    std::array<std::uint32_t, 3> rank{ranks(t[0].z), ranks(t[1].z), ranks(t[2].z)};
+    std::sort(rank.begin(), rank.end());
+    return rank;
+}
+
+/// Some division with gaps.
+const std::vector<PlaneRange> some_slabs{{0, 1}, {1, 5}, {5, 6}, {9, 20}, {20, 33}, {38, 40}};
+
+TEST(Slabs, CountWhatEachSlabNeeds) {
+    const Triangles triangles = litter(2000);
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
+        const Plan plan = crossing_plan(rule);
+        const Ranks ranks(plan);
+        const SlabSurvey survey(count_planes(TriangleSoup(triangles), plan));
+        ASSERT_EQ(survey.planes(), 40U);
+        for (const PlaneRange slab : {PlaneRange{0, 40}, {0, 1}, {39, 40}, {7, 8}, {12, 30}, {5, 5}}) {
+            SlabNeeds expected;
+            for (const Triangle3f& t : triangles) {
+                const auto [low, middle, high] = ranks_of(ranks, t);
+                const auto cuts = [&](std::uint32_t from, std::uint32_t to) {
+                    return std::max(from, slab.begin) < std::min(to, slab.end);
+                };
+                expected.triangles += cuts(low, high);
+                expected.edges += cuts(low, middle) + cuts(middle, high) + cuts(low, high);
+            }
+            for (std::uint32_t p = slab.begin; p < slab.end; ++p) {
+                std::uint64_t points = 0;
+                for (const Triangle3f& t : triangles) {
+                    const auto [low, middle, high] = ranks_of(ranks, t);
+                    points += low <= p && p < high;
+                }
+                EXPECT_EQ(survey.points(p), points);
+                expected.points += points;
+                expected.most_points = std::max(expected.most_points, points);
+            }
+            const SlabNeeds needs = survey.needs(slab);
+            EXPECT_EQ(needs.triangles, expected.triangles);
+            EXPECT_EQ(needs.edges, expected.edges);
+            EXPECT_EQ(needs.points, expected.points);
+            EXPECT_EQ(needs.most_points, expected.most_points);
+        }
+    }
+}
+
+TEST(Slabs, PointsOfAClosedMeshAreThoseOfItsLayers) {
+    const TriangleSoup soup = test::soup(test::rugged_drum(300, 20));
+    const Plan plan = even_planes(30);
+    const SlabSurvey survey(count_planes(soup, plan));
+    const LayerStack stack = slice(soup, plan);
+    for (std::uint32_t p = 0; p < 30; ++p)
+        EXPECT_EQ(survey.points(p), stack[p].points.size());
+}
+
+TEST(Slabs, SharesCountTogetherAsTheWhole) {
+    const Triangles triangles = litter(5000);
+    const Transform turn = rotation('x', 40);
+    const TriangleSoup soup = TriangleSoup(triangles).transformed(turn);
+    const Plan plan = even_planes(50);
+    PlaneCounts whole = count_planes(soup, plan, {.threads = 7});
+
+    PlaneCounter counter(plan);
+    std::vector<std::thread> threads;
+    for (std::size_t share = 0; share < 5; ++share)
+        threads.emplace_back([&, share] {
+            for (std::size_t piece = 0; piece < 10; ++piece) {
+                const auto first =
+                    triangles.begin() + static_cast<std::ptrdiff_t>(1000 * share + 100 * piece);
+                counter.add(TriangleSoup(Triangles(first, first + 100)).transformed(turn));
+            }
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    PlaneCounts shared = counter.total();
+    ASSERT_EQ(shared.numbers().size(), 3U * 51U);
+    EXPECT_TRUE(std::ranges::equal(shared.numbers(), whole.numbers()));
+
+    const IndexedMesh indexed = weld(TriangleSoup(triangles));
+    PlaneCounts of_indexed = count_planes(indexed, plan);
+    PlaneCounts of_soup = count_planes(TriangleSoup(triangles), plan);
+    EXPECT_TRUE(std::ranges::equal(of_indexed.numbers(), of_soup.numbers()));
+}
+
+TEST(Slabs, FindWhomATriangleTouches) {
+    const Triangles triangles = litter(3000);
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
+        const Plan plan = crossing_plan(rule);
+        const Ranks ranks(plan);
+        const SlabFinder finder(plan, some_slabs);
+        std::vector<SlabFinder::Touched> touched;
+        finder.find(TriangleSoup(triangles), touched);
+        ASSERT_EQ(touched.size(), triangles.size());
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const auto [low, middle, high] = ranks_of(ranks, triangles[i]);
+            for (std::uint32_t s = 0; s < some_slabs.size(); ++s)
+                ASSERT_EQ(touched[i].begin <= s && s < touched[i].end,
+                          std::max(low, some_slabs[s].begin) < std::min(high, some_slabs[s].end))
+                    << "triangle " << i << ", slab " << s;
+        }
+    }
+}
+
+/// Each plane in one slab, in order.
+void expect_division(const std::vector<PlaneRange>& slabs, std::uint32_t planes) {
+    std::uint32_t next = 0;
+    for (const PlaneRange slab : slabs) {
+        EXPECT_EQ(slab.begin, next);
+        EXPECT_LT(slab.begin, slab.end);
+        next = slab.end;
+    }
+    EXPECT_EQ(next, planes);
+}
+
+TEST(Slabs, DivideIntoEqualWork) {
+    const TriangleSoup soup = make_torus(6, 2, 200, 100);
+    const Plan plan = even_planes(500);
+    const SlabSurvey survey(count_planes(soup, plan));
+    for (const std::uint32_t n : {1U, 2U, 3U, 7U, 64U, 499U, 500U}) {
+        const std::vector<PlaneRange> slabs = divide_evenly(survey, n);
+        EXPECT_EQ(slabs.size(), n);
+        expect_division(slabs, 500);
+        // No better division: what a greedy one with less work makes has more slabs.
+        std::uint64_t largest = 0;
+        for (const PlaneRange slab : slabs)
+            largest = std::max(largest, survey.work(slab));
+        std::uint32_t greedy = 1;
+        PlaneRange slab{0, 0};
+        for (std::uint32_t p = 0; p < 500; ++p) {
+            if (survey.work({slab.begin, p + 1}) >= largest) {
+                ++greedy;
+                slab.begin = p;
+            }
+            if (survey.work({p, p + 1}) >= largest)
+                greedy = 1000; // a plane alone is too much
+        }
+        EXPECT_GT(greedy, n);
+    }
+    test::expect_error(ErrorKind::usage, {"500 layers cannot be divided into 501"},
+                       [&] { static_cast<void>(divide_evenly(survey, 501)); });
+    test::expect_error(ErrorKind::usage, {"into 0"}, [&] { static_cast<void>(divide_evenly(survey, 0)); });
+}
+
+TEST(Slabs, DivideToFit) {
+    const TriangleSoup soup = make_torus(6, 2, 200, 100);
+    const Plan plan = even_planes(500);
+    const SlabSurvey survey(count_planes(soup, plan));
+    const SlabMemory memory{.threads = 2, .placed = false, .points_in_flight = 100};
+    const std::uint64_t all = memory.bytes(survey.needs({0, 500}));
+    EXPECT_EQ(divide_to_fit(survey, plan, memory, all).size(), 1U);
+    EXPECT_EQ(divide_to_fit(survey, plan, memory, all, 3).size(), 3U);
+    std::size_t before = 1;
+    for (const std::uint64_t most : {all - 1, all / 2, all / 8}) {
+        const std::vector<PlaneRange> slabs = divide_to_fit(survey, plan, memory, most);
+        expect_division(slabs, 500);
+        EXPECT_GT(slabs.size(), before);
+        before = slabs.size();
+        for (const PlaneRange slab : slabs)
+            EXPECT_LE(memory.bytes(survey.needs(slab)), most);
+    }
+    test::expect_error(ErrorKind::limit, {"the layer at z = "},
+                       [&] { static_cast<void>(divide_to_fit(survey, plan, memory, 100'000)); });
+}
+
+class SlabsOf : public testing::TestWithParam<test::Solid> {};
+
+/// Slab by slab, with the triangles in any order, and some missing or turned over.
+void expect_same_layers(const Triangles& triangles, const Transform& placement) {
+    const TriangleSoup soup = TriangleSoup(triangles).transformed(placement);
+    const Box3 box = bounding_box(soup);
+    for (const SliceAt at : {SliceAt::middle, SliceAt::top}) {
+        const Plan plan = plan_uniform(box.min.z, box.max.z,
+                                       {.layer_height = (box.max.z - box.min.z) / 37, .slice_at = at});
+        const LayerStack whole = slice(soup, plan);
+        const SlabSurvey survey(count_planes(soup, plan));
+        for (const std::uint32_t n : {2U, 5U, survey.planes()}) {
+            const std::vector<PlaneRange> slabs = divide_evenly(survey, n);
+            std::vector<Triangles> parts(n);
+            std::vector<SlabFinder::Touched> touched;
+            SlabFinder(plan, slabs).find(soup, touched);
+            for (std::size_t i = triangles.size(); i-- > 0;)
+                for (std::uint32_t s = touched[i].begin; s < touched[i].end; ++s)
+                    parts[s].push_back(soup.stored(i));
+            LayerStack stack;
+            for (std::uint32_t s = 0; s < n; ++s) {
+                EXPECT_EQ(parts[s].size(), survey.triangles(slabs[s]));
+                const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+                    return [&stack, kept = std::move(layer)]() mutable {
+                        stack.push_back(std::move(kept));
+                    };
+                };
+                slice_to(sink, TriangleSoup(parts[s]).transformed(placement), part_of(plan, slabs[s]),
+                         {.threads = 2});
+            }
+            expect_same(stack, whole);
+        }
+    }
+}
+
+TEST_P(SlabsOf, GiveTheLayersOfTheWhole) {
+    Triangles triangles = triangles_of(GetParam().make());
+    expect_same_layers(triangles, {});
+    expect_same_layers(triangles, rotation('y', 17));
+    // A broken mesh: chains end where they ended before.
+    Random random(5);
+    for (Triangle3f& t : triangles) {
+        const auto fate = random.integer(0, 20);
+        if (fate == 0)
+            t = {};
+        else if (fate == 1)
+            std::swap(t[0], t[1]);
+        else if (fate == 2)
+            t = triangles[static_cast<std::size_t>(random.integer(0, 5)) % triangles.size()];
+    }
+    expect_same_layers(triangles, {});
+}
+
+INSTANTIATE_TEST_SUITE_P(Small, SlabsOf, testing::ValuesIn(test::small_solids()), test::solid_name);
+
+} // namespace
+} // namespace lamella
