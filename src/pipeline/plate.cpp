@@ -2,190 +2,25 @@
 
 #include "lamella/core/error.hpp"
 
+#include "pipeline/plate_builder.hpp"
+
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <map>
-#include <set>
 #include <utility>
 
 namespace lamella {
-namespace {
-
-Box3 moved(const Box3& box, double dx, double dy) {
-    return {{box.min.x + dx, box.min.y + dy, box.min.z}, {box.max.x + dx, box.max.y + dy, box.max.z}};
-}
-
-/// "part.stl" in a folder is "part"; so is "part.stl.gz".
-std::string stem_of(const std::string& path) {
-    if (path == "-")
-        return "part";
-    std::filesystem::path name = std::filesystem::path(path).filename();
-    if (name.extension() == ".gz")
-        name = name.stem();
-    return name.stem().string();
-}
-
-/// Labels as wished, told apart by numbers where two are equal.
-class Labels {
-  public:
-    std::string unique(const std::string& wish) {
-        std::string label = wish;
-        for (std::uint64_t& number = numbers_[wish]; !taken_.insert(label).second;)
-            label = fmt::format("{} {}", wish, ++number + 1);
-        return label;
-    }
-
-  private:
-    std::map<std::string, std::uint64_t> numbers_;
-    std::set<std::string> taken_;
-};
-
-double unit_of(const MeshFile& file, const PlateInput& input) {
-    if (!file.unit_mm)
-        return input.unit_mm.value_or(1);
-    if (input.unit_mm)
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: the file says that its unit is {:g} mm, so none can be given for it; "
-                                "use a scale to change its size",
-                                input.path, *file.unit_mm));
-    return *file.unit_mm;
-}
-
-void check_range(const Box3& box, const std::string& path) {
-    for (const double bound : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
-        if (!std::isfinite(bound))
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("{}: unit, scale and translation move the mesh beyond the largest number; "
-                            "choose smaller ones",
-                            path));
-}
-
-/// Collects the instances of all files, and which of them can share a shape.
-class PlateBuilder {
-  public:
-    explicit PlateBuilder(const Execution& execution) : execution_(execution) {}
-
-    void add(const PlateInput& input, MeshFile file) {
-        const std::size_t index = plate_.files.size();
-        const double unit = unit_of(file, input);
-        // Where the file states its unit, that is in the places of its instances already.
-        const Transform outer =
-            file.unit_mm ? input.placement : compose(input.placement, scaling(unit, unit, unit));
-        plate_.files.push_back({input.path, file.format, unit,
-                                compose(input.placement, scaling(unit, unit, unit)), file.stored_triangles,
-                                std::move(file.warnings)});
-        std::vector<Instance> instances;
-        Box3 box;
-        for (const MeshInstance& instance : file.instances) {
-            const MeshObject& object = file.objects[instance.object];
-            std::string label = input.label;
-            if (label.empty())
-                label = !instance.name.empty()                              ? instance.name
-                        : file.instances.size() > 1 && !object.name.empty() ? object.name
-                                                                            : std::string();
-            instances.push_back(
-                {index, instance.object, compose(outer, instance.placement), std::move(label), {}});
-            instances.back().box =
-                bounding_box(object.mesh.transformed(instances.back().placement), execution_);
-            check_range(instances.back().box, input.path);
-            box.add(instances.back().box);
-        }
-        const auto columns =
-            static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(input.copies))));
-        for (std::uint64_t copy = 0; copy < input.copies; ++copy) {
-            const double dx =
-                static_cast<double>(copy % columns) * (box.max.x - box.min.x + input.spacing_mm);
-            const double dy =
-                static_cast<double>(copy / columns) * (box.max.y - box.min.y + input.spacing_mm);
-            for (Instance instance : instances) {
-                instance.placement = compose(translation(dx, dy, 0), instance.placement);
-                instance.box = moved(instance.box, dx, dy);
-                instances_.push_back(std::move(instance));
-            }
-        }
-        objects_.push_back(std::move(file.objects));
-    }
-
-    Plate finish() {
-        std::map<Key, std::vector<std::size_t>> same;
-        for (std::size_t i = 0; i < instances_.size(); ++i)
-            same[key_of(instances_[i])].push_back(i);
-        plate_.parts.resize(instances_.size());
-        Labels labels;
-        for (std::size_t i = 0; i < instances_.size(); ++i) {
-            const Instance& instance = instances_[i];
-            plate_.parts[i].label =
-                labels.unique(!instance.label.empty()  ? instance.label
-                              : instances_.size() == 1 ? "part"
-                                                       : stem_of(plate_.files[instance.input].path));
-            plate_.parts[i].box = instance.box;
-            plate_.box.add(instance.box);
-            const std::vector<std::size_t>& group = same[key_of(instance)];
-            if (group.front() != i)
-                continue;
-            const Mesh& mesh = objects_[instance.input][instance.object].mesh;
-            // A shape of its own is placed as a whole, so that a part gives the same bits alone and among
-            // others.
-            Transform placement = instance.placement;
-            if (group.size() > 1)
-                placement.offset[0] = placement.offset[1] = 0;
-            for (const std::size_t member : group) {
-                plate_.parts[member].shape = plate_.shapes.size();
-                if (group.size() > 1) {
-                    plate_.parts[member].dx = instances_[member].placement.offset[0];
-                    plate_.parts[member].dy = instances_[member].placement.offset[1];
-                }
-            }
-            plate_.shapes.push_back({mesh.transformed(placement), instance.input});
-        }
-        return std::move(plate_);
-    }
-
-  private:
-    struct Instance {
-        std::size_t input;
-        std::size_t object;
-        Transform placement;
-        std::string label;
-        Box3 box;
-    };
-    /// Equal keys, equal layers but for a way along x and y.
-    struct Key {
-        std::size_t input;
-        std::size_t object;
-        std::array<std::array<double, 3>, 3> linear;
-        double z;
-        auto operator<=>(const Key&) const = default;
-    };
-
-    static Key key_of(const Instance& instance) {
-        return {instance.input, instance.object, instance.placement.linear, instance.placement.offset[2]};
-    }
-
-    const Execution& execution_;
-    Plate plate_;
-    std::vector<std::vector<MeshObject>> objects_;
-    std::vector<Instance> instances_;
-};
-
-} // namespace
-
 Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& options,
                  const Execution& execution) {
-    PlateBuilder builder(execution);
+    std::vector<MeshFile> files;
     for (const PlateInput& input : inputs)
-        builder.add(input, read_mesh(input.path, options, execution));
-    return builder.finish();
+        files.push_back(read_mesh(input.path, options, execution));
+    return build_plate(inputs, std::move(files), execution);
 }
 
 Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution) {
-    PlateBuilder builder(execution);
-    builder.add(input, std::move(file));
-    return builder.finish();
+    std::vector<MeshFile> files;
+    files.push_back(std::move(file));
+    return build_plate(std::span(&input, 1), std::move(files), execution);
 }
 
 Mesh joined(const Plate& plate, const Execution& execution) {

@@ -122,7 +122,7 @@ void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, co
 } // namespace
 
 void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
-                    SliceReport& report, const Engine& with) {
+                    SliceReport& report, const Engine& with, std::uint64_t points_in_flight) {
     if (plate.parts.size() > 1) {
         slice_parts(sink, plate, plan, execution, report, with);
         return;
@@ -130,7 +130,7 @@ void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
     const LayerSink single = [&](Layer&& layer) {
         return sink(std::span<const Layer>(&layer, 1));
     };
-    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, with);
+    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, with, points_in_flight);
 }
 
 } // namespace lamella

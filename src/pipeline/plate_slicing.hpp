@@ -9,6 +9,7 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <span>
 
@@ -19,7 +20,8 @@ using PlateSink = std::function<std::function<void()>(std::span<const Layer> par
 
 /// A plate with one part is sliced while its layers go to the sink. Of others, the layers of all shapes are
 /// held in memory first. Contours and points are for the sink to count: parts may share a shape.
+/// `points_in_flight`: as slice_to takes it.
 void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
-                    SliceReport& report, const Engine& with);
+                    SliceReport& report, const Engine& with, std::uint64_t points_in_flight = 0);
 
 } // namespace lamella

@@ -2,60 +2,23 @@
 
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/mesh/mesh.hpp"
 
 #include "core/executor.hpp"
-#include "pipeline/plate_slicing.hpp"
+#include "pipeline/layer_source.hpp"
+#include "pipeline/stopwatch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 
 namespace lamella {
 namespace {
-
-class Stopwatch {
-  public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// "2 boundary edges, 1 inverted shell".
-std::string describe_defects(const Inspection& found) {
-    struct Count {
-        std::uint64_t n;
-        std::string_view one;
-        std::string_view many;
-    };
-    const std::array<Count, 6> counts{{
-        {found.boundary_edges, "boundary edge", "boundary edges"},
-        {found.nonmanifold_edges, "edge with more than two triangles", "edges with more than two triangles"},
-        {found.orientation_conflicts, "orientation conflict", "orientation conflicts"},
-        {found.duplicate_triangles, "duplicate triangle", "duplicate triangles"},
-        {found.degenerate_triangles, "degenerate triangle", "degenerate triangles"},
-        {found.inverted_shells, "inverted shell", "inverted shells"},
-    }};
-    std::string text;
-    for (const Count& count : counts)
-        if (count.n != 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.n,
-                                count.n == 1 ? count.one : count.many);
-    return text;
-}
 
 /// Parts are called by the name of their file.
 const std::string& path_of(const Plate& plate, const PlatePart& part) {
@@ -107,12 +70,12 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
 }
 
 /// `listed`: of the heights that the job lists, if it does.
-Plan plan_of(const FileJob& job, const Plate& plate, Plan listed, const Execution& execution) {
-    const Box3& box = plate.box;
+Plan plan_of(const FileJob& job, LayerSource& source, Plan listed, const Execution& execution) {
+    const Box3& box = source.plate().box;
     if (!job.z.empty())
         return selected(job, std::move(listed), box);
     if (job.adaptive)
-        return selected(job, plan_adaptive(joined(plate, execution), *job.adaptive, execution), box);
+        return selected(job, source.adaptive_plan(*job.adaptive, execution), box);
     if (!job.heights.empty())
         return selected(
             job,
@@ -220,56 +183,6 @@ class Gatherer {
     std::vector<Counts> parts_;
 };
 
-/// The counts of all parts, each of which is a solid of its own.
-Inspection together(const Plate& plate, const std::vector<Inspection>& shapes) {
-    Inspection all;
-    for (const PlatePart& part : plate.parts) {
-        const Inspection& one = shapes[part.shape];
-        all.box.add(part.box);
-        all.volume_mm3 += one.volume_mm3;
-        all.area_mm2 += one.area_mm2;
-        all.triangles += one.triangles;
-        all.vertices += one.vertices;
-        all.boundary_edges += one.boundary_edges;
-        all.nonmanifold_edges += one.nonmanifold_edges;
-        all.orientation_conflicts += one.orientation_conflicts;
-        all.duplicate_triangles += one.duplicate_triangles;
-        all.degenerate_triangles += one.degenerate_triangles;
-        all.shells += one.shells;
-        all.cavities += one.cavities;
-        all.inverted_shells += one.inverted_shells;
-    }
-    return all;
-}
-
-/// Inspects every shape, and leaves it welded for an engine that would weld it once more.
-Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Execution& execution) {
-    std::vector<Inspection> found;
-    for (PlateShape& shape : plate.shapes) {
-        IndexedMesh welded = weld(shape.mesh, execution);
-        found.push_back(inspect(welded, execution));
-        if (strict && !found.back().sound())
-            throw Error(ErrorKind::defect,
-                        fmt::format("{}: the mesh has defects: {}", plate.files[shape.input].path,
-                                    describe_defects(found.back())));
-        if (keep_welded)
-            shape.mesh = Mesh(std::move(welded));
-    }
-    return together(plate, found);
-}
-
-/// Files of indexed meshes need not share the vertices that are equal; contours would end between them.
-void join_vertices(Plate& plate, const Execution& execution) {
-    for (PlateShape& shape : plate.shapes)
-        if (shape.mesh.indexed() != nullptr)
-            shape.mesh = Mesh(weld(*shape.mesh.indexed(), execution));
-}
-
-bool has_indexed(const Plate& plate) {
-    return std::ranges::any_of(plate.shapes,
-                               [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
-}
-
 /// The layers of all parts with their gaps closed.
 std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, std::vector<GapJoin>& joins) {
     std::vector<Layer> closed;
@@ -281,18 +194,6 @@ std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, 
     return closed;
 }
 
-void repair_plate(Plate& plate, const RepairPolicies& policies, FileResult& result,
-                  const Execution& execution) {
-    for (PlateShape& shape : plate.shapes) {
-        FileResult::MeshRepair& done = result.repairs.emplace_back();
-        done.file = shape.input;
-        shape.mesh = repaired(shape.mesh, policies, done.repairs, execution);
-        if (shape.mesh.empty())
-            throw Error(ErrorKind::input, fmt::format("{}: nothing of the mesh is left after its repair",
-                                                      plate.files[shape.input].path));
-    }
-}
-
 LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     LayerFileInfo info{
         .box = plate.box, .layers = plan.layers.size(), .bottom = plan.layers.front().bottom, .parts = {}};
@@ -301,26 +202,9 @@ LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     return info;
 }
 
-} // namespace
-
-FileResult slice_file(const FileJob& job, const Execution& execution) {
-    const Stopwatch total;
-    FileResult result;
-
-    // What can be wrong with the wishes shows before a large file is read.
-    const Engine& with = job.engine.empty() ? engines().front() : engine(job.engine);
-    const LayerFormat* format = job.output.empty() ? nullptr : &layer_format(job.format, job.output);
-    Plan plan;
-    if (!job.z.empty())
-        plan = plan_listed(job.z, job.layers.slice_at);
-    result.engine = with.name;
-    result.threads = thread_count(execution);
-
-    const Stopwatch reading;
-    Plate plate = load_plate(
-        job.inputs, {.strict = job.strict, .max_triangles = job.max_triangles, .max_memory = job.max_memory},
-        execution);
-    result.seconds.read = reading.seconds();
+/// What the result says of the parts before they are sliced.
+void describe_parts(const FileJob& job, const LayerSource& source, FileResult& result) {
+    const Plate& plate = source.plate();
     check_heights(plate);
     if (job.build_volume)
         check_build_volume(plate, *job.build_volume);
@@ -328,37 +212,15 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     result.box = plate.box;
     for (const PlatePart& part : plate.parts) {
         result.parts.push_back(
-            {.label = part.label, .triangles = plate.shapes[part.shape].mesh.size(), .box = part.box});
+            {.label = part.label, .triangles = source.triangles(part.shape), .box = part.box});
         result.triangles += result.parts.back().triangles;
     }
-    plan = plan_of(job, plate, std::move(plan), execution);
-    result.bottom = plan.layers.front().bottom;
-    result.top = plan.layers.back().top;
+}
 
-    const Stopwatch welding;
-    const bool inspected = job.inspect || job.strict;
-    const bool indexed = has_indexed(plate);
-    if (indexed)
-        join_vertices(plate, execution);
-    if (inspected)
-        result.inspection = inspect_plate(plate, with.welds, job.strict, execution);
-    if (indexed || inspected)
-        result.seconds.weld = welding.seconds();
-    if (job.layer_statistics)
-        for (const PlatePart& part : plate.parts)
-            result.mesh_volume_mm3 += volume(plate.shapes[part.shape].mesh, execution);
-    if (job.repair.change_the_mesh()) {
-        const Stopwatch repairing;
-        repair_plate(plate, job.repair, result, execution);
-        result.seconds.weld += repairing.seconds();
-    }
-
-    std::unique_ptr<LayerWriter> writer;
-    if (format != nullptr) {
-        writer = open_layer_writer(job.output, *format, file_info(plate, plan), job.write);
-        result.format = format->name;
-    }
-    Gatherer gatherer(plan, plate.parts.size(), job);
+/// All layers of the source on their way through the job's policies to the writer, if there is one.
+void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan, LayerWriter* writer,
+                  FileResult& result, const Engine& with, const Execution& execution) {
+    Gatherer gatherer(plan, source.plate().parts.size(), job);
     if (job.steps.any())
         result.changes.emplace();
     const PlateSink sink = [&](std::span<const Layer> sliced) -> std::function<void()> {
@@ -388,19 +250,54 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
             result.seconds.write += writing.seconds();
         };
     };
-    slice_plate_to(sink, plate, plan, execution, result.report, with);
+    source.slice_to(sink, plan, execution, result, with);
     gatherer.finish(plan, result);
     if (job.strict && result.report.open_chains > 0)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
                                 job.inputs.front().path, result.report.open_chains, result.open.first_z));
-    if (writer != nullptr) {
-        const Stopwatch writing;
-        writer->finish();
-        result.seconds.write += writing.seconds();
-        result.bytes = writer->bytes();
-        result.warnings = writer->warnings();
+}
+
+void finish(LayerWriter& writer, FileResult& result) {
+    const Stopwatch writing;
+    writer.finish();
+    result.seconds.write += writing.seconds();
+    result.bytes = writer.bytes();
+    result.warnings = writer.warnings();
+}
+
+} // namespace
+
+FileResult slice_file(const FileJob& job, const Execution& execution) {
+    const Stopwatch total;
+    FileResult result;
+
+    // What can be wrong with the wishes shows before a large file is read.
+    const Engine& with = job.engine.empty() ? engines().front() : engine(job.engine);
+    const LayerFormat* format = job.output.empty() ? nullptr : &layer_format(job.format, job.output);
+    Plan plan;
+    if (!job.z.empty())
+        plan = plan_listed(job.z, job.layers.slice_at);
+    result.engine = with.name;
+    result.threads = thread_count(execution);
+
+    const Stopwatch reading;
+    const std::unique_ptr<LayerSource> source = open_layer_source(job, with, execution);
+    result.seconds.read = reading.seconds();
+    describe_parts(job, *source, result);
+    plan = plan_of(job, *source, std::move(plan), execution);
+    result.bottom = plan.layers.front().bottom;
+    result.top = plan.layers.back().top;
+    source->prepare(job, with, result, execution);
+
+    std::unique_ptr<LayerWriter> writer;
+    if (format != nullptr) {
+        writer = open_layer_writer(job.output, *format, file_info(source->plate(), plan), job.write);
+        result.format = format->name;
     }
+    slice_layers(job, *source, plan, writer.get(), result, with, execution);
+    if (writer != nullptr)
+        finish(*writer, result);
     result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;
     result.seconds.slice = result.report.slice_seconds;

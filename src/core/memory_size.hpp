@@ -1,0 +1,13 @@
+#pragma once
+
+// How much memory there is.
+
+#include <cstdint>
+
+namespace lamella {
+
+/// Bytes that this process and its like can have in all: the physical memory, or less where a control group
+/// (of a container, of a batch system's job) says so.
+[[nodiscard]] std::uint64_t memory_size();
+
+} // namespace lamella

@@ -1,0 +1,62 @@
+#include "pipeline/job_memory.hpp"
+
+#include "lamella/slicing/slabs.hpp"
+
+#include "core/memory_size.hpp"
+
+#include <algorithm>
+
+namespace lamella {
+
+namespace {
+
+// As slice_to has it.
+constexpr std::uint64_t usual_points_per_thread = (std::uint64_t{56} << 20) / sizeof(Point2);
+
+/// A point in flight and the text it becomes.
+constexpr std::uint64_t bytes_per_point = 56;
+
+constexpr std::uint64_t binary_record = 50;
+/// The text of a facet that says no more than it must.
+constexpr std::uint64_t least_facet = 100;
+
+/// What one triangle of a mesh in memory takes at most, its record or text not counted.
+std::uint64_t triangle_bytes(bool placed, unsigned threads) {
+    const SlabNeeds one{.triangles = 1, .edges = 3, .points = 0, .most_points = 0};
+    return SlabMemory{.threads = threads, .placed = placed, .points_in_flight = 0}.bytes(one) -
+           sizeof(Triangle3f);
+}
+
+} // namespace
+
+JobMemory::JobMemory(const FileJob& job)
+    : limit(job.max_memory != 0 ? job.max_memory : memory_size() / 4 * 3), asked(job.max_memory != 0) {}
+
+std::uint64_t JobMemory::points_in_flight(unsigned threads) const noexcept {
+    return std::clamp<std::uint64_t>(limit / 4 / bytes_per_point, 1, usual_points_per_thread * threads);
+}
+
+std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes) noexcept {
+    constexpr std::uint64_t program = std::uint64_t{20} << 20;
+    constexpr std::uint64_t thread = std::uint64_t{12} << 20;
+    constexpr std::uint64_t plane = 500;
+    return program + thread * threads + plane * planes;
+}
+
+std::uint64_t JobMemory::of_input(unsigned threads) const noexcept {
+    const std::uint64_t times = (binary_record + triangle_bytes(true, threads)) / binary_record + 1;
+    return limit / times;
+}
+
+std::uint64_t JobMemory::of_whole(const MeshInput& file, bool placed, unsigned threads) const {
+    const std::uint64_t around = overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
+    const std::uint64_t each = triangle_bytes(placed, threads);
+    if (const auto records = file.records())
+        return around + *records * (binary_record + each);
+    // A text is read into pieces, and those are put together.
+    const std::uint64_t facets = file.bytes() / least_facet;
+    return around +
+           std::max(file.bytes() + facets * 2 * sizeof(Triangle3f), facets * (sizeof(Triangle3f) + each));
+}
+
+} // namespace lamella

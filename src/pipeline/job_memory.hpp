@@ -1,0 +1,33 @@
+#pragma once
+
+// How much memory a job may take, and what it takes of it besides its meshes.
+
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/read/mesh_input.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lamella {
+
+struct JobMemory {
+    std::uint64_t limit = 0; ///< bytes
+    bool asked = false;      ///< by the job; else it is three quarters of what is there
+
+    explicit JobMemory(const FileJob& job);
+
+    /// How many points may be on their way through the sink: as many as slice_to has on its own, or fewer so
+    /// that they and what is made of them take no more than a quarter of the limit.
+    [[nodiscard]] std::uint64_t points_in_flight(unsigned threads) const noexcept;
+
+    /// What the program, its threads and its notes about each plane take.
+    [[nodiscard]] static std::uint64_t overhead(unsigned threads, std::uint64_t planes) noexcept;
+
+    /// Of standard input, what of it may be kept in memory because all of it would be sliced there.
+    [[nodiscard]] std::uint64_t of_input(unsigned threads) const noexcept;
+
+    /// What slicing an STL file whole takes at most, all else included.
+    [[nodiscard]] std::uint64_t of_whole(const MeshInput& file, bool placed, unsigned threads) const;
+};
+
+} // namespace lamella

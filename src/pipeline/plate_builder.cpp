@@ -1,0 +1,155 @@
+#include "pipeline/plate_builder.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+Box3 moved(const Box3& box, double dx, double dy) {
+    return {{box.min.x + dx, box.min.y + dy, box.min.z}, {box.max.x + dx, box.max.y + dy, box.max.z}};
+}
+
+/// "part.stl" in a folder is "part"; so is "part.stl.gz".
+std::string stem_of(const std::string& path) {
+    if (path == "-")
+        return "part";
+    std::filesystem::path name = std::filesystem::path(path).filename();
+    if (name.extension() == ".gz")
+        name = name.stem();
+    return name.stem().string();
+}
+
+/// Labels as wished, told apart by numbers where two are equal.
+class Labels {
+  public:
+    std::string unique(const std::string& wish) {
+        std::string label = wish;
+        for (std::uint64_t& number = numbers_[wish]; !taken_.insert(label).second;)
+            label = fmt::format("{} {}", wish, ++number + 1);
+        return label;
+    }
+
+  private:
+    std::map<std::string, std::uint64_t> numbers_;
+    std::set<std::string> taken_;
+};
+
+double unit_of(const MeshFile& file, const PlateInput& input) {
+    if (!file.unit_mm)
+        return input.unit_mm.value_or(1);
+    if (input.unit_mm)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: the file says that its unit is {:g} mm, so none can be given for it; "
+                                "use a scale to change its size",
+                                input.path, *file.unit_mm));
+    return *file.unit_mm;
+}
+
+void check_range(const Box3& box, const std::string& path) {
+    for (const double bound : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
+        if (!std::isfinite(bound))
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: unit, scale and translation move the mesh beyond the largest number; "
+                            "choose smaller ones",
+                            path));
+}
+
+} // namespace
+
+void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_of) {
+    const std::size_t index = plate_.files.size();
+    const double unit = unit_of(file, input);
+    // Where the file states its unit, that is in the places of its instances already.
+    const Transform outer =
+        file.unit_mm ? input.placement : compose(input.placement, scaling(unit, unit, unit));
+    plate_.files.push_back({input.path, file.format, unit,
+                            compose(input.placement, scaling(unit, unit, unit)), file.stored_triangles,
+                            std::move(file.warnings)});
+    std::vector<Instance> instances;
+    Box3 box;
+    for (const MeshInstance& instance : file.instances) {
+        const MeshObject& object = file.objects[instance.object];
+        std::string label = input.label;
+        if (label.empty())
+            label = !instance.name.empty()                              ? instance.name
+                    : file.instances.size() > 1 && !object.name.empty() ? object.name
+                                                                        : std::string();
+        instances.push_back(
+            {index, instance.object, compose(outer, instance.placement), std::move(label), {}});
+        instances.back().box = box_of(object.mesh, instances.back().placement);
+        check_range(instances.back().box, input.path);
+        box.add(instances.back().box);
+    }
+    const auto columns = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(input.copies))));
+    for (std::uint64_t copy = 0; copy < input.copies; ++copy) {
+        const double dx = static_cast<double>(copy % columns) * (box.max.x - box.min.x + input.spacing_mm);
+        const double dy = static_cast<double>(copy / columns) * (box.max.y - box.min.y + input.spacing_mm);
+        for (Instance instance : instances) {
+            instance.placement = compose(translation(dx, dy, 0), instance.placement);
+            instance.box = moved(instance.box, dx, dy);
+            instances_.push_back(std::move(instance));
+        }
+    }
+    objects_.push_back(std::move(file.objects));
+}
+
+Plate PlateBuilder::finish() {
+    std::map<Key, std::vector<std::size_t>> same;
+    for (std::size_t i = 0; i < instances_.size(); ++i)
+        same[key_of(instances_[i])].push_back(i);
+    plate_.parts.resize(instances_.size());
+    Labels labels;
+    for (std::size_t i = 0; i < instances_.size(); ++i) {
+        const Instance& instance = instances_[i];
+        plate_.parts[i].label =
+            labels.unique(!instance.label.empty()  ? instance.label
+                          : instances_.size() == 1 ? "part"
+                                                   : stem_of(plate_.files[instance.input].path));
+        plate_.parts[i].box = instance.box;
+        plate_.box.add(instance.box);
+        const std::vector<std::size_t>& group = same[key_of(instance)];
+        if (group.front() != i)
+            continue;
+        const Mesh& mesh = objects_[instance.input][instance.object].mesh;
+        // A shape of its own is placed as a whole, so that a part gives the same bits alone and among
+        // others.
+        Transform placement = instance.placement;
+        if (group.size() > 1)
+            placement.offset[0] = placement.offset[1] = 0;
+        for (const std::size_t member : group) {
+            plate_.parts[member].shape = plate_.shapes.size();
+            if (group.size() > 1) {
+                plate_.parts[member].dx = instances_[member].placement.offset[0];
+                plate_.parts[member].dy = instances_[member].placement.offset[1];
+            }
+        }
+        plate_.shapes.push_back({mesh.transformed(placement), instance.input});
+    }
+    return std::move(plate_);
+}
+
+PlateBuilder::Key PlateBuilder::key_of(const Instance& instance) {
+    return {instance.input, instance.object, instance.placement.linear, instance.placement.offset[2]};
+}
+
+Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files,
+                  const Execution& execution) {
+    PlateBuilder builder;
+    for (std::size_t i = 0; i < files.size(); ++i)
+        builder.add(inputs[i], std::move(files[i]), [&](const Mesh& mesh, const Transform& placement) {
+            return bounding_box(mesh.transformed(placement), execution);
+        });
+    return builder.finish();
+}
+
+} // namespace lamella
