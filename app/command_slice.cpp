@@ -256,9 +256,10 @@ std::string summary(const FileJob& job, const FileResult& result) {
         brief(box.max.z - box.min.z));
     if (parts > 1)
         text += fmt::format("plate    {}: {}\n", counted(parts, "part"), labels(result));
-    text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}\n", counted(result.report.layers, "layer"),
-                        brief(result.bottom), brief(result.top), counted(result.report.contours, "contour"),
-                        counted(result.report.points, "point"));
+    text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}{}\n",
+                        counted(result.report.layers, "layer"), brief(result.bottom), brief(result.top),
+                        counted(result.report.contours, "contour"), counted(result.report.points, "point"),
+                        result.slabs == 0 ? "" : fmt::format(", in {}", counted(result.slabs, "slab")));
     if (result.inspection)
         text += fmt::format("mesh     {}\n", result.inspection->sound()
                                                  ? "closed, consistently oriented, no defects"

@@ -206,7 +206,9 @@ std::vector<Option> read_limit_options(ReadLimits& target) {
     return {count("max-triangles", "N", "stop at a file of more triangles than this (exit code 5)",
                   target.max_triangles),
             row("max-memory", ValueKind::text, "SIZE",
-                "stop at a file that unpacks to more than this, such as 500M or 2G (exit code 5)",
+                "take no more memory, such as 500M or 2G: larger STL files are sliced in pieces, by way of "
+                "a temporary file in $TMPDIR or /var/tmp, with the same result; what cannot be is an error "
+                "(exit code 5); three quarters of the memory there is unless given",
                 [&target](const std::string& text) { target.max_memory = parse_byte_size(text); })};
 }
 

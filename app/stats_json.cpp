@@ -11,13 +11,23 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
+#include <string>
+#include <string_view>
 
 namespace lamella::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Of this program: what getrusage tells includes the process that started it.
 std::uint64_t peak_rss_bytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        constexpr std::string_view key = "VmHWM:";
+        if (line.starts_with(key))
+            return std::stoull(line.substr(key.size())) * 1024;
+    }
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
@@ -167,6 +177,8 @@ Json stats_json(const Command& command, const FileResult& result) {
                   {"contours", result.report.contours},
                   {"open_chains", result.report.open_chains},
                   {"volume_mm3", result.volume_mm3}};
+    if (result.slabs != 0)
+        stats["slabs"] = result.slabs;
     if (result.changes) {
         Json changes = {{"changed_layers", result.changes->changed_layers}};
         changes.update(changes_json(*result.changes));

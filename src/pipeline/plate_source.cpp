@@ -162,7 +162,7 @@ class PlateSource final : public LayerSource {
 std::unique_ptr<LayerSource> open_plate_source(const FileJob& job, std::vector<MeshInput> files,
                                                const JobMemory& memory, const Execution& execution) {
     const MeshReadOptions options{
-        .strict = job.strict, .max_triangles = job.max_triangles, .max_memory = memory.limit};
+        .strict = job.strict, .max_triangles = job.max_triangles, .max_memory = job.max_memory};
     std::vector<MeshFile> meshes;
     for (MeshInput& file : files) {
         const MeshInput input = std::move(file); // a text is let go of once it is read

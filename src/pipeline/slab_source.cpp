@@ -182,7 +182,8 @@ class SlabSource final : public LayerSource {
                const Execution& execution)
         : memory_(memory), measure_volume_(job.layer_statistics),
           passes_(std::move(files),
-                  {.strict = job.strict, .max_triangles = job.max_triangles, .max_memory = memory.limit}, 3) {
+                  {.strict = job.strict, .max_triangles = job.max_triangles, .max_memory = job.max_memory},
+                  3) {
         PlateBuilder builder;
         for (std::size_t i = 0; i < job.inputs.size(); ++i) {
             const PlateInput& input = job.inputs[i];
@@ -242,6 +243,7 @@ class SlabSource final : public LayerSource {
             result.report.slice_seconds += report.slice_seconds;
         }
         result.report.layers = plan.layers.size();
+        result.slabs = slabs.size();
     }
 
   private:
@@ -305,13 +307,13 @@ class SlabSource final : public LayerSource {
                 where = p;
             }
         if (overhead + largest > memory_.limit)
-            throw Error(ErrorKind::limit,
-                        fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with {} "
-                                    "threads that takes {} MB of memory, above the {} MB of --max-memory; "
-                                    "allow more, or use fewer threads",
-                                    plate_.files.front().path, plan.layers[where].z, survey.points(where),
-                                    threads, (overhead + largest) / 1'000'000 + 1,
-                                    memory_.limit / 1'000'000));
+            throw Error(
+                ErrorKind::limit,
+                fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
+                            "--threads {} that takes {} MB of memory, above the {} MB of --max-memory; "
+                            "allow more, or use fewer threads",
+                            plate_.files.front().path, plan.layers[where].z, survey.points(where), threads,
+                            (overhead + largest) / 1'000'000 + 1, memory_.limit / 1'000'000));
         return divide_to_fit(survey, plan, slab, memory_.limit - overhead);
     }
 

@@ -27,8 +27,13 @@ struct FileJob {
     std::vector<PlateInput> inputs;
     /// Where set, every part must lie in the box from the origin to this point.
     std::optional<Point3> build_volume;
-    /// Limits of reading; `strict` below holds for it, too.
+    /// A limit of reading; `strict` below holds for it, too.
     std::uint64_t max_triangles = 0;
+    /// Bytes that the run may take, with all threads; 0: three quarters of the memory there is. STL files
+    /// that could not be sliced whole with that are sliced slab by slab, by way of a temporary file without a
+    /// name in $TMPDIR, else /var/tmp, with the same result. What can only be done with the whole mesh is
+    /// Error{limit} then: inspection, strict, the repairs that change a mesh, adaptive layers, engines that
+    /// weld, and formats other than STL; where the limit is not given, those are tried all the same.
     std::uint64_t max_memory = 0;
 
     /// Layers of one height, stacked from the bottom of the plate's parts.
@@ -108,7 +113,8 @@ struct FileResult {
 
     std::string engine;
     unsigned threads = 0;
-    SliceReport report; ///< contours and chains as they are after gaps were closed
+    std::uint64_t slabs = 0; ///< the meshes were too large for the memory: in so many they were sliced
+    SliceReport report;      ///< contours and chains as they are after gaps were closed
     /// Layers of one kind, and where the lowest of them was cut.
     struct Affected {
         std::uint64_t layers = 0;
@@ -144,8 +150,8 @@ struct FileResult {
 };
 
 /// Slices files into a file. The layers of a single part are written while slicing goes on, so that memory
-/// holds a bounded number of them; of several parts, all layers are held. Nothing appears at the output path
-/// before all went well.
+/// holds a bounded number of them; of several parts, all layers are held (of a slab, where there are slabs).
+/// Nothing appears at the output path before all went well.
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
 /// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.

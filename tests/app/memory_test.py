@@ -1,0 +1,187 @@
+"""lamella slice --max-memory: files that do not fit give the same bytes slab by slab, and leave nothing behind."""
+
+import json
+import os
+import resource
+import signal
+import struct
+import subprocess
+import threading
+
+from program import PROGRAM, ProgramTest, binary_stl, main, open_box
+
+# The program and its threads take some of each limit; what is left makes many slabs of these small meshes.
+TIGHT = {1: "39M", 2: "52M", 7: "116M"}
+
+
+class Memory(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.spill = self.path("spill")
+        self.spill.mkdir()
+        self.environment = dict(os.environ, TMPDIR=str(self.spill))
+
+    def lattice(self, name="lattice.stl", *options):
+        """112,000 triangles."""
+        self.succeed("make", "lattice", "--cells", 6, "-o", name, *options)
+        return name
+
+    def slice(self, *arguments, **keywords):
+        self.succeed("slice", *arguments, "--stats", "stats.json", env=self.environment, **keywords)
+        self.assertEqual(list(self.spill.iterdir()), [])
+        return json.loads(self.bytes_of("stats.json"))
+
+    def check(self, *arguments, name="cli", least_slabs=2, stdin=b"", threads=(1, 2, 7)):
+        """The bytes and hashes of a run in memory, for all numbers of threads."""
+        whole = self.slice(*arguments, "-o", f"whole.{name}", stdin=stdin)
+        self.assertNotIn("slabs", whole)
+        for n in threads:
+            stats = self.slice(*arguments, "-o", f"slabs.{name}", "--threads", n, "--max-memory", TIGHT[n],
+                               stdin=stdin)
+            self.assertGreaterEqual(stats["slabs"], least_slabs)
+            self.assertEqual(self.bytes_of(f"slabs.{name}"), self.bytes_of(f"whole.{name}"))
+            self.assertEqual(stats["layers"], whole["layers"])
+            for key in ["points", "contours", "open_chains", "volume_mm3"]:
+                self.assertEqual(stats[key], whole[key])
+            self.assertAlmostEqual(stats["input"]["volume_mm3"], whole["input"]["volume_mm3"], places=6)
+            self.assertLess(stats["peak_rss_bytes"], 1.1 * 1e6 * int(TIGHT[n][:-1]))
+        return whole
+
+    def damaged(self, name):
+        """The lattice with holes, and with triangles that are turned over, doubled and not finite."""
+        bytes_ = bytearray(self.bytes_of(self.lattice()))
+        records = (len(bytes_) - 84) // 50
+        for i in range(0, records, 97):
+            at = 84 + 50 * i
+            kind = i // 97 % 4
+            if kind == 0:
+                bytes_[at + 12:at + 24] = bytes_[at + 24:at + 36]
+            elif kind == 1:
+                bytes_[at + 12:at + 36] = bytes_[at + 24:at + 36] + bytes_[at + 12:at + 24]
+            elif kind == 2:
+                bytes_[at:at + 50] = bytes_[at + 50:at + 100]
+            else:
+                bytes_[at + 12:at + 16] = struct.pack("<f", float("nan"))
+        self.write(name, bytes(bytes_))
+        return name
+
+    def test_slabs_give_the_same_bytes(self):
+        self.check(self.lattice(), least_slabs=3)
+
+    def test_in_any_order_of_triangles(self):
+        ordered = self.check(self.lattice(), threads=[2])
+        shuffled = self.check(self.lattice("shuffled.stl", "--shuffle", 5), threads=[2])
+        self.assertEqual(ordered["layers"], shuffled["layers"])
+
+    def test_of_ascii_files(self):
+        binary = self.check(self.lattice(), threads=[2])
+        ascii_ = self.check(self.lattice("ascii.stl", "--ascii"), threads=[1, 2])
+        self.assertEqual(binary["layers"], ascii_["layers"])
+
+    def test_of_standard_input(self):
+        for options in [[], ["--ascii"]]:
+            self.lattice("piped.stl", *options)
+            self.check("-", stdin=self.bytes_of("piped.stl"), threads=[2])
+
+    def test_of_broken_meshes(self):
+        whole = self.check(self.damaged("damaged.stl"))
+        self.assertGreater(whole["open_chains"], 100)
+        self.check("damaged.stl", "--close-gaps", "0.5", "--fill", "nonzero", threads=[2])
+
+    def test_in_all_formats(self):
+        self.lattice()
+        for name in ["cli", "svg", "slc", "json", "npz", "3mf"]:
+            self.check("lattice.stl", "--layer-height", "0.5", name=name, threads=[2])
+
+    def test_of_placed_parts(self):
+        self.check(self.lattice(), "--rotate", "10,20,30", "--unit", "cm", "--layer-height", "5", threads=[1, 2])
+        self.check("lattice.stl", "--slice-at", "top", "--layers", "20:60", threads=[2])
+
+    def test_of_plates(self):
+        self.lattice()
+        self.succeed("make", "sphere", "--detail", 6, "-o", "sphere.stl")
+        self.check("lattice.stl", "--copies", 2, "sphere.stl", "--translate", "0,0,3", "--layer-height", "0.5",
+                   threads=[1, 2])
+
+    def test_layers_where_nothing_is(self):
+        self.succeed("make", "sphere", "--detail", 7, "-o", "low.stl")
+        self.succeed("make", "sphere", "--detail", 7, "--translate", "0,0,40", "-o", "high.stl")
+        both = self.bytes_of("low.stl")[84:] + self.bytes_of("high.stl")[84:]
+        self.write("apart.stl", b"".ljust(80) + struct.pack("<I", len(both) // 50) + both)
+        whole = self.check("apart.stl")
+        self.assertTrue(any(layer["contours"] == 0 for layer in whole["layers"]))
+
+    def test_progress_counts_bytes_and_planes(self):
+        self.lattice()
+        result = self.succeed("slice", "lattice.stl", "-o", "a.cli", "--max-memory", "52M", "--threads", 2,
+                              "--progress", "json", env=self.environment)
+        events = [json.loads(line) for line in result.err.splitlines()]
+        stages = [event["stage"] for event in events]
+        self.assertEqual(stages, sorted(stages, key=["read", "slice"].index))
+        for stage, total in [("read", 3 * len(self.bytes_of("lattice.stl"))), ("slice", 287)]:
+            done = [event["done"] for event in events if event["stage"] == stage]
+            self.assertEqual(done, sorted(done))
+            self.assertEqual(done[-1], total)
+            self.assertEqual({event["total"] for event in events if event["stage"] == stage}, {total})
+
+    def test_limits_that_are_too_small(self):
+        self.lattice()
+        self.fail_with(5, r"the layer at z = .* alone is cut from .* triangles.*--max-memory", "slice", "lattice.stl",
+                       "-o", "a.cli", "--max-memory", "1M")
+
+    def test_wishes_that_need_the_whole_mesh(self):
+        self.lattice()
+        for option in [["--strict"], ["--inspect"], ["--weld-tolerance", "0.01"], ["--drop-duplicates"], ["--orient"],
+                       ["--engine", "eecc"]]:
+            self.fail_with(5, f"lattice.stl: .*MB.*--max-memory.* {option[-1] if 'eecc' in option else option[0]}",
+                           "slice", "lattice.stl", "-o", "a.cli", "--max-memory", "52M", "--threads", 2, *option)
+        self.succeed("make", "box", "-o", "box.obj")
+        self.fail_with(5, "box.obj.* read whole", "slice", "lattice.stl", "box.obj", "-o", "a.cli", "--max-memory",
+                       "52M", "--threads", 2)
+
+    def test_a_disk_that_is_full(self):
+        self.lattice()
+
+        def small_files():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+        result = self.fail_with(6, r"spill: cannot hold [0-9.]+ MB of temporary data: .*TMPDIR", "slice",
+                                "lattice.stl", "--stats", "-", "--max-memory", "52M", "--threads", 2, env=self.environment,
+                                preexec_fn=small_files)
+        self.assertIn("--max-memory", result.err)
+
+    def test_no_folder_for_temporary_data(self):
+        self.lattice()
+        self.fail_with(6, "/nowhere: cannot hold", "slice", "lattice.stl", "-o", "a.cli", "--max-memory", "52M",
+                       "--threads", 2, env=dict(os.environ, TMPDIR="/nowhere"))
+
+    def test_a_run_that_is_stopped_leaves_nothing(self):
+        self.lattice()
+        for number, code in [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)]:
+            for stage in ["read", "slice"]:
+                process = subprocess.Popen([PROGRAM, "slice", "lattice.stl", "-o", "a.svg", "--layer-height", "0.001",
+                                            "--max-memory", "80M", "--threads", "2", "--progress", "json"],
+                                           cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL,
+                                           stderr=subprocess.PIPE)
+                self.addCleanup(process.kill)
+                for line in process.stderr:
+                    if json.loads(line).get("stage") == stage:
+                        break
+                process.send_signal(number)
+                drain = threading.Thread(target=process.stderr.read)
+                drain.start()
+                self.assertEqual(process.wait(timeout=60), code)
+                drain.join()
+                process.stderr.close()
+                self.assertEqual(list(self.spill.iterdir()), [])
+                self.assertFalse(self.path("a.svg").exists())
+
+    def test_open_contours_are_counted_as_ever(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10) * 30000))
+        whole = self.slice("open.stl", "--layer-height", "2")
+        slabs = self.slice("open.stl", "--layer-height", "2", "--max-memory", "110M", "--threads", 2)
+        self.assertIn("slabs", slabs)
+        self.assertEqual(whole["layers"], slabs["layers"])
+
+
+if __name__ == "__main__":
+    main()
