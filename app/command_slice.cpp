@@ -12,6 +12,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "repair_options.hpp"
+#include "shard_stamp.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
 #include "z_list.hpp"
@@ -58,6 +59,8 @@ struct SliceArguments {
     std::optional<std::pair<std::uint64_t, std::uint64_t>> layers;
     std::string z_list;
     HeightOptions heights;
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> shard;
+    bool resume = false;
 
     RepairPolicies repair;
     std::string engine;
@@ -148,6 +151,15 @@ OptionGroup plan_options(SliceArguments& target) {
     return group;
 }
 
+OptionGroup shard_options(SliceArguments& target) {
+    return {"How it is shared out",
+            {row("shard", ValueKind::text, "I/N",
+                 "only the I-th of N runs of layers of about equal work; lamella merge puts them together",
+                 [&target](const std::string& text) { target.shard = parse_share(text); }),
+             flag("resume", "do nothing where this shard is finished, as the stamp beside its file shows",
+                  target.resume)}};
+}
+
 OptionGroup checking_options(SliceArguments& target) {
     Option engine = choice("engine", "NAME", "the algorithm", names_of(engines()), target.engine);
     engine.preset = engines().front().name;
@@ -175,6 +187,21 @@ OptionGroup timed_run_options(SliceArguments& target) {
 void check_conflict(bool first, bool second, const char* names, const char* reason) {
     if (first && second)
         throw Error(ErrorKind::usage, fmt::format("{} contradict each other: {}", names, reason));
+}
+
+/// A shard is stamped with the content of its inputs and its output.
+void check_shard(const SliceArguments& arguments) {
+    if (arguments.resume && !arguments.shard)
+        throw Error(ErrorKind::usage, "--resume goes with --shard");
+    if (!arguments.shard)
+        return;
+    check_conflict(std::ranges::count(arguments.inputs, std::string("-"), &PlateInput::path) > 0, true,
+                   "- and --shard", "every shard has to read the whole mesh, from a file");
+    check_conflict(arguments.output == "-", true, "--output - and --shard", "a shard is a file of its own");
+    check_conflict(arguments.resume, arguments.stats == "-", "--resume and --stats -",
+                   "a shard that is finished has no figures");
+    if (!arguments.output.empty() && layer_format(arguments.writing.format, arguments.output).directory)
+        throw Error(ErrorKind::usage, "--shard goes with formats of one file, not of a folder");
 }
 
 FileJob make_job(const SliceArguments& arguments) {
@@ -207,6 +234,8 @@ FileJob make_job(const SliceArguments& arguments) {
     check_conflict(!arguments.output.empty() && arguments.output != "-", arguments.output == arguments.stats,
                    "--output and --stats", "both would go to the same file");
 
+    check_shard(arguments);
+
     FileJob job;
     job.inputs = arguments.inputs;
     if (arguments.build_volume) {
@@ -224,6 +253,8 @@ FileJob make_job(const SliceArguments& arguments) {
         job.z = read_z_list(arguments.z_list);
     job.heights = arguments.heights.ranges;
     job.adaptive = arguments.heights.adaptive_layers(job.layers.slice_at);
+    if (arguments.shard)
+        job.shard = Shard{arguments.shard->first, arguments.shard->second};
     job.repair = arguments.repair;
     job.engine = arguments.engine;
     job.inspect = arguments.inspect;
@@ -260,6 +291,9 @@ std::string summary(const FileJob& job, const FileResult& result) {
                         counted(result.report.layers, "layer"), brief(result.bottom), brief(result.top),
                         counted(result.report.contours, "contour"), counted(result.report.points, "point"),
                         result.slabs == 0 ? "" : fmt::format(", in {}", counted(result.slabs, "slab")));
+    if (job.shard)
+        text += fmt::format("shard    {} of {}: layers {} to {} of {}\n", job.shard->number, job.shard->count,
+                            result.shard.begin, result.shard.end - 1, result.planned_layers);
     if (result.inspection)
         text += fmt::format("mesh     {}\n", result.inspection->sound()
                                                  ? "closed, consistently oriented, no defects"
@@ -327,7 +361,20 @@ FileResult slice_in_time(const FileJob& job, const Execution& execution,
 int run_slice(SliceArguments& arguments, const Context& context) {
     finish_input(arguments);
     const FileJob job = make_job(arguments);
-    const FileResult result = slice_in_time(job, arguments.run.execution(context), arguments.timeout);
+    const Execution execution = arguments.run.execution(context);
+    const bool stamped = job.shard && !job.output.empty();
+    nlohmann::ordered_json origin;
+    if (stamped) {
+        origin = shard_origin(context.command, job, execution);
+        if (arguments.resume && is_finished_shard(job, origin, execution)) {
+            context.messages.result(fmt::format("{}: shard {}/{} is finished\n", one_line(job.output),
+                                                job.shard->number, job.shard->count));
+            return 0;
+        }
+    }
+    const FileResult result = slice_in_time(job, execution, arguments.timeout);
+    if (stamped)
+        stamp_shard(job, result, origin, execution);
     for (const PlateFile& file : result.files)
         for (const std::string& warning : file.warnings)
             context.messages.warn(warning);
@@ -370,7 +417,7 @@ Command slice_command() {
                               add_input(*arguments, text);
                           }}},
         .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
-                   plan_options(*arguments), repair_options(arguments->repair),
+                   plan_options(*arguments), shard_options(*arguments), repair_options(arguments->repair),
                    layer_step_options(arguments->making), input_options(*arguments),
                    checking_options(*arguments), timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
@@ -382,6 +429,8 @@ Command slice_command() {
                      {"lamella slice a.stl --copies 4 b.stl --translate 60,0,0 -o plate.cli",
                       "a plate of four and one"},
                      {"lamella slice part.stl --stats - --layers 100:110", "only figures, of ten layers"},
+                     {"lamella slice part.stl -o part.3.cli --shard 3/8 --resume",
+                      "the third of eight shares of the layers, unless it is done already"},
                      {"lamella slice part.stl -o part.cli --config machine.toml",
                       "with options kept in a file"}},
         .run = [arguments](const Context& context) {

@@ -137,6 +137,18 @@ std::pair<std::uint64_t, std::uint64_t> parse_index_range(std::string_view text)
     return range;
 }
 
+std::pair<std::uint32_t, std::uint32_t> parse_share(std::string_view text) {
+    constexpr std::string_view expected = "a share such as 2/8, the second of eight";
+    const std::size_t slash = text.find('/');
+    if (slash == std::string_view::npos)
+        refuse(text, expected);
+    const std::uint64_t number = parse_count(text.substr(0, slash));
+    const std::uint64_t count = parse_count(text.substr(slash + 1));
+    if (number < 1 || number > count || count > std::numeric_limits<std::uint32_t>::max())
+        refuse(text, expected);
+    return {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(count)};
+}
+
 std::string exact(double value) {
     return fmt::format("{}", value);
 }

@@ -24,6 +24,8 @@ namespace lamella::app {
 /// "a:b"; either end may be left out.
 [[nodiscard]] std::pair<double, double> parse_range(std::string_view text);
 [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> parse_index_range(std::string_view text);
+/// "2/8": the second of eight; both from 1 on.
+[[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_share(std::string_view text);
 
 /// The shortest text that reads back to the same number.
 [[nodiscard]] std::string exact(double value);

@@ -33,13 +33,13 @@ ROOMS = {
     "pipeline": ["core", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "write"],
 }
 
-# Third-party headers of the library: each is visible in one source (zlib in one that packs and one that unpacks),
-# text formatting in all of them.
+# Third-party headers of the library: each is visible in one source (zlib in one that packs and one that unpacks,
+# the hash in one for layers and one for files), text formatting in all of them.
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
     "libdeflate.h": "src/container/inflate.cpp",
     "polyclipping": "src/polygon/clipping.cpp",
-    "xxhash.h": "src/contour/normal_form.cpp",
+    "xxhash.h": "src/container/file_hash.cpp src/contour/normal_form.cpp",
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}

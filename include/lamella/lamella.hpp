@@ -14,6 +14,7 @@
 // Lengths are millimetres. Failures are lamella::Error. Nothing here prints, exits or keeps global state,
 // but for the temporary names in use (remove_unfinished).
 
+#include "lamella/container/file_hash.hpp"
 #include "lamella/container/unfinished.hpp"
 #include "lamella/contour/close_gaps.hpp"
 #include "lamella/contour/layer.hpp"
@@ -31,6 +32,7 @@
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
+#include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/pipeline/slice_file.hpp"

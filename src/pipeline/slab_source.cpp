@@ -183,7 +183,7 @@ class SlabSource final : public LayerSource {
         : memory_(memory), measure_volume_(job.layer_statistics),
           passes_(std::move(files),
                   {.strict = job.strict, .max_triangles = job.max_triangles, .max_memory = job.max_memory},
-                  3) {
+                  job.shard ? 4 : 3) {
         PlateBuilder builder;
         for (std::size_t i = 0; i < job.inputs.size(); ++i) {
             const PlateInput& input = job.inputs[i];
@@ -251,10 +251,10 @@ class SlabSource final : public LayerSource {
         return plate_.shapes[shape].mesh.soup()->placement();
     }
 
-    /// The second pass.
+    /// The second pass; one more where the layers of a shard are still to be found.
     void count_shapes(const Plan& plan, const Execution& execution) {
-        if (!counts_.empty())
-            return;
+        counts_.clear();
+        volumes_.clear();
         std::vector<std::unique_ptr<PlaneCounter>> counters;
         std::vector<std::unique_ptr<VolumeSum>> volumes;
         for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape) {

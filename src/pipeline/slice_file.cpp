@@ -202,6 +202,13 @@ LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     return info;
 }
 
+PlaneRange planes_of(const Shard& shard, LayerSource& source, const Plan& plan, const Execution& execution) {
+    if (shard.number < 1 || shard.number > shard.count)
+        throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
+                                                  shard.number, shard.count));
+    return divide_evenly(SlabSurvey(source.counts(plan, execution)), shard.count)[shard.number - 1];
+}
+
 /// What the result says of the parts before they are sliced.
 void describe_parts(const FileJob& job, const LayerSource& source, FileResult& result) {
     const Plate& plate = source.plate();
@@ -286,6 +293,12 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     result.seconds.read = reading.seconds();
     describe_parts(job, *source, result);
     plan = plan_of(job, *source, std::move(plan), execution);
+    result.planned_layers = plan.layers.size();
+    result.shard = {0, static_cast<std::uint32_t>(plan.layers.size())};
+    if (job.shard) {
+        result.shard = planes_of(*job.shard, *source, plan, execution);
+        plan = part_of(plan, result.shard);
+    }
     result.bottom = plan.layers.front().bottom;
     result.top = plan.layers.back().top;
     source->prepare(job, with, result, execution);

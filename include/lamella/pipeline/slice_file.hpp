@@ -10,6 +10,7 @@
 #include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slabs.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/slicing/varying_plan.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -20,6 +21,14 @@
 #include <vector>
 
 namespace lamella {
+
+/// One of several runs that share the layers of a job, on as many machines perhaps: a run of consecutive
+/// layers, of about as much work as the others (which is not the same as height). Each computes the same
+/// division, from the counts of triangles on the planes (divide_evenly), and needs all of the files.
+struct Shard {
+    std::uint32_t number = 1; ///< from 1
+    std::uint32_t count = 1;
+};
 
 /// What is to be sliced, how, and where to.
 struct FileJob {
@@ -46,6 +55,10 @@ struct FileJob {
     std::vector<HeightRange> heights;
     /// Where set: layers of varying height; see plan_adaptive. Of `layers`, the two ranges still count.
     std::optional<AdaptiveLayers> adaptive;
+
+    /// Where set: of these layers, only those of this shard. Error{usage} where there are more shards than
+    /// layers. merge_layer_files puts the slice files of all together.
+    std::optional<Shard> shard;
 
     /// What to mend before and after slicing. Inspection and `strict` look at the mesh before that.
     RepairPolicies repair;
@@ -123,6 +136,8 @@ struct FileResult {
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
     Affected open;                       ///< with open chains
     Affected inside_out;                 ///< whose first ring, always an outer one, runs clockwise
+    std::uint64_t planned_layers = 0;    ///< by all shards
+    PlaneRange shard;                    ///< which of them by this one: all, where there are no shards
     double bottom = 0;                   ///< of the first layer
     double top = 0;                      ///< of the last layer
     std::string format;                  ///< of the slice file, "" when none was written

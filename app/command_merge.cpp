@@ -1,0 +1,83 @@
+#include "lamella/pipeline/merge.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "shard_stamp.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+struct MergeArguments {
+    std::string output;
+    std::vector<std::string> shards;
+    LayerOutputOptions writing;
+    RunOptions run;
+};
+
+int run_merge(const MergeArguments& arguments, const Context& context) {
+    for (const std::string& shard : arguments.shards)
+        check_distinct(shard, arguments.output);
+    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    const LayerWriteOptions options = arguments.writing.write_options(format);
+    const Execution execution = arguments.run.execution(context);
+    check_stamps(arguments.shards, execution);
+    const MergeResult result =
+        merge_layer_files(arguments.shards, arguments.output, format.name, options, execution);
+    for (const std::string& warning : result.warnings)
+        context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
+    const std::string text =
+        fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(arguments.output),
+                    counted(result.layers, "layer"), brief(result.bottom), brief(result.top),
+                    counted(arguments.shards.size(), "file"), byte_size(result.bytes));
+    if (arguments.output == "-")
+        context.messages.note(text);
+    else
+        context.messages.result(text);
+    return 0;
+}
+
+} // namespace
+
+Command merge_command() {
+    const auto arguments = std::make_shared<MergeArguments>();
+    return {
+        .name = "merge",
+        .summary = "put slice files of consecutive layers together",
+        .description =
+            "Makes one slice file of several whose layers lie on one another, such as the shards of a job "
+            "(lamella slice --shard); they may be named in any order. Files with gaps between them, that "
+            "overlap "
+            "or are not of one job are refused. Files in the formats cli and cli-ascii become the file "
+            "of a single run, byte for byte; layers of other formats are read and written anew.",
+        .operands = {{.placeholder = "OUT",
+                      .help = "the slice file to write; its extension says the format; - is standard output",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->output = text;
+                          }},
+                     {.placeholder = "SHARD",
+                      .help = "a slice file to read",
+                      .repeated = true,
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->shards.push_back(text);
+                          }}},
+        .groups = {{"What is written", layer_output_options(arguments->writing)},
+                   picture_options(arguments->writing.picture),
+                   run_options(arguments->run),
+                   common_options(true)},
+        .examples = {{"lamella merge part.cli part.*.cli", "one file of all shards"}},
+        .run = [arguments](const Context& context) {
+            return run_merge(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

@@ -1,0 +1,167 @@
+#include "shard_stamp.hpp"
+
+#include "lamella/container/file_hash.hpp"
+#include "lamella/core/error.hpp"
+
+#include "config_file.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+namespace lamella::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// As text: a JSON number loses digits beyond 2^53.
+std::string hash_text(const std::string& path, const Execution& execution) {
+    return fmt::format("{:016x}", file_hash(path, execution));
+}
+
+/// Options that leave the bytes of the slice file alone, or that the origin has in another form.
+constexpr std::array<std::string_view, 10> not_of_the_origin{
+    "shard",    "resume", "output",     "stats",         "threads",
+    "progress", "config", "max-memory", "max-triangles", "timeout"};
+
+Json input_json(const PlateInput& input, const Execution& execution) {
+    Json placement = Json::array();
+    for (const auto& row : input.placement.linear)
+        placement.insert(placement.end(), {row[0], row[1], row[2]});
+    placement.insert(placement.end(),
+                     {input.placement.offset[0], input.placement.offset[1], input.placement.offset[2]});
+    return {{"hash", hash_text(input.path, execution)},
+            {"unit_mm", input.unit_mm.value_or(0)},
+            {"placement", std::move(placement)},
+            {"copies", input.copies},
+            {"spacing", input.spacing_mm},
+            {"label", input.label}};
+}
+
+Json read_stamp(const std::string& output) {
+    const std::string path = stamp_path(output);
+    const Json stamp = Json::parse(read_text_file(path), nullptr, false);
+    if (!stamp.is_object() || !stamp.contains("origin") || !stamp.contains("output"))
+        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard", path));
+    return stamp;
+}
+
+Json output_json(const std::string& path, const Execution& execution) {
+    return {{"bytes", std::filesystem::file_size(path)}, {"hash", hash_text(path, execution)}};
+}
+
+/// A stamp with the file it belongs to.
+struct Stamped {
+    std::string path;
+    Json stamp;
+    std::uint64_t begin;
+    std::uint64_t end;
+};
+
+Stamped stamped(const std::string& path, const Execution& execution) {
+    Stamped file{path, read_stamp(path), 0, 0};
+    try {
+        file.begin = file.stamp.at("layers").at(0).get<std::uint64_t>();
+        file.end = file.stamp.at("layers").at(1).get<std::uint64_t>();
+        static_cast<void>(file.stamp.at("of").get<std::uint64_t>());
+    } catch (const Json::exception&) {
+        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard", stamp_path(path)));
+    }
+    if (file.stamp["output"] != output_json(path, execution))
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: is not as it was when its stamp {} was written; slice this shard again",
+                                path, stamp_path(path)));
+    return file;
+}
+
+} // namespace
+
+std::string stamp_path(const std::string& output) {
+    return output + ".shard";
+}
+
+Json shard_origin(const Command& command, const FileJob& job, const Execution& execution) {
+    Json options = options_in_effect(command);
+    for (const std::string_view name : not_of_the_origin)
+        options.erase(std::string(name));
+    if (!job.z.empty())
+        options["z-list"] = job.z;
+    Json inputs = Json::array();
+    for (const PlateInput& input : job.inputs)
+        inputs.push_back(input_json(input, execution));
+    return {{"lamella", LAMELLA_VERSION},
+            {"format", layer_format(job.format, job.output).name},
+            {"shards", job.shard->count},
+            {"inputs", std::move(inputs)},
+            {"options", std::move(options)}};
+}
+
+bool is_finished_shard(const FileJob& job, const Json& origin, const Execution& execution) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(job.output, ignored) ||
+        !std::filesystem::exists(stamp_path(job.output), ignored))
+        return false;
+    const Json stamp = Json::parse(read_text_file(stamp_path(job.output)), nullptr, false);
+    return stamp.is_object() && stamp.value("origin", Json()) == origin &&
+           stamp.value("shard", Json()) == Json(job.shard->number) &&
+           stamp.value("output", Json()) == output_json(job.output, execution);
+}
+
+void stamp_shard(const FileJob& job, const FileResult& result, const Json& origin,
+                 const Execution& execution) {
+    const Json stamp{{"shard", job.shard->number},
+                     {"layers", {result.shard.begin, result.shard.end}},
+                     {"of", result.planned_layers},
+                     {"origin", origin},
+                     {"output", output_json(job.output, execution)}};
+    write_text_file(stamp_path(job.output), stamp.dump(2) + "\n");
+}
+
+void check_stamps(const std::vector<std::string>& paths, const Execution& execution) {
+    const auto has_stamp = [](const std::string& path) {
+        return std::filesystem::exists(stamp_path(path));
+    };
+    if (std::ranges::none_of(paths, has_stamp))
+        return;
+    std::vector<Stamped> files;
+    for (const std::string& path : paths) {
+        if (!has_stamp(path))
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: has no stamp ({}), and others have; a shard without a stamp is not "
+                                    "finished",
+                                    path, stamp_path(path)));
+        files.push_back(stamped(path, execution));
+    }
+    std::ranges::sort(files, {}, &Stamped::begin);
+    const Stamped& first = files.front();
+    std::uint64_t next = 0;
+    const auto missing = [&](std::uint64_t end) {
+        throw Error(ErrorKind::input,
+                    fmt::format("layers {} to {} of {} are in none of the files: a shard is "
+                                "missing",
+                                next, end - 1, first.stamp["of"].get<std::uint64_t>()));
+    };
+    for (const Stamped& file : files) {
+        for (const char* key : {"lamella", "format", "shards", "inputs", "options"})
+            if (file.stamp["origin"].value(key, Json()) != first.stamp["origin"].value(key, Json()))
+                throw Error(ErrorKind::input,
+                            fmt::format("{} and {} are not shards of one job: their stamps differ in \"{}\"",
+                                        first.path, file.path, key));
+        if (file.begin > next)
+            missing(file.begin);
+        if (file.begin < next)
+            throw Error(ErrorKind::input, fmt::format("{}: holds layers from {} on, and another file holds "
+                                                      "those up to {}",
+                                                      file.path, file.begin, next - 1));
+        next = file.end;
+    }
+    if (const auto all = first.stamp["of"].get<std::uint64_t>(); next < all)
+        missing(all);
+}
+
+} // namespace lamella::app

@@ -1,0 +1,41 @@
+#pragma once
+
+// The stamp of a finished shard: a small JSON file beside its slice file that says what it was made from, so
+// that a run that is started again skips it, and a merge sees that files belong together. docs/scaling.md
+// shows one.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+
+#include "command.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella::app {
+
+/// "part.cli.shard" beside "part.cli".
+[[nodiscard]] std::string stamp_path(const std::string& output);
+
+/// What decides the bytes of the shard: version, options, the content of all inputs. Reads the inputs once.
+[[nodiscard]] nlohmann::ordered_json shard_origin(const Command& command, const FileJob& job,
+                                                  const Execution& execution);
+
+/// Whether the job's output is there, with a stamp that has this origin and the content that it had then.
+[[nodiscard]] bool is_finished_shard(const FileJob& job, const nlohmann::ordered_json& origin,
+                                     const Execution& execution);
+
+/// Stamps the output that has just been written.
+void stamp_shard(const FileJob& job, const FileResult& result, const nlohmann::ordered_json& origin,
+                 const Execution& execution);
+
+/// Where all files have stamps: throws Error{input} unless they are all the shards of one job, each as it was
+/// written, and names those that are missing, twice there, changed, or of another job. Files of which none
+/// has a stamp pass.
+void check_stamps(const std::vector<std::string>& paths, const Execution& execution);
+
+} // namespace lamella::app

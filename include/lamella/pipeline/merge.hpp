@@ -1,0 +1,37 @@
+#pragma once
+
+// Slice files of consecutive layers, put together to one.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+
+struct MergeResult {
+    std::string format; ///< of the files that were read
+    std::uint64_t layers = 0;
+    double bottom = 0;       ///< of the first layer
+    double top = 0;          ///< of the last one
+    std::uint64_t bytes = 0; ///< written
+    std::vector<std::string> warnings;
+};
+
+/// Merges slice files of one format whose layers lie on one another, such as the shards of one job; they may
+/// come in any order. Files of the Common Layer Interface are put together as they are when that is the
+/// format written, too (`options` do not count then): the result is, byte for byte, the file of a single run.
+/// Layers of other formats are read and written anew. Memory holds one of the files at a time.
+///
+/// `format`: by name; "" goes by the extension of `output`. Throws Error{input} when files differ in their
+/// parts, their units or their head, when one begins above the end of the one below it (a gap) or below it
+/// (an overlap), naming both; and what reading and writing throw.
+MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
+                              std::string_view format = {}, const LayerWriteOptions& options = {},
+                              const Execution& execution = {});
+
+} // namespace lamella

@@ -1,0 +1,253 @@
+#include "lamella/pipeline/merge.hpp"
+
+#include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include "container/atomic_file.hpp"
+#include "container/byte_source.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+
+namespace lamella {
+namespace {
+
+/// What is known of a file after it has been read, and let go of, once.
+struct ShardFile {
+    std::string path;
+    std::string format;
+    double units_mm = 0;
+    std::vector<std::string> labels;
+    std::vector<Box3> boxes; ///< of the points of each part
+    std::uint64_t layers = 0;
+    double bottom = 0;
+    double top = 0;
+    double lowest_layer_mm = 0;  ///< how thick it is
+    double highest_layer_mm = 0; ///< how thick it is
+};
+
+ShardFile look_at(const std::string& path, const Execution& execution) {
+    const LayerFile file = read_layers(path, execution);
+    const LayerStack& layers = file.parts.front().layers;
+    if (layers.empty())
+        throw Error(ErrorKind::input, fmt::format("{}: holds no layers", path));
+    if (!file.warnings.empty())
+        throw Error(ErrorKind::input, fmt::format("{}: is not sound: {}", path, file.warnings.front()));
+    ShardFile shard{.path = path,
+                    .format = file.format,
+                    .units_mm = file.units_mm,
+                    .labels = {},
+                    .boxes = {},
+                    .layers = layers.size(),
+                    .bottom = layers.front().bottom,
+                    .top = layers.back().top,
+                    .lowest_layer_mm = layers.front().thickness(),
+                    .highest_layer_mm = layers.back().thickness()};
+    for (const LayerPart& part : file.parts) {
+        shard.labels.push_back(part.label);
+        Box3& box = shard.boxes.emplace_back();
+        for (const Layer& layer : part.layers)
+            for (const Point2& p : layer.points)
+                box.add(Point3{p.x, p.y, layer.z});
+    }
+    return shard;
+}
+
+void check_neighbours(const ShardFile& below, const ShardFile& above) {
+    const auto refuse = [&](const std::string& what) {
+        throw Error(ErrorKind::input, fmt::format("{} and {}: {}", below.path, above.path, what));
+    };
+    if (below.format != above.format)
+        refuse(fmt::format("one is {}, the other {}; all must be of one format", below.format, above.format));
+    if (below.units_mm != above.units_mm)
+        refuse(fmt::format("have units of {:g} and of {:g} mm", below.units_mm, above.units_mm));
+    if (below.labels != above.labels)
+        refuse(fmt::format("hold different parts ({} and {})", fmt::join(below.labels, ", "),
+                           fmt::join(above.labels, ", ")));
+    // Formats round heights, but never by half a layer.
+    const double slack = std::min(below.highest_layer_mm, above.lowest_layer_mm) / 2;
+    if (above.bottom > below.top + slack)
+        refuse(
+            fmt::format("between them is a gap: the layers of one end at z = {:.6g} mm, those of the other "
+                        "begin at {:.6g} mm; a file is missing",
+                        below.top, above.bottom));
+    if (above.bottom < below.top - slack)
+        refuse(fmt::format("overlap: the layers of one end at z = {:.6g} mm, those of the other begin at "
+                           "{:.6g} mm",
+                           below.top, above.bottom));
+}
+
+/// In ascending order, and sure to belong together as far as files can tell.
+std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const Execution& execution) {
+    if (paths.empty())
+        throw Error(ErrorKind::usage, "there is nothing to merge");
+    std::vector<ShardFile> shards;
+    for (const std::string& path : paths)
+        shards.push_back(look_at(path, execution));
+    std::ranges::stable_sort(shards, {}, &ShardFile::bottom);
+    for (std::size_t i = 1; i < shards.size(); ++i)
+        check_neighbours(shards[i - 1], shards[i]);
+    return shards;
+}
+
+// ------------------------------------------------------------------------------- Common Layer Interface
+
+/// A file as our writer lays it out: a head that counts the layers, a layer without contours that says where
+/// the first one begins, and the layers.
+struct CommonLayerFile {
+    ByteSource source;
+    std::string_view before_count; ///< the head up to the number of layers
+    std::string_view after_count;  ///< from there to the end of the first layer
+    std::string_view layers;       ///< all others
+    std::string_view tail;
+};
+
+[[noreturn]] void refuse_layout(const std::string& path) {
+    throw Error(ErrorKind::input,
+                fmt::format("{}: is not laid out as Lamella writes it, with an empty layer below the first "
+                            "one; convert the files to another format first",
+                            path));
+}
+
+CommonLayerFile take_apart(const std::string& path, bool binary, const Execution& execution) {
+    CommonLayerFile file{open_bytes(path, execution.cancel), {}, {}, {}, {}};
+    const std::string_view text(reinterpret_cast<const char*>(file.source.bytes.data()),
+                                file.source.bytes.size());
+    constexpr std::string_view count_key = "$$LAYERS/";
+    constexpr std::string_view head_end = "$$HEADEREND";
+    const std::size_t key = text.find(count_key);
+    const std::size_t end = text.find(head_end);
+    if (key == std::string_view::npos || end == std::string_view::npos || key > end)
+        refuse_layout(path);
+    const std::size_t count = key + count_key.size();
+    const std::size_t behind = std::min(text.find_first_not_of("0123456789", count), end);
+    std::size_t first = end + head_end.size();
+    if (binary) {
+        std::uint16_t command = 0;
+        constexpr std::uint16_t long_layer = 127;
+        if (text.size() < first + sizeof command)
+            refuse_layout(path);
+        std::memcpy(&command, text.data() + first, sizeof command);
+        first += command == long_layer ? 6 : 4;
+    } else {
+        first = text.find('\n', text.find("$$LAYER/", first)) + 1;
+        constexpr std::string_view tail = "$$GEOMETRYEND\n";
+        if (!text.ends_with(tail))
+            refuse_layout(path);
+        file.tail = tail;
+    }
+    if (first > text.size() - file.tail.size())
+        refuse_layout(path);
+    file.before_count = text.substr(0, count);
+    file.after_count = text.substr(behind, first - behind);
+    file.layers = text.substr(first, text.size() - first - file.tail.size());
+    return file;
+}
+
+/// Lines of the heads, which have to agree but for the number of layers.
+void check_heads(const std::string& one, std::string_view head, const std::string& other,
+                 std::string_view other_head) {
+    if (head == other_head)
+        return;
+    const auto differ = std::ranges::mismatch(head, other_head);
+    const auto line = [](std::string_view text, std::size_t at) {
+        const std::size_t begin = text.rfind('\n', at == 0 ? 0 : at - 1) + 1;
+        return text.substr(begin, text.find('\n', begin) - begin);
+    };
+    throw Error(ErrorKind::input,
+                fmt::format("{} and {}: their heads differ: found {} and {}; they are not of one job", one,
+                            other, line(head, static_cast<std::size_t>(differ.in1 - head.begin())),
+                            line(other_head, static_cast<std::size_t>(differ.in2 - other_head.begin()))));
+}
+
+std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint64_t layers,
+                                 const std::string& output, bool binary, const Execution& execution) {
+    AtomicFile out(output);
+    std::string head;
+    for (std::size_t i = 0; i < shards.size(); ++i) {
+        const CommonLayerFile file = take_apart(shards[i].path, binary, execution);
+        if (i == 0) {
+            head = file.before_count;
+            out.append(head);
+            out.append(fmt::format("{}", layers + 1));
+            out.append(file.after_count);
+        }
+        check_heads(shards.front().path, head, shards[i].path, file.before_count);
+        constexpr std::size_t at_once = std::size_t{1} << 22;
+        for (std::size_t at = 0; at < file.layers.size(); at += at_once) {
+            if (execution.cancel.stop_requested())
+                throw Error(ErrorKind::cancelled, "cancelled");
+            const std::string_view piece = file.layers.substr(at, at_once);
+            out.append(piece);
+            release(file.source, std::as_bytes(std::span(piece)));
+        }
+        if (i + 1 == shards.size())
+            out.append(file.tail);
+    }
+    out.commit();
+    return out.bytes();
+}
+
+// ------------------------------------------------------------------------------------------ any format
+
+void write_anew(const std::vector<ShardFile>& shards, const std::string& output, const LayerFormat& format,
+                const LayerWriteOptions& options, MergeResult& result, const Execution& execution) {
+    LayerFileInfo info{.box = {}, .layers = result.layers, .bottom = result.bottom, .parts = {}};
+    for (std::size_t part = 0; part < shards.front().labels.size(); ++part) {
+        const std::string& label = shards.front().labels[part];
+        PartInfo& of_part = info.parts.emplace_back();
+        if (!label.empty())
+            of_part.label = label;
+        for (const ShardFile& shard : shards)
+            of_part.box.add(shard.boxes[part]);
+        info.box.add(of_part.box);
+    }
+    if (info.box.empty())
+        info.box.add(Point3{});
+    info.box.min.z = result.bottom;
+    info.box.max.z = result.top;
+    const std::unique_ptr<LayerWriter> writer = open_layer_writer(output, format, info, options);
+    for (const ShardFile& shard : shards) {
+        const LayerFile file = read_layers(shard.path, execution);
+        std::vector<Layer> parts(file.parts.size());
+        for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
+            for (std::size_t part = 0; part < parts.size(); ++part)
+                parts[part] = file.parts[part].layers[i];
+            writer->prepare(parts)();
+        }
+    }
+    writer->finish();
+    result.bytes = writer->bytes();
+    result.warnings = writer->warnings();
+}
+
+} // namespace
+
+MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
+                              std::string_view format, const LayerWriteOptions& options,
+                              const Execution& execution) {
+    const LayerFormat& to = layer_format(format, output);
+    const std::vector<ShardFile> shards = look_at_all(paths, execution);
+    MergeResult result{.format = shards.front().format,
+                       .layers = 0,
+                       .bottom = shards.front().bottom,
+                       .top = shards.back().top,
+                       .bytes = 0,
+                       .warnings = {}};
+    for (const ShardFile& shard : shards)
+        result.layers += shard.layers;
+    if (to.name == result.format && to.name.starts_with("cli"))
+        result.bytes = join_common_layers(shards, result.layers, output, to.name == "cli", execution);
+    else
+        write_anew(shards, output, to, options, result, execution);
+    return result;
+}
+
+} // namespace lamella
