@@ -88,6 +88,12 @@ read-meshes: build packages-rivals  ## compare with other readers of meshes: out
 	cmake --build build-bench --target bench/read_meshes/all
 	python3 -B -m bench.read_meshes $(OPTIONS)
 
+out-of-core: build  ## slice a lattice of 5 GB with 1 GB of memory: out/out_of_core/ (bench/README.md)
+	@tools/install_packages.sh tools/packages-bench.txt
+	cmake --preset bench
+	cmake --build build-bench --target lamella_stream_areas
+	python3 -B -m bench.out_of_core $(OPTIONS)
+
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
 
@@ -113,4 +119,4 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
-        bench packages-rivals rivals read-meshes paper format format-check lint install clean
+        bench packages-rivals rivals read-meshes out-of-core paper format format-check lint install clean

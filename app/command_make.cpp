@@ -85,14 +85,18 @@ TriangleSoup fixed(const MakeArguments& /*arguments*/) {
     return make();
 }
 
-TriangleSoup lattice(const MakeArguments& arguments) {
+LatticeShape lattice_shape(const MakeArguments& arguments) {
     LatticeShape shape;
     const unsigned cells = as_unsigned(arguments.cells, shape.cells_x, "cells");
     shape.cells_x = shape.cells_y = shape.cells_z = cells;
     shape.cell_mm = single_size(arguments, shape.cell_mm);
     shape.strut_mm = arguments.thickness.value_or(shape.strut_mm);
     shape.detail = as_unsigned(arguments.detail, shape.detail, "detail");
-    return make_lattice(shape);
+    return shape;
+}
+
+TriangleSoup lattice(const MakeArguments& arguments) {
+    return make_lattice(lattice_shape(arguments));
 }
 
 TriangleSoup box(const MakeArguments& arguments) {
@@ -199,6 +203,43 @@ void write(const std::string& output, const TriangleSoup& soup, const MakeArgume
         write_stl(output, soup);
 }
 
+/// What was made.
+struct Made {
+    std::uint64_t triangles = 0;
+    Box3 box;
+};
+
+/// A lattice goes to its file while it is made: it may be larger than memory.
+Made stream_lattice(const std::string& output, const MakeArguments& arguments, const Transform& pose) {
+    const LatticeShape shape = lattice_shape(arguments);
+    Made made{.triangles = lattice_triangles(shape), .box = {}};
+    StlWriter writer(output, made.triangles);
+    make_lattice(shape, [&](const TriangleSoup& level) {
+        const TriangleSoup placed = level.transformed(pose);
+        made.box.add(bounding_box(placed));
+        writer.append(placed);
+    });
+    writer.finish();
+    return made;
+}
+
+Made make_whole(const std::string& output, const MakeArguments& arguments, const Body& body,
+                const Transform& pose) {
+    TriangleSoup soup = body.make(arguments);
+    if (arguments.shuffle && arguments.order != "shuffle")
+        soup = shuffled(soup, *arguments.shuffle);
+    soup = soup.transformed(pose);
+    write(output, soup, arguments);
+    return {soup.size(), bounding_box(soup)};
+}
+
+/// Whether the body goes to a binary STL file as it is made.
+bool can_stream(const std::string& output, const MakeArguments& arguments) {
+    const std::string extension = std::filesystem::path(output).extension().string();
+    return arguments.body == "lattice" && !arguments.shuffle && !arguments.ascii && extension != ".ply" &&
+           extension != ".obj";
+}
+
 int run_make(const MakeArguments& arguments, const Context& context) {
     const Body& body = *std::ranges::find(bodies, std::string_view(arguments.body), &Body::name);
     check_options(body, context.command);
@@ -206,16 +247,12 @@ int run_make(const MakeArguments& arguments, const Context& context) {
     const std::string output = arguments.output.empty() ? arguments.body + ".stl" : arguments.output;
 
     check_extension(output);
-    TriangleSoup soup = body.make(arguments);
-    if (arguments.shuffle && arguments.order != "shuffle")
-        soup = shuffled(soup, *arguments.shuffle);
-    soup = soup.transformed(pose);
-    write(output, soup, arguments);
-
-    const Box3 extent = bounding_box(soup);
+    const Made made = can_stream(output, arguments) ? stream_lattice(output, arguments, pose)
+                                                    : make_whole(output, arguments, body, pose);
+    const Box3& extent = made.box;
     const std::string text =
         fmt::format("{}: {}, {}, {} x {} x {} mm\n", output == "-" ? "standard output" : one_line(output),
-                    arguments.body, counted(soup.size(), "triangle"), brief(extent.max.x - extent.min.x),
+                    arguments.body, counted(made.triangles, "triangle"), brief(extent.max.x - extent.min.x),
                     brief(extent.max.y - extent.min.y), brief(extent.max.z - extent.min.z));
     if (output == "-")
         context.messages.note(text);
@@ -257,6 +294,7 @@ Command make_command() {
                      {"lamella make rook -o rook.obj", "the same with shared vertices"},
                      {"lamella make sheet --holes 1225 -o sheet.stl", "2.5 million triangles"},
                      {"lamella make sheet --holes 100 --rotate-x 90", "a sheet on its edge"},
+                     {"lamella make lattice --cells 61", "102 million triangles, 5 GB"},
                      {"lamella make sole", "struts from bottom to top: 860,000 long triangles"},
                      {"lamella make box --size 20,30,2.5 --ascii", "a small file to read"}},
         .run = [arguments](const Context& context) {

@@ -50,6 +50,7 @@
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 #include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/section_sum.hpp"
 #include "lamella/slicing/slabs.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/slicing/varying_plan.hpp"

@@ -48,6 +48,17 @@ std::uint64_t JobMemory::of_input(unsigned threads) const noexcept {
     return limit / times;
 }
 
+std::uint64_t JobMemory::of_mesh(const Mesh& mesh, unsigned threads) const noexcept {
+    std::uint64_t bytes = overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
+    if (const IndexedMesh* const indexed = mesh.indexed()) {
+        bytes += indexed->vertices.size() * sizeof indexed->vertices.front();
+        bytes += indexed->triangles.size() * sizeof indexed->triangles.front();
+    } else {
+        bytes += mesh.size() * mesh.soup()->stride();
+    }
+    return bytes + mesh.size() * triangle_bytes(false, threads);
+}
+
 std::uint64_t JobMemory::of_whole(const MeshInput& file, bool placed, unsigned threads) const {
     const std::uint64_t around = overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
     const std::uint64_t each = triangle_bytes(placed, threads);

@@ -2,6 +2,7 @@
 
 // How much memory a job may take, and what it takes of it besides its meshes.
 
+#include "lamella/mesh/mesh.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 
@@ -25,6 +26,9 @@ struct JobMemory {
 
     /// Of standard input, what of it may be kept in memory because all of it would be sliced there.
     [[nodiscard]] std::uint64_t of_input(unsigned threads) const noexcept;
+
+    /// What slicing a mesh in memory takes at most, all else included.
+    [[nodiscard]] std::uint64_t of_mesh(const Mesh& mesh, unsigned threads) const noexcept;
 
     /// What slicing an STL file whole takes at most, all else included.
     [[nodiscard]] std::uint64_t of_whole(const MeshInput& file, bool placed, unsigned threads) const;

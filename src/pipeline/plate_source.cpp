@@ -157,19 +157,36 @@ class PlateSource final : public LayerSource {
     std::uint64_t points_in_flight_;
 };
 
+/// Of a mesh that cannot be sliced in pieces.
+void check_size(const std::string& path, const Mesh& mesh, const JobMemory& memory, unsigned threads) {
+    const std::uint64_t bytes = memory.of_mesh(mesh, threads);
+    if (bytes > memory.limit)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: to slice its {} triangles takes up to {} MB of memory, above the {} MB of "
+                        "--max-memory; only STL files that are not packed are sliced in pieces: write "
+                        "the mesh as one, or allow more",
+                        path, mesh.size(), bytes / 1'000'000 + 1, memory.limit / 1'000'000));
+}
+
 } // namespace
 
 std::unique_ptr<LayerSource> open_plate_source(const FileJob& job, std::vector<MeshInput> files,
                                                const JobMemory& memory, const Execution& execution) {
     const MeshReadOptions options{
         .strict = job.strict, .max_triangles = job.max_triangles, .max_memory = job.max_memory};
+    const unsigned threads = thread_count(execution);
     std::vector<MeshFile> meshes;
     for (MeshInput& file : files) {
         const MeshInput input = std::move(file); // a text is let go of once it is read
+        const bool stl = input.can_stream();
         meshes.push_back(input.read(options, execution));
+        if (memory.asked && !stl)
+            for (const MeshObject& object : meshes.back().objects)
+                check_size(input.path(), object.mesh, memory, threads);
     }
     return std::make_unique<PlateSource>(build_plate(job.inputs, std::move(meshes), execution),
-                                         memory.points_in_flight(thread_count(execution)));
+                                         memory.points_in_flight(threads));
 }
 
 } // namespace lamella

@@ -1,3 +1,4 @@
+#include "lamella/slicing/section_sum.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "core/executor.hpp"
@@ -6,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <mutex>
+#include <utility>
 
 namespace lamella {
 
@@ -77,6 +80,42 @@ std::vector<double> section_areas(const MeshRef& mesh, const Plan& plan, const E
     for (const std::vector<double>& part : parts)
         for (std::size_t i = 0; i < areas.size(); ++i)
             areas[i] += part[i] / 2;
+    return areas;
+}
+
+struct SectionSum::State {
+    State(const Plan& plan, const Point3& middle) : ranks(plan), origin(middle) {}
+
+    Ranks ranks;
+    Point3 origin;
+    std::mutex mutex;
+    std::vector<std::vector<double>> idle; ///< as many in all as ever added at the same time
+};
+
+SectionSum::SectionSum(const Plan& plan, const Point3& middle)
+    : state_(std::make_unique<State>(plan, middle)) {}
+SectionSum::~SectionSum() = default;
+
+void SectionSum::add(const MeshRef& batch) {
+    std::vector<double> twice;
+    {
+        const std::lock_guard lock(state_->mutex);
+        if (!state_->idle.empty()) {
+            twice = std::move(state_->idle.back());
+            state_->idle.pop_back();
+        }
+    }
+    twice.resize(state_->ranks.count(), 0);
+    add_sections(batch, state_->ranks, state_->origin, 0, batch.triangles(), twice);
+    const std::lock_guard lock(state_->mutex);
+    state_->idle.push_back(std::move(twice));
+}
+
+std::vector<double> SectionSum::areas() const {
+    std::vector<double> areas(state_->ranks.count(), 0);
+    for (const std::vector<double>& twice : state_->idle)
+        for (std::size_t i = 0; i < areas.size(); ++i)
+            areas[i] += twice[i] / 2;
     return areas;
 }
 

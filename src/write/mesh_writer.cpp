@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <string_view>
 
 namespace lamella {
@@ -54,12 +55,14 @@ Point3f unit_normal(const Triangle3f& t) {
             static_cast<float>(n.z / length) + 0.0F};
 }
 
-Facet facet(const TriangleSoup& soup, std::size_t i) {
+/// Of triangle i; errors count from the first triangle of the file, `before` this soup.
+Facet facet(const TriangleSoup& soup, std::size_t i, std::uint64_t before = 0) {
     Facet f;
     if (soup.has_placement()) {
         const Triangle3 placed = soup.placed(i);
         for (std::size_t c = 0; c < 3; ++c)
-            f.corners[c] = {single(placed[c].x, i), single(placed[c].y, i), single(placed[c].z, i)};
+            f.corners[c] = {single(placed[c].x, before + i), single(placed[c].y, before + i),
+                            single(placed[c].z, before + i)};
     } else {
         f.corners = soup.stored(i);
     }
@@ -120,24 +123,41 @@ char* put(char* out, const Point3f& p) {
 
 } // namespace
 
-void write_stl(const std::string& path, const TriangleSoup& soup) {
-    if (soup.size() > std::numeric_limits<std::uint32_t>::max())
+StlWriter::StlWriter(const std::string& path, std::uint64_t triangles) : announced_(triangles) {
+    if (triangles > std::numeric_limits<std::uint32_t>::max())
         throw Error(
             ErrorKind::limit,
-            fmt::format("{} triangles are more than a binary STL file can count (2^32 - 1)", soup.size()));
-    AtomicFile file(path);
+            fmt::format("{} triangles are more than a binary STL file can count (2^32 - 1)", triangles));
+    file_ = std::make_unique<AtomicFile>(path);
     std::array<char, 84> head{};
     // It must not begin with "solid": readers take such a file for ASCII.
     put(head.data(), "Binary STL written by Lamella, millimetres");
-    const auto count = static_cast<std::uint32_t>(soup.size());
+    const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(head.data() + 80, &count, sizeof count);
-    file.append({head.data(), head.size()});
+    file_->append({head.data(), head.size()});
+}
 
-    append_blocks(file, soup.size(), record_size, [&](char* at, std::size_t i) {
-        std::memset(put_value(at, facet(soup, i)), 0, record_size - sizeof(Facet));
+StlWriter::~StlWriter() = default;
+
+void StlWriter::append(const TriangleSoup& soup) {
+    append_blocks(*file_, soup.size(), record_size, [&](char* at, std::size_t i) {
+        std::memset(put_value(at, facet(soup, i, written_)), 0, record_size - sizeof(Facet));
         return at + record_size;
     });
-    file.commit();
+    written_ += soup.size();
+}
+
+void StlWriter::finish() {
+    if (written_ != announced_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} triangles were announced and {} were written", announced_, written_));
+    file_->commit();
+}
+
+void write_stl(const std::string& path, const TriangleSoup& soup) {
+    StlWriter writer(path, soup.size());
+    writer.append(soup);
+    writer.finish();
 }
 
 void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const std::string& name) {

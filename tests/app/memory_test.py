@@ -139,6 +139,14 @@ class Memory(ProgramTest):
         self.fail_with(5, "box.obj.* read whole", "slice", "lattice.stl", "box.obj", "-o", "a.cli", "--max-memory",
                        "52M", "--threads", 2)
 
+    def test_other_formats_that_do_not_fit(self):
+        for name in ["part.obj", "part.ply"]:
+            self.lattice(name)
+            self.fail_with(5, f"{name}: .*133,?[0-9]* triangles.*only STL files", "slice", name, "-o", "a.cli",
+                           "--max-memory", "60M", "--threads", 2)
+            self.succeed("slice", name, "-o", "a.cli", "--max-memory", "200M", "--threads", 2)
+            self.path("a.cli").unlink()
+
     def test_a_disk_that_is_full(self):
         self.lattice()
 

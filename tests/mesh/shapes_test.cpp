@@ -383,5 +383,22 @@ TEST(Shapes, HaveTheSameBytesOnEveryMachine) {
     EXPECT_EQ(fingerprint(shuffled(make_sphere(10, 5), 1)), 0x2c34153f0f0a9435ULL);
 }
 
+TEST(Shapes, StreamALatticeLevelByLevel) {
+    for (const LatticeShape& shape : {LatticeShape{1, 1, 1, 4.5, 1.2, 1}, LatticeShape{2, 3, 4, 5, 1, 2}}) {
+        const TriangleSoup whole = make_lattice(shape);
+        EXPECT_EQ(lattice_triangles(shape), whole.size());
+        std::size_t next = 0;
+        unsigned levels = 0;
+        make_lattice(shape, [&](const TriangleSoup& level) {
+            ++levels;
+            for (std::size_t i = 0; i < level.size(); ++i, ++next)
+                ASSERT_EQ(level.stored(i), whole.stored(next));
+        });
+        EXPECT_EQ(levels, shape.cells_z + 1);
+        EXPECT_EQ(next, whole.size());
+    }
+    EXPECT_THROW(make_lattice({.cells_x = 0}, [](const TriangleSoup&) {}), Error);
+}
+
 } // namespace
 } // namespace lamella

@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/shapes.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
 #include "temporary_folder.hpp"
@@ -171,6 +172,24 @@ TEST(WriteObj, HasTheTextOfTheFormat) {
     EXPECT_EQ(file_bytes(folder.file("out.obj")),
               "# written by Lamella, millimetres\no two lines\nv 0 0 0\nv 2 0 0\n"
               "v 0 3 0\nv 0.5 -0.25 1000\nf 1 2 3\nf 4 3 2\n");
+}
+
+TEST(MeshWriter, WritesPieceByPieceWhatItWritesAtOnce) {
+    const TemporaryFolder folder;
+    const TriangleSoup box = make_box(1, 2, 3);
+    std::vector<Triangle3f> twice;
+    for (std::size_t i = 0; i < 24; ++i)
+        twice.push_back(box.stored(i % 12));
+    write_stl(folder.file("whole.stl"), TriangleSoup(twice));
+    StlWriter writer(folder.file("pieces.stl"), 24);
+    writer.append(box);
+    writer.append(box);
+    writer.finish();
+    EXPECT_EQ(file_bytes(folder.file("pieces.stl")), file_bytes(folder.file("whole.stl")));
+
+    StlWriter fewer(folder.file("fewer.stl"), 13);
+    fewer.append(box);
+    EXPECT_THROW(fewer.finish(), Error);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "lamella/mesh/triangle_soup.hpp"
 
 #include <cstdint>
+#include <functional>
 
 namespace lamella {
 
@@ -70,6 +71,13 @@ struct LatticeShape {
     unsigned detail = 3;   ///< 16 * detail^2 triangles per strut
 };
 [[nodiscard]] TriangleSoup make_lattice(const LatticeShape& shape);
+
+/// How many triangles that has. Throws as make_lattice.
+[[nodiscard]] std::uint64_t lattice_triangles(const LatticeShape& shape);
+
+/// The same triangles in the same order, one layer of nodes at a time, in the memory of one: for lattices
+/// that are larger than memory.
+void make_lattice(const LatticeShape& shape, const std::function<void(const TriangleSoup&)>& sink);
 
 // Small solids. They throw Error{usage} for sizes that are not positive and for segments that single
 // precision cannot tell apart.

@@ -5,14 +5,37 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
+#include <cstdint>
+#include <memory>
 #include <string>
 
 namespace lamella {
+
+class AtomicFile;
 
 /// Writes a binary STL file with computed normals, atomically: nobody ever sees half a file. "-" writes
 /// standard output. Placed corners are rounded to single precision. Throws Error{output}, and Error{limit}
 /// beyond 2^32 - 1 triangles.
 void write_stl(const std::string& path, const TriangleSoup& soup);
+
+/// Writes the same file piece by piece, for bodies that are larger than memory.
+class StlWriter {
+  public:
+    /// `triangles`: how many there will be. Errors as above.
+    StlWriter(const std::string& path, std::uint64_t triangles);
+    ~StlWriter();
+    StlWriter(const StlWriter&) = delete;
+    StlWriter& operator=(const StlWriter&) = delete;
+
+    void append(const TriangleSoup& soup);
+    /// Gives the file its name. Throws Error{usage} when there were more or fewer triangles than announced.
+    void finish();
+
+  private:
+    std::unique_ptr<AtomicFile> file_;
+    std::uint64_t announced_;
+    std::uint64_t written_ = 0;
+};
 
 /// The same as ASCII, with the shortest numbers that read back to the same corners.
 void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const std::string& name);

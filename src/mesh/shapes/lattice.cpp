@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -118,10 +119,12 @@ class LatticeMaker {
     std::vector<CosSin> angles_;
 };
 
-} // namespace
+std::array<unsigned, 3> cells_of(const LatticeShape& shape) {
+    return {shape.cells_x, shape.cells_y, shape.cells_z};
+}
 
-TriangleSoup make_lattice(const LatticeShape& shape) {
-    const std::array<unsigned, 3> cells{shape.cells_x, shape.cells_y, shape.cells_z};
+void check(const LatticeShape& shape) {
+    const std::array<unsigned, 3> cells = cells_of(shape);
     if (*std::min_element(cells.begin(), cells.end()) == 0)
         throw Error(ErrorKind::usage,
                     fmt::format("cannot make a lattice of {} x {} x {} cells: expected at least one each way",
@@ -147,22 +150,54 @@ TriangleSoup make_lattice(const LatticeShape& shape) {
             fmt::format("cannot make a lattice of {} mm struts on {} mm: single precision cannot tell "
                         "their corners apart",
                         shape.strut_mm, extent));
+}
 
+/// Of the nodes in one plane across the z axis, and the struts that begin there.
+void make_level(LatticeMaker& maker, const std::array<unsigned, 3>& cells, unsigned level) {
+    std::array<unsigned, 3> node{0, 0, level};
+    for (node[1] = 0; node[1] <= cells[1]; ++node[1])
+        for (node[0] = 0; node[0] <= cells[0]; ++node[0])
+            for (int axis = 0; axis < 3; ++axis) {
+                if (node[axis] == 0)
+                    maker.end(node, axis, -1);
+                if (node[axis] == cells[axis])
+                    maker.end(node, axis, 1);
+                else
+                    maker.strut(node, axis);
+            }
+}
+
+} // namespace
+
+std::uint64_t lattice_triangles(const LatticeShape& shape) {
+    check(shape);
+    const std::array<unsigned, 3> cells = cells_of(shape);
+    const std::uint64_t per_end = 8 * std::uint64_t{shape.detail};
+    const std::uint64_t per_strut = 2 * per_end * shape.detail;
+    std::uint64_t triangles = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::uint64_t lines =
+            (cells[(axis + 1) % 3] + std::uint64_t{1}) * (cells[(axis + 2) % 3] + std::uint64_t{1});
+        triangles += lines * (cells[axis] * per_strut + 2 * per_end);
+    }
+    return triangles;
+}
+
+TriangleSoup make_lattice(const LatticeShape& shape) {
     LatticeMaker maker(shape);
-    maker.out.reserve(static_cast<std::size_t>(per_strut * struts));
-    std::array<unsigned, 3> node{};
-    for (node[2] = 0; node[2] <= cells[2]; ++node[2])
-        for (node[1] = 0; node[1] <= cells[1]; ++node[1])
-            for (node[0] = 0; node[0] <= cells[0]; ++node[0])
-                for (int axis = 0; axis < 3; ++axis) {
-                    if (node[axis] == 0)
-                        maker.end(node, axis, -1);
-                    if (node[axis] == cells[axis])
-                        maker.end(node, axis, 1);
-                    else
-                        maker.strut(node, axis);
-                }
+    maker.out.reserve(lattice_triangles(shape));
+    for (unsigned level = 0; level <= shape.cells_z; ++level)
+        make_level(maker, cells_of(shape), level);
     return TriangleSoup(std::move(maker.out));
+}
+
+void make_lattice(const LatticeShape& shape, const std::function<void(const TriangleSoup&)>& sink) {
+    check(shape);
+    LatticeMaker maker(shape);
+    for (unsigned level = 0; level <= shape.cells_z; ++level) {
+        make_level(maker, cells_of(shape), level);
+        sink(TriangleSoup(std::exchange(maker.out, {})));
+    }
 }
 
 } // namespace lamella
