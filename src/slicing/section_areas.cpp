@@ -4,11 +4,10 @@
 #include "core/executor.hpp"
 #include "slicing/edge_cut.hpp"
 #include "slicing/ranks.hpp"
+#include "slicing/tallies.hpp"
 
 #include <algorithm>
 #include <array>
-#include <mutex>
-#include <utility>
 
 namespace lamella {
 
@@ -84,12 +83,12 @@ std::vector<double> section_areas(const MeshRef& mesh, const Plan& plan, const E
 }
 
 struct SectionSum::State {
-    State(const Plan& plan, const Point3& middle) : ranks(plan), origin(middle) {}
+    State(const Plan& plan, const Point3& middle)
+        : ranks(plan), origin(middle), twice(std::vector<double>(ranks.count(), 0)) {}
 
     Ranks ranks;
     Point3 origin;
-    std::mutex mutex;
-    std::vector<std::vector<double>> idle; ///< as many in all as ever added at the same time
+    Tallies<std::vector<double>> twice;
 };
 
 SectionSum::SectionSum(const Plan& plan, const Point3& middle)
@@ -97,23 +96,14 @@ SectionSum::SectionSum(const Plan& plan, const Point3& middle)
 SectionSum::~SectionSum() = default;
 
 void SectionSum::add(const MeshRef& batch) {
-    std::vector<double> twice;
-    {
-        const std::lock_guard lock(state_->mutex);
-        if (!state_->idle.empty()) {
-            twice = std::move(state_->idle.back());
-            state_->idle.pop_back();
-        }
-    }
-    twice.resize(state_->ranks.count(), 0);
-    add_sections(batch, state_->ranks, state_->origin, 0, batch.triangles(), twice);
-    const std::lock_guard lock(state_->mutex);
-    state_->idle.push_back(std::move(twice));
+    state_->twice.add([&](std::vector<double>& twice) {
+        add_sections(batch, state_->ranks, state_->origin, 0, batch.triangles(), twice);
+    });
 }
 
 std::vector<double> SectionSum::areas() const {
     std::vector<double> areas(state_->ranks.count(), 0);
-    for (const std::vector<double>& twice : state_->idle)
+    for (const std::vector<double>& twice : state_->twice.all())
         for (std::size_t i = 0; i < areas.size(); ++i)
             areas[i] += twice[i] / 2;
     return areas;

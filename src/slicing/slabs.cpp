@@ -5,6 +5,7 @@
 #include "core/executor.hpp"
 #include "slicing/cut_graph.hpp"
 #include "slicing/ranks.hpp"
+#include "slicing/tallies.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +13,6 @@
 #include <array>
 #include <cstring>
 #include <limits>
-#include <mutex>
 #include <optional>
 
 namespace lamella {
@@ -76,36 +76,23 @@ void PlaneCounts::add(const PlaneCounts& other) noexcept {
 // ----------------------------------------------------------------------------------------------- count
 
 struct PlaneCounter::State {
-    explicit State(const Plan& plan) : ranks(plan) {}
+    explicit State(const Plan& plan) : ranks(plan), counts(PlaneCounts(ranks.count())) {}
 
     Ranks ranks;
-    std::mutex mutex;
-    std::vector<std::unique_ptr<PlaneCounts>> idle; ///< as many in all as ever counted at the same time
+    Tallies<PlaneCounts> counts;
 };
 
 PlaneCounter::PlaneCounter(const Plan& plan) : state_(std::make_unique<State>(plan)) {}
 PlaneCounter::~PlaneCounter() = default;
 
 void PlaneCounter::add(const MeshRef& mesh) {
-    std::unique_ptr<PlaneCounts> counts;
-    {
-        const std::lock_guard lock(state_->mutex);
-        if (!state_->idle.empty()) {
-            counts = std::move(state_->idle.back());
-            state_->idle.pop_back();
-        }
-    }
-    if (!counts)
-        counts = std::make_unique<PlaneCounts>(state_->ranks.count());
-    count(mesh, state_->ranks, 0, mesh.triangles(), *counts);
-    const std::lock_guard lock(state_->mutex);
-    state_->idle.push_back(std::move(counts));
+    state_->counts.add([&](PlaneCounts& counts) { count(mesh, state_->ranks, 0, mesh.triangles(), counts); });
 }
 
 PlaneCounts PlaneCounter::total() const {
     PlaneCounts sum(state_->ranks.count());
-    for (const auto& counts : state_->idle)
-        sum.add(*counts);
+    for (const PlaneCounts& counts : state_->counts.all())
+        sum.add(counts);
     return sum;
 }
 
