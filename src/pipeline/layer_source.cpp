@@ -61,7 +61,7 @@ std::unique_ptr<LayerSource> open_layer_source(const FileJob& job, const Engine&
     const bool several = job.inputs.size() > 1 || job.inputs.front().copies > 1;
     if (memory.asked && several && streamable)
         return open_slab_source(job, std::move(files), memory, execution);
-    if (bytes <= memory.limit || (!memory.asked && !needs_all.empty()))
+    if (bytes <= memory.limit || (!memory.asked && !streamable))
         return open_plate_source(job, std::move(files), memory, execution);
 
     const auto refuse = [&](const std::string& why) {
