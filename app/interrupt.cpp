@@ -27,6 +27,13 @@ int checked(int descriptor) {
     return descriptor;
 }
 
+/// Whoever started the program may want it to go on, as nohup does.
+bool is_ignored(int number) {
+    struct sigaction action {};
+    return sigaction(number, nullptr, &action) == 0 && (action.sa_flags & SA_SIGINFO) == 0 &&
+           action.sa_handler == SIG_IGN;
+}
+
 /// Waits for any of them; how many there are, 0 after the time is up.
 int wait_for(std::span<pollfd> awaited, int milliseconds) {
     int ready = 0;
@@ -51,8 +58,9 @@ int wait_for(std::span<pollfd> awaited, int milliseconds) {
 Interrupt::Interrupt(const Messages& messages) : messages_(messages) {
     sigset_t set;
     sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP})
+        if (!is_ignored(number))
+            sigaddset(&set, number);
     // Threads started later inherit the mask: the signals reach nobody but the descriptor.
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
     signals_ = checked(signalfd(-1, &set, SFD_CLOEXEC));

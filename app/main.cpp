@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
+#include "failure.hpp"
 #include "help_text.hpp"
 #include "interrupt.hpp"
 #include "messages.hpp"
@@ -16,7 +17,6 @@
 #include <csignal>
 #include <exception>
 #include <filesystem>
-#include <new>
 #include <span>
 #include <string>
 #include <system_error>
@@ -24,26 +24,6 @@
 
 namespace lamella::app {
 namespace {
-
-int exit_code(ErrorKind kind) {
-    switch (kind) {
-    case ErrorKind::usage:
-        return 2;
-    case ErrorKind::input:
-        return 3;
-    case ErrorKind::defect:
-        return 4;
-    case ErrorKind::limit:
-        return 5;
-    case ErrorKind::output:
-        return 6;
-    case ErrorKind::cancelled:
-        return 130;
-    case ErrorKind::internal:
-        break;
-    }
-    return 1;
-}
 
 [[noreturn]] void refuse_command(const std::string& word, const std::vector<Command>& commands) {
     const std::string meant = nearest(word, names_of(commands));
@@ -87,23 +67,14 @@ int run(const std::vector<std::string>& words, Messages& messages) {
 
 int guarded_run(const std::vector<std::string>& words) {
     Messages messages;
-    const auto fail = [&](const std::string& text, int code) {
-        messages.error(text, code);
-        return code;
-    };
     try {
         const int code = run(words, messages);
         finish_printing();
         return code;
-    } catch (const Error& error) {
-        return fail(error.kind() == ErrorKind::internal ? fmt::format("{} (please report this)", error.what())
-                                                        : error.what(),
-                    exit_code(error.kind()));
-    } catch (const std::bad_alloc&) {
-        return fail("memory ran out; free some, or slice fewer layers at once (--layers)",
-                    exit_code(ErrorKind::limit));
-    } catch (const std::exception& error) {
-        return fail(fmt::format("{} (please report this)", error.what()), exit_code(ErrorKind::internal));
+    } catch (...) {
+        const Failure failure = failure_of(std::current_exception());
+        messages.error(failure.text, failure.exit_code);
+        return failure.exit_code;
     }
 }
 

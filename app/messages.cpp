@@ -47,7 +47,7 @@ std::string one_line(std::string text) {
 }
 
 void Messages::progress(const Progress& progress) {
-    if (style_ == ProgressStyle::none)
+    if (style_ == ProgressStyle::none || style_ == ProgressStyle::silent)
         return;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
     if (style_ == ProgressStyle::json) {
@@ -87,7 +87,14 @@ void Messages::note(const std::string& text) {
         put(text);
 }
 
+void Messages::sum_up(const std::string& text, const std::string& json) {
+    clear_bar();
+    put(style_ == ProgressStyle::json ? json + "\n" : text);
+}
+
 std::string_view Messages::last_words() const noexcept {
+    if (style_ == ProgressStyle::silent)
+        return {};
     return style_ == ProgressStyle::json ? "\n{\"error\":\"cancelled\",\"exit_code\":130}\n"
                                          : "\nlamella: error: cancelled\n";
 }

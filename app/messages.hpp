@@ -16,6 +16,7 @@ enum class ProgressStyle {
     bar,  ///< a bar, but only where standard error is a terminal
     json, ///< everything on standard error is one JSON object a line
     none,
+    silent, ///< not even errors: of a process that tells them in another way
 };
 
 class Messages {
@@ -38,6 +39,8 @@ class Messages {
     void error(const std::string& text, int exit_code);
     /// What is no result here because standard output carries data. Programs are spared it.
     void note(const std::string& text);
+    /// How a run of many files went: for people, or as a JSON object for programs.
+    void sum_up(const std::string& text, const std::string& json);
     /// The error of a run that is ended at once, in whatever state it is; whoever writes it may hold no lock.
     [[nodiscard]] std::string_view last_words() const noexcept;
 
