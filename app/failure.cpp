@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "crash.hpp"
+
 #include <fmt/format.h>
 #include <sys/wait.h>
 
@@ -53,7 +55,7 @@ Failure failure_of_process(int status, const std::string& path) {
         return failure(ErrorKind::limit, fmt::format("{}: stopped by --timeout while it was stuck", path));
     if (WIFEXITED(status) && WEXITSTATUS(status) == 130)
         return failure(ErrorKind::cancelled, "cancelled");
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGBUS)
+    if (WIFEXITED(status) && WEXITSTATUS(status) == lost_input_exit_code)
         return failure(
             ErrorKind::input,
             fmt::format("{}: the file became shorter while it was read, or its disk failed", path));

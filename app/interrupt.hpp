@@ -10,9 +10,10 @@
 namespace lamella::app {
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP request a stop instead of ending the program, so that temporary
-/// files are removed; but for those that the program was started to ignore. To be made before any other thread. Should the program be stuck (such as waiting for
-/// standard input) a short while after the signal, or should another signal come, its temporary files are
-/// removed for it and it is ended at once with exit code 130.
+/// files are removed; but for those that the program was started to ignore. To be made before any other
+/// thread. Should the program be stuck (such as waiting for standard input) a short while after the signal,
+/// or should another signal come, its temporary files are removed for it and it is ended at once with exit
+/// code 130.
 class Interrupt {
   public:
     explicit Interrupt(const Messages& messages);

@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
+#include "crash.hpp"
 #include "failure.hpp"
 #include "help_text.hpp"
 #include "interrupt.hpp"
@@ -85,5 +86,6 @@ int main(int argc, char** argv) {
     // A reader that went away and a file that grew too large are errors of writing, not ends of the program.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    lamella::app::prepare_for_crashes();
     return lamella::app::guarded_run(std::vector<std::string>(argv + 1, argv + argc));
 }

@@ -7,6 +7,7 @@
 #include "write/geojson.hpp"
 #include "write/layered_svg.hpp"
 #include "write/layers_json.hpp"
+#include "write/limited_writer.hpp"
 #include "write/npz.hpp"
 #include "write/picture_stack.hpp"
 #include "write/sl1.hpp"
@@ -20,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 namespace lamella {
 
@@ -72,34 +74,8 @@ void check_info(const LayerFileInfo& info) {
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
 
-} // namespace
-
-std::span<const LayerFormat> layer_formats() noexcept {
-    return formats;
-}
-
-const LayerFormat& layer_format(std::string_view name, const std::string& path) {
-    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-    for (const LayerFormat& format : formats) {
-        if (name.empty() ? !extension.empty() && format.extension == extension : format.name == name)
-            return format;
-    }
-    if (!name.empty())
-        throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
-    if (path == "-")
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("standard output has no extension to tell the format; name one of {}", names()));
-    throw Error(ErrorKind::usage,
-                fmt::format("the extension of '{}' tells no format; name one of {}", path, names()));
-}
-
-std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const LayerFormat& format,
-                                               const LayerFileInfo& info, const LayerWriteOptions& options) {
-    check_info(info);
-    if (format.directory && path == "-")
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} writes a folder and standard output is none; give a path", format.name));
+std::unique_ptr<LayerWriter> open_unlimited(const std::string& path, const LayerFormat& format,
+                                            const LayerFileInfo& info, const LayerWriteOptions& options) {
     if (format.name == "cli")
         return open_common_layer_binary(path, info, options);
     if (format.name == "cli-ascii")
@@ -130,6 +106,38 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
         return open_sl1(path, info, options, format.name);
     throw Error(ErrorKind::usage,
                 fmt::format("there is no format '{}'; choose from {}", format.name, names()));
+}
+
+} // namespace
+
+std::span<const LayerFormat> layer_formats() noexcept {
+    return formats;
+}
+
+const LayerFormat& layer_format(std::string_view name, const std::string& path) {
+    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+    for (const LayerFormat& format : formats) {
+        if (name.empty() ? !extension.empty() && format.extension == extension : format.name == name)
+            return format;
+    }
+    if (!name.empty())
+        throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
+    if (path == "-")
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("standard output has no extension to tell the format; name one of {}", names()));
+    throw Error(ErrorKind::usage,
+                fmt::format("the extension of '{}' tells no format; name one of {}", path, names()));
+}
+
+std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const LayerFormat& format,
+                                               const LayerFileInfo& info, const LayerWriteOptions& options) {
+    check_info(info);
+    if (format.directory && path == "-")
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} writes a folder and standard output is none; give a path", format.name));
+    std::unique_ptr<LayerWriter> writer = open_unlimited(path, format, info, options);
+    return options.most_bytes == 0 ? std::move(writer) : limited(std::move(writer), path, options.most_bytes);
 }
 
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,

@@ -1,5 +1,4 @@
 #include "lamella/contour/normal_form.hpp"
-
 #include "lamella/contour/stack_hash.hpp"
 
 #include <gtest/gtest.h>

@@ -31,6 +31,9 @@ struct LayerFileInfo {
 };
 
 struct LayerWriteOptions {
+    /// Error{limit} where the layers take more than so many bytes; 0 is no limit. What ends a file, such as
+    /// the directory of an archive, does not count.
+    std::uint64_t most_bytes = 0;
     /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
     /// the ASCII and the short binary form; the long binary form keeps single precision.
     double units_mm = 0.001;

@@ -1,0 +1,40 @@
+#include "crash.hpp"
+
+#include "lamella/container/unfinished.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <string_view>
+
+namespace lamella::app {
+namespace {
+
+constexpr std::string_view lost_input =
+    "\nlamella: error: a file became shorter while it was read, or its disk failed\n";
+
+extern "C" void at_crash(int number) {
+    remove_unfinished();
+    if (number == SIGBUS) {
+        static_cast<void>(!write(STDERR_FILENO, lost_input.data(), lost_input.size()));
+        _exit(lost_input_exit_code);
+    }
+    raise(number); // with its default action again, once this handler is left
+}
+
+} // namespace
+
+void prepare_for_crashes() noexcept {
+    for (const int number : {SIGBUS, SIGSEGV, SIGILL, SIGFPE, SIGABRT}) {
+        struct sigaction before {};
+        if (sigaction(number, nullptr, &before) != 0 || (before.sa_flags & SA_SIGINFO) != 0 ||
+            before.sa_handler != SIG_DFL)
+            continue;
+        struct sigaction action {};
+        action.sa_handler = at_crash;
+        action.sa_flags = SA_RESETHAND;
+        sigaction(number, &action, nullptr);
+    }
+}
+
+} // namespace lamella::app
