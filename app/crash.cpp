@@ -13,10 +13,14 @@ namespace {
 constexpr std::string_view lost_input =
     "\nlamella: error: a file became shorter while it was read, or its disk failed\n";
 
+// A handler of signals can be given nothing.
+volatile std::sig_atomic_t silent = 0;
+
 extern "C" void at_crash(int number) {
     remove_unfinished();
     if (number == SIGBUS) {
-        static_cast<void>(!write(STDERR_FILENO, lost_input.data(), lost_input.size()));
+        if (silent == 0)
+            static_cast<void>(!write(STDERR_FILENO, lost_input.data(), lost_input.size()));
         _exit(lost_input_exit_code);
     }
     raise(number); // with its default action again, once this handler is left
@@ -35,6 +39,10 @@ void prepare_for_crashes() noexcept {
         action.sa_flags = SA_RESETHAND;
         sigaction(number, &action, nullptr);
     }
+}
+
+void be_silent_at_crashes() noexcept {
+    silent = 1;
 }
 
 } // namespace lamella::app

@@ -10,6 +10,9 @@ namespace lamella::app {
 /// Signals that somebody handles already (such as a sanitizer) are left alone.
 void prepare_for_crashes() noexcept;
 
+/// The same without a word: for a process whose end another one tells.
+void be_silent_at_crashes() noexcept;
+
 /// The exit code of a program that lost a page of its input.
 constexpr int lost_input_exit_code = 3;
 

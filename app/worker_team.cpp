@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "crash.hpp"
 #include "interrupt.hpp"
 #include "messages.hpp"
 
@@ -111,6 +112,7 @@ void WorkerTeam::serve(int socket) const {
     {
         Messages messages;
         messages.set_style(ProgressStyle::silent);
+        be_silent_at_crashes();
         const Interrupt interrupt(messages);
         WorkerTask task;
         while (!interrupt.token().stop_requested() &&
