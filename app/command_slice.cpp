@@ -74,6 +74,7 @@ struct SliceArguments {
     std::optional<double> timeout;
     RunOptions run;
     BatchArguments batch;
+    Slicing slicing;
 };
 
 OptionGroup output_options(SliceArguments& target) {
@@ -348,13 +349,12 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
     return warnings;
 }
 
-FileResult slice_in_time(const FileJob& job, const Execution& execution,
-                         const std::optional<double>& timeout) {
-    if (!timeout)
-        return slice_file(job, execution);
-    Deadline deadline(*timeout, one_line(job.inputs.front().path), execution);
+FileResult slice_in_time(const SliceArguments& arguments, const FileJob& job, const Execution& execution) {
+    if (!arguments.timeout)
+        return arguments.slicing.slice(job, execution);
+    Deadline deadline(*arguments.timeout, one_line(job.inputs.front().path), execution);
     try {
-        return slice_file(job, deadline.execution());
+        return arguments.slicing.slice(job, deadline.execution());
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled)
             deadline.check();
@@ -381,6 +381,8 @@ std::string_view batch_extension(const SliceArguments& arguments) {
 }
 
 int slice_batch(SliceArguments& arguments, const Context& context) {
+    if (!arguments.slicing.many_files)
+        throw Error(ErrorKind::usage, "--batch is for lamella: here all processes work on one plate");
     if (!arguments.inputs.empty())
         throw Error(ErrorKind::usage,
                     fmt::format("--batch and the file {} contradict each other: put it into the folder or "
@@ -396,12 +398,13 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     arguments.output = items.front().output;
     arguments.stats = items.front().stats;
     FileJob model = make_job(arguments);
+    check_conflict(model.shard.has_value(), true, "--batch and --shard", "share out the list instead");
     model.layer_statistics = true; // for the hashes
     const SliceItem slice = [&](const BatchItem& item, const Execution& execution) {
         FileJob job = model;
         job.inputs.front().path = item.input;
         job.output = item.output;
-        BatchResult result{slice_in_time(job, execution, arguments.timeout), {}};
+        BatchResult result{slice_in_time(arguments, job, execution), {}};
         result.warnings = all_warnings(job, result.file);
         if (!item.stats.empty())
             write_text_file(item.stats, json_text(stats_json(context.command, result.file)));
@@ -420,6 +423,8 @@ int run_slice(SliceArguments& arguments, const Context& context) {
                    "--threads says how many it gets");
     finish_input(arguments);
     const FileJob job = make_job(arguments);
+    if (job.shard && !arguments.slicing.many_files)
+        throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
     const Execution execution = arguments.run.execution(context);
     const bool stamped = job.shard && !job.output.empty();
     nlohmann::ordered_json origin;
@@ -431,9 +436,11 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             return 0;
         }
     }
-    const FileResult result = slice_in_time(job, execution, arguments.timeout);
+    const FileResult result = slice_in_time(arguments, job, execution);
     if (stamped)
         stamp_shard(job, result, origin, execution);
+    if (!arguments.slicing.tells)
+        return 0;
     for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
@@ -452,8 +459,9 @@ int run_slice(SliceArguments& arguments, const Context& context) {
 
 } // namespace
 
-Command slice_command() {
+Command slice_command(Slicing slicing) {
     const auto arguments = std::make_shared<SliceArguments>();
+    arguments->slicing = std::move(slicing);
     return {
         .name = "slice",
         .summary = "cut a mesh into layers and write a slice file",

@@ -7,9 +7,18 @@
 namespace lamella::app {
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands{slice_command(),   info_command(),       verify_command(),
-                                  compare_command(), convert_command(),    merge_command(),
-                                  make_command(),    completion_command(), help_command()};
+    const auto slice = [](const FileJob& job, const Execution& execution) {
+        return slice_file(job, execution);
+    };
+    std::vector<Command> commands{slice_command({.slice = slice}),
+                                  info_command(),
+                                  verify_command(),
+                                  compare_command(),
+                                  convert_command(),
+                                  merge_command(),
+                                  make_command(),
+                                  completion_command(),
+                                  help_command()};
     commands.back().operands.front().choices = names_of(commands);
     return commands;
 }

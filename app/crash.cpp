@@ -29,6 +29,9 @@ extern "C" void at_crash(int number) {
 } // namespace
 
 void prepare_for_crashes() noexcept {
+    // A reader that went away and a file that grew too large are errors of writing, not ends of the program.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     for (const int number : {SIGBUS, SIGSEGV, SIGILL, SIGFPE, SIGABRT}) {
         struct sigaction before {};
         if (sigaction(number, nullptr, &before) != 0 || (before.sa_flags & SA_SIGINFO) != 0 ||

@@ -9,6 +9,10 @@
 
 namespace lamella::app {
 
+/// Keeps SIGINT, SIGTERM and SIGHUP from all threads that are started from now on, but for those signals that
+/// the program was started to ignore: for programs that have other threads before Interrupt.
+void block_interrupts();
+
 /// While it lives, SIGINT, SIGTERM and SIGHUP request a stop instead of ending the program, so that temporary
 /// files are removed; but for those that the program was started to ignore. To be made before any other
 /// thread. Should the program be stuck (such as waiting for standard input) a short while after the signal,

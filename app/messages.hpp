@@ -16,7 +16,7 @@ enum class ProgressStyle {
     bar,  ///< a bar, but only where standard error is a terminal
     json, ///< everything on standard error is one JSON object a line
     none,
-    silent, ///< not even errors: of a process that tells them in another way
+    silent, ///< not even results and errors: of a process for which another one speaks
 };
 
 class Messages {
@@ -26,7 +26,11 @@ class Messages {
     Messages(const Messages&) = delete;
     Messages& operator=(const Messages&) = delete;
 
-    void set_style(ProgressStyle style) { style_ = style; }
+    /// What is silent stays so.
+    void set_style(ProgressStyle style) {
+        if (!is_silent())
+            style_ = style;
+    }
 
     /// To be called from one thread at a time, as Execution::progress is.
     void progress(const Progress& progress);
@@ -45,6 +49,7 @@ class Messages {
     [[nodiscard]] std::string_view last_words() const noexcept;
 
   private:
+    [[nodiscard]] bool is_silent() const { return style_ == ProgressStyle::silent; }
     void draw_bar(const Progress& progress, double seconds);
     void clear_bar();
 
