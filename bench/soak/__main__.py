@@ -174,7 +174,7 @@ def main():
         code, watch = run_batch(wishes.program, folder, listed, wishes.memory * 10**6, chance)
         try:
             check(listed, folder, code, known, outcomes)
-            if watch.growth() > 8e6:
+            if watch.growth() > 24e6:
                 raise Failed(f"a worker's memory grew by {watch.growth() / 1e6:.1f} MB")
         except Failed as failure:
             print(f"round {rounds}: {failure}\nseed {wishes.seed}; the files are in {folder}")
