@@ -444,7 +444,10 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
-        const std::string text = json_text(stats_json(context.command, result));
+        nlohmann::ordered_json stats = stats_json(context.command, result);
+        if (arguments.slicing.add_to_stats)
+            arguments.slicing.add_to_stats(stats);
+        const std::string text = json_text(stats);
         if (arguments.stats == "-")
             context.messages.result(text);
         else

@@ -7,6 +7,8 @@
 
 #include "command.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <functional>
 
 namespace lamella::app {
@@ -14,7 +16,9 @@ namespace lamella::app {
 /// Who slices, and who speaks of it.
 struct Slicing {
     std::function<FileResult(const FileJob&, const Execution&)> slice;
-    bool tells = true;      ///< results; not where another process does
+    bool tells = true; ///< results; not where another process does
+    /// More for --stats, once it has sliced.
+    std::function<void(nlohmann::ordered_json& stats)> add_to_stats = {};
     bool many_files = true; ///< --batch is possible
 };
 

@@ -118,7 +118,6 @@ void MpiRanks::exchange(std::span<const std::span<const std::byte>> outgoing,
                          round < receives ? static_cast<int>(from) : MPI_PROC_NULL, tag, MPI_COMM_WORLD,
                          MPI_STATUS_IGNORE);
         }
-        bytes_sent_ += outgoing[to].size();
     }
 }
 
@@ -130,7 +129,6 @@ void MpiRanks::send(std::size_t to, std::string_view bytes) {
         MPI_Send(some.data(), static_cast<int>(some.size()), MPI_BYTE, static_cast<int>(to), tag,
                  MPI_COMM_WORLD);
     }
-    bytes_sent_ += size;
 }
 
 std::string MpiRanks::receive(std::size_t from) {

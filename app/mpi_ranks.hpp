@@ -35,14 +35,10 @@ class MpiRanks final : public Ranks {
     /// Ends all ranks, when this one cannot go on and the others may be waiting for it.
     [[noreturn]] static void abort(int exit_code);
 
-    /// Bytes that this rank has sent to others.
-    [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
-
   private:
     std::uint64_t most_at_once_;
     std::size_t rank_ = 0;
     std::size_t size_ = 1;
-    std::uint64_t bytes_sent_ = 0;
 };
 
 } // namespace lamella::app

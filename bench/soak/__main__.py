@@ -93,20 +93,24 @@ class Watch(threading.Thread):
     def __init__(self, process):
         super().__init__()
         self.process = process
-        self.samples = []
+        self.most = 0
+        self.least = []  # of the workers, at each look: whoever has no large file at that moment
         self.start()
 
     def run(self):
         while self.process.poll() is None:
-            self.samples.append(max(map(resident_bytes, [self.process.pid, *children(self.process.pid)])))
-            time.sleep(0.1)
+            workers = [size for size in map(resident_bytes, children(self.process.pid)) if size > 0]
+            if workers:
+                self.most = max(self.most, *workers)
+                self.least.append(min(workers))
+            time.sleep(0.05)
 
     def growth(self):
-        """From the second to the last quarter of the run, in bytes: of the least, since most samples meet a large file."""
-        quarter = len(self.samples) // 4
+        """From the second to the last quarter of the run, in bytes: of the least, since any look may meet a large file."""
+        quarter = len(self.least) // 4
         if quarter < 5:
             return 0
-        return min(self.samples[-quarter:]) - min(self.samples[quarter:2 * quarter])
+        return min(self.least[-quarter:]) - min(self.least[quarter:2 * quarter])
 
 
 def run_batch(program, folder, listed, memory, chance):
@@ -174,13 +178,13 @@ def main():
         code, watch = run_batch(wishes.program, folder, listed, wishes.memory * 10**6, chance)
         try:
             check(listed, folder, code, known, outcomes)
-            if watch.growth() > 24e6:
+            if watch.growth() > 16e6:
                 raise Failed(f"a worker's memory grew by {watch.growth() / 1e6:.1f} MB")
         except Failed as failure:
             print(f"round {rounds}: {failure}\nseed {wishes.seed}; the files are in {folder}")
             return 1
         most_growth = max(most_growth, watch.growth())
-        most_memory = max(most_memory, *watch.samples)
+        most_memory = max(most_memory, watch.most)
         rounds += 1
         shutil.rmtree(folder / "in")
         shutil.rmtree(folder / "out")

@@ -7,6 +7,7 @@
 #include "pipeline/agreement.hpp"
 #include "pipeline/job_memory.hpp"
 #include "pipeline/layer_messages.hpp"
+#include "pipeline/packed.hpp"
 #include "pipeline/plate_source.hpp"
 #include "pipeline/rank_results.hpp"
 #include "pipeline/rank_source.hpp"
@@ -144,7 +145,8 @@ class Output {
 
 } // namespace
 
-FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& execution) {
+FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& execution,
+                      std::vector<RankFigures>* figures) {
     const Stopwatch total;
     FileResult result;
     if (job.shard)
@@ -176,7 +178,7 @@ FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& executi
     if (opened.shared) {
         opened.shared->share_out(plan, slabs, execution);
         result.mesh_volume_mm3 = opened.shared->mesh_volume();
-        result.seconds.read = opened.shared->read_seconds();
+        result.seconds.read = opened.shared->figures().read_seconds;
     }
 
     std::optional<Output> output;
@@ -186,19 +188,31 @@ FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& executi
     }
     if (job.steps.any())
         result.changes.emplace();
+    double slice_seconds = 0; // without waiting for others
     in_agreement(ranks, [&] {
+        const Stopwatch slicing;
         if (mine.size() > 0)
             slice_layers(job, source, part_of(plan, mine), output ? &output->writer() : nullptr, result, with,
                          execution);
+        slice_seconds = slicing.seconds();
     });
+    RankFigures did = opened.shared ? opened.shared->figures() : RankFigures{};
+    did.planes = mine.size();
+    did.slice_seconds = slice_seconds;
+    for (const PartResult& part : result.parts)
+        did.points += part.points;
     put_together(result, ranks);
     result.report.layers = plan.layers.size();
     check_closed(job, result);
     if (output) {
         const Stopwatch writing;
         output->finish(result);
-        result.seconds.write += writing.seconds();
+        did.write_seconds = writing.seconds();
+        result.seconds.write += did.write_seconds;
     }
+    if (figures != nullptr)
+        for (const std::string& told : ranks.gather(Packer().put(did).take()))
+            figures->push_back(Unpacker(told).get<RankFigures>());
     result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;
     result.seconds.slice = result.report.slice_seconds;

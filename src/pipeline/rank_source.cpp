@@ -57,6 +57,7 @@ RankSource::RankSource(const FileJob& job, std::vector<MeshInput> files, Ranks& 
     for (MeshInput& input : files) {
         const RecordRange share = share_of(input.records().value(), ranks.rank(), ranks.size());
         files_.push_back({std::move(input), share, 0, {}});
+        figures_.triangles_read += share.end - share.begin;
     }
     look_at(job, execution);
 }
@@ -81,7 +82,7 @@ void RankSource::look_at(const FileJob& job, const Execution& execution) {
                 execution, file.share);
             mine = {extent.box(), read.nonfinite_triangles, extent.box().empty() ? 0U : 1U,
                     extent.first_corner()};
-            read_seconds_ += reading.seconds();
+            figures_.read_seconds += reading.seconds();
         });
         Box3 box;
         bool any = false;
@@ -126,7 +127,7 @@ void RankSource::for_batches(const Execution& execution, const Body& body) {
                 });
             },
             reading_, execution, files_[i].share));
-    read_seconds_ += reading.seconds();
+    figures_.read_seconds += reading.seconds();
 }
 
 PlaneCounts RankSource::counts(const Plan& plan, const Execution& execution) {
@@ -182,11 +183,14 @@ void RankSource::share_out(const Plan& plan, std::span<const PlaneRange> slabs, 
             }
         });
     });
+    const Stopwatch exchanging;
     for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape) {
         const Transform where = placement(shape);
         plate_.shapes[shape].mesh = Mesh(exchanged(outgoing[shape]).transformed(where));
+        figures_.triangles_sliced += plate_.shapes[shape].mesh.size();
         outgoing[shape].clear();
     }
+    figures_.exchange_seconds = exchanging.seconds();
 }
 
 TriangleSoup RankSource::exchanged(const Outgoing& outgoing) {
@@ -195,7 +199,9 @@ TriangleSoup RankSource::exchanged(const Outgoing& outgoing) {
     for (const std::vector<Triangle3f>& triangles : outgoing) {
         sizes.push_back(triangles.size());
         out.push_back(std::as_bytes(std::span(triangles)));
+        figures_.bytes_sent += out.back().size();
     }
+    figures_.bytes_sent -= out[ranks_.rank()].size(); // that stays here
     const std::vector<std::uint64_t> coming = ranks_.exchange(sizes);
     std::uint64_t total = 0;
     for (const std::uint64_t count : coming)

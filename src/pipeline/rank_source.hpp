@@ -38,7 +38,8 @@ class RankSource final : public LayerSource {
                   const Engine& with) override;
 
     [[nodiscard]] double mesh_volume() const noexcept { return mesh_volume_; }
-    [[nodiscard]] double read_seconds() const noexcept { return read_seconds_; }
+    /// Those of reading and exchanging.
+    [[nodiscard]] const RankFigures& figures() const noexcept { return figures_; }
 
   private:
     struct File {
@@ -61,7 +62,7 @@ class RankSource final : public LayerSource {
     std::vector<File> files_;
     std::vector<PlaneCounts> counts_; ///< by shape, of all ranks
     double mesh_volume_ = 0;
-    double read_seconds_ = 0;
+    RankFigures figures_;
 };
 
 } // namespace lamella

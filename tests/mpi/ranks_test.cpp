@@ -1,7 +1,7 @@
 // Messages between MPI ranks, cut into pieces of a few bytes: what otherwise happens beyond 2^28. Run by
 // mpirun.
 
-#include "mpi_ranks.hpp"
+#include "../../app/mpi_ranks.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -41,6 +41,19 @@ class Ranks {
     [[nodiscard]] virtual std::string receive(std::size_t from) = 0;
 };
 
+/// What each rank did: the figures of docs/scaling.md.
+struct RankFigures {
+    std::uint64_t triangles_read = 0;   ///< of its shares
+    std::uint64_t triangles_sliced = 0; ///< that its slab needs
+    std::uint64_t bytes_sent = 0;       ///< triangles for other ranks
+    std::uint64_t planes = 0;
+    std::uint64_t points = 0;
+    double read_seconds = 0;     ///< three passes over its shares
+    double exchange_seconds = 0; ///< waiting for other ranks included
+    double slice_seconds = 0;    ///< with formatting
+    double write_seconds = 0;
+};
+
 /// What slice_file does, by all ranks together, each of which calls this with the same job. The same bytes
 /// are written as by one process, whatever the number of ranks; the result is that of the whole job, on every
 /// rank, with the longest times of all.
@@ -53,6 +66,8 @@ class Ranks {
 ///
 /// Errors are agreed on: whatever is thrown on one rank, all of them throw. Throws what slice_file throws,
 /// and Error{usage} for standard input, which reaches one rank only.
-[[nodiscard]] FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& execution = {});
+/// `figures`: where not null, those of all ranks.
+[[nodiscard]] FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& execution = {},
+                                    std::vector<RankFigures>* figures = nullptr);
 
 } // namespace lamella
