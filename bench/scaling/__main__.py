@@ -16,7 +16,6 @@ from pathlib import Path
 from bench.harness import machine
 
 TRIANGLE = 36  # bytes in a message
-PLANE = 24  # bytes of the counts of a plane
 
 
 def parse():
@@ -45,9 +44,8 @@ def figures(stats):
     triangles = sum(r["triangles_read"] for r in ranks)
     sliced = [r["triangles_sliced"] for r in ranks]
     points = [r["points"] for r in ranks]
-    return {"ranks": len(ranks), "triangles": triangles, "planes": len(stats["layers"]), "points": sum(points),
-            "sent": sum(r["bytes_sent"] for r in ranks), "copies": sum(sliced) / triangles,
-            "balance": max(points) / (sum(points) / len(points)),
+    return {"ranks": len(ranks), "triangles": triangles, "sliced": sum(sliced), "planes": len(stats["layers"]),
+            "points": sum(points), "sent": sum(r["bytes_sent"] for r in ranks), "balance": max(points) / (sum(points) / len(points)),
             "read": max(r["seconds"]["read"] for r in ranks), "slice": max(r["seconds"]["slice"] for r in ranks),
             "exchange": max(r["seconds"]["exchange"] for r in ranks),
             "total": stats["seconds"]["total"], "bytes": (Path(stats["options"]["output"])).stat().st_size}
@@ -59,28 +57,26 @@ class Model:
     def __init__(self, singles):
         self.read_rate = sum(s["triangles"] for s in singles) / sum(s["read"] for s in singles)
         # Slicing: so much for each triangle and for each point, by least squares through two or more parts.
-        a = sum(s["triangles"] ** 2 for s in singles)
-        b = sum(s["triangles"] * s["points"] for s in singles)
+        a = sum(s["sliced"] ** 2 for s in singles)
+        b = sum(s["sliced"] * s["points"] for s in singles)
         c = sum(s["points"] ** 2 for s in singles)
-        u = sum(s["triangles"] * s["slice"] for s in singles)
+        u = sum(s["sliced"] * s["slice"] for s in singles)
         v = sum(s["points"] * s["slice"] for s in singles)
         det = a * c - b * b
         fits = det > 1e-6 * a * c and (u * c - v * b) / det > 0 and (v * a - u * b) / det > 0
         self.triangle, self.point = ((u * c - v * b) / det, (v * a - u * b) / det) if fits else (0, v / c)
+        self.cut = sum(s["sliced"] for s in singles) / sum(s["triangles"] for s in singles)
         self.out_bytes = sum(s["bytes"] for s in singles) / sum(s["points"] for s in singles)
 
-    @staticmethod
-    def copies(crossed, planes, ranks):
-        """Slabs that a triangle touches on average, which crosses so many planes: one, and one more for each of the
-        bounds between slabs that lies among its planes."""
-        return 1 + (ranks - 1) * max(0.0, crossed - 1) / planes
-
     def predict(self, triangles, planes, points, ranks, balance=1.0):
-        # A cut triangle brings a point to each plane that it crosses.
-        copies = self.copies(points / triangles, planes, ranks)
-        sent = TRIANGLE * triangles * copies * (ranks - 1) / ranks
-        return {"sent": sent, "read": triangles / ranks / self.read_rate,
-                "slice": balance * (self.triangle * triangles * copies + self.point * points) / ranks,
+        # Each cut triangle goes to one slab, and to one more for each bound between slabs that lies among its planes. It
+        # brings a point to each plane, so all of them together span points - cut gaps between planes. The triangles of
+        # the file are in no order, so one in `ranks` is where it belongs.
+        cut = self.cut * triangles
+        sliced = cut + (ranks - 1) * (points - cut) / (planes - 1)
+        return {"sliced": sliced, "sent": TRIANGLE * sliced * (ranks - 1) / ranks,
+                "read": triangles / ranks / self.read_rate,
+                "slice": balance * (self.triangle * sliced + self.point * points) / ranks,
                 "bytes": self.out_bytes * points}
 
 
@@ -99,12 +95,12 @@ def cluster(model, scale, wishes):
 
 
 def report(measured, model, scale, wishes):
-    text = ["| triangles | ranks | sent, MB | predicted | copies | balance | read, s | predicted | slice, s | predicted |",
-            "|---|---|---|---|---|---|---|---|---|---|"]
+    text = ["| triangles | ranks | to be sliced | predicted | sent, MB | predicted | balance | read, s | predicted | slice, s | "
+            "predicted |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     for m in measured:
         p = model.predict(m["triangles"], m["planes"], m["points"], m["ranks"], m["balance"])
-        text.append(f"| {m['triangles']:,} | {m['ranks']} | {m['sent'] / 1e6:.1f} | {p['sent'] / 1e6:.1f} | "
-                    f"{m['copies']:.3f} | {m['balance']:.2f} | {m['read']:.3f} | {p['read']:.3f} | {m['slice']:.3f} | "
+        text.append(f"| {m['triangles']:,} | {m['ranks']} | {m['sliced']:,} | {p['sliced']:,.0f} | {m['sent'] / 1e6:.1f} | "
+                    f"{p['sent'] / 1e6:.1f} | {m['balance']:.2f} | {m['read']:.3f} | {p['read']:.3f} | {m['slice']:.3f} | "
                     f"{p['slice']:.3f} |")
     planes, points, lines = cluster(model, scale, wishes)
     text += ["", f"10^9 triangles, {planes:,.0f} planes, {points:.2g} points, one thread a rank, links of {wishes.network:g} GB/s, "
@@ -123,7 +119,7 @@ def main():
     measured = []
     for cells in wishes.cells:
         part = folder / f"lattice-{cells}.stl"
-        subprocess.run([wishes.lamella, "make", "lattice", "--cells", str(cells), "-o", str(part)], check=True,
+        subprocess.run([wishes.lamella, "make", "lattice", "--cells", str(cells), "--shuffle", "1", "-o", str(part)], check=True,
                        capture_output=True)
         subprocess.run([wishes.lamella, "slice", part, "-o", folder / "one.cli"], check=True, capture_output=True)
         for ranks in wishes.ranks:
