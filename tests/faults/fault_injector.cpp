@@ -10,8 +10,8 @@
 //     jump       the clock of the day is off by a month, back and forth (clock)
 // LAMELLA_FAULT_LOG names a file that gets one line for each call: its operation.
 //
-// Only calls on regular files and folders count, and pipes where LAMELLA_FAULT_PIPES is set: not what the
-// program loads when it starts, nor its eventfds. The log is written by bare calls, which are not counted.
+// Of calls with a descriptor only those on regular files and folders count, or only those on pipes where
+// LAMELLA_FAULT_PIPES is set. The log is written by bare calls, which are not counted.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -102,7 +102,7 @@ bool counts(int descriptor) {
     static const bool pipes = std::getenv("LAMELLA_FAULT_PIPES") != nullptr;
     struct stat status {};
     return fstat(descriptor, &status) == 0 &&
-           (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode) || (pipes && S_ISFIFO(status.st_mode)));
+           (pipes ? S_ISFIFO(status.st_mode) : S_ISREG(status.st_mode) || S_ISDIR(status.st_mode));
 }
 
 /// Whether the call that is about to be made is the one to go wrong. Does not return where it is to be
