@@ -74,6 +74,12 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/raster
 	build-bench/bench/kernels
 
+scaling: build  ## bytes and seconds of lamella-mpi, measured and predicted: out/scaling/ (bench/README.md)
+	python3 -B -m bench.scaling $(OPTIONS)
+
+soak: build  ## random good and bad files through the batch mode, for ten minutes (bench/README.md)
+	python3 -B -m bench.soak $(OPTIONS)
+
 # The comparisons need other people's programs, and run for an hour or more in full; see bench/README.md for options.
 packages-rivals: packages
 	@tools/install_packages.sh tools/packages-bench.txt tools/packages-rivals.txt
@@ -119,4 +125,4 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
-        bench packages-rivals rivals read-meshes out-of-core paper format format-check lint install clean
+        bench scaling soak packages-rivals rivals read-meshes out-of-core paper format format-check lint install clean

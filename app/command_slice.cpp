@@ -4,6 +4,8 @@
 #include "lamella/slicing/slice.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "batch.hpp"
+#include "batch_files.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "deadline.hpp"
@@ -27,6 +29,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -70,6 +73,8 @@ struct SliceArguments {
     std::string stats;
     std::optional<double> timeout;
     RunOptions run;
+    BatchArguments batch;
+    Slicing slicing;
 };
 
 OptionGroup output_options(SliceArguments& target) {
@@ -344,13 +349,12 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
     return warnings;
 }
 
-FileResult slice_in_time(const FileJob& job, const Execution& execution,
-                         const std::optional<double>& timeout) {
-    if (!timeout)
-        return slice_file(job, execution);
-    Deadline deadline(*timeout, one_line(job.inputs.front().path), execution);
+FileResult slice_in_time(const SliceArguments& arguments, const FileJob& job, const Execution& execution) {
+    if (!arguments.timeout)
+        return arguments.slicing.slice(job, execution);
+    Deadline deadline(*arguments.timeout, one_line(job.inputs.front().path), execution);
     try {
-        return slice_file(job, deadline.execution());
+        return arguments.slicing.slice(job, deadline.execution());
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled)
             deadline.check();
@@ -358,9 +362,69 @@ FileResult slice_in_time(const FileJob& job, const Execution& execution,
     }
 }
 
+/// What the files and their layers say.
+std::vector<std::string> all_warnings(const FileJob& job, const FileResult& result) {
+    std::vector<std::string> warnings;
+    for (const PlateFile& file : result.files)
+        warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+    for (std::string& warning : layer_warnings(job, result))
+        warnings.push_back(std::move(warning));
+    return warnings;
+}
+
+/// The extension of a batch's outputs where `pattern` does not have it. "" for formats of folders.
+std::string_view batch_extension(const SliceArguments& arguments) {
+    if (arguments.output.empty() || has_placeholder(arguments.output))
+        return {};
+    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    return format.name == "cli-ascii" ? ".cli" : format.extension;
+}
+
+int slice_batch(SliceArguments& arguments, const Context& context) {
+    if (!arguments.slicing.many_files)
+        throw Error(ErrorKind::usage, "--batch is for lamella: here all processes work on one plate");
+    if (!arguments.inputs.empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("--batch and the file {} contradict each other: put it into the folder or "
+                                "the list, too",
+                                arguments.inputs.front().path));
+    const bool to_stdout = arguments.output == "-" || arguments.stats == "-";
+    check_conflict(true, to_stdout, "--batch and -", "standard output is where the results of the files go");
+    const std::vector<BatchItem> items =
+        batch_items(arguments.batch, arguments.output, batch_extension(arguments), arguments.stats);
+    // All files have the options of the first one.
+    add_input(arguments, items.front().input);
+    finish_input(arguments);
+    arguments.output = items.front().output;
+    arguments.stats = items.front().stats;
+    FileJob model = make_job(arguments);
+    check_conflict(model.shard.has_value(), true, "--batch and --shard", "share out the list instead");
+    model.layer_statistics = true; // for the hashes
+    const SliceItem slice = [&](const BatchItem& item, const Execution& execution) {
+        FileJob job = model;
+        job.inputs.front().path = item.input;
+        job.output = item.output;
+        BatchResult result{slice_in_time(arguments, job, execution), {}};
+        result.warnings = all_warnings(job, result.file);
+        if (!item.stats.empty())
+            write_text_file(item.stats, json_text(stats_json(context.command, result.file)));
+        return result;
+    };
+    return run_batch(items, arguments.batch, slice, arguments.run.execution(context), context.messages);
+}
+
 int run_slice(SliceArguments& arguments, const Context& context) {
+    if (!arguments.batch.source.empty())
+        return slice_batch(arguments, context);
+    if (arguments.inputs.empty())
+        throw Error(ErrorKind::usage, "lamella slice needs FILE: a mesh, or --batch for many of them; see "
+                                      "lamella slice --help");
+    check_conflict(arguments.batch.jobs.has_value(), true, "--jobs and a single file",
+                   "--threads says how many it gets");
     finish_input(arguments);
     const FileJob job = make_job(arguments);
+    if (job.shard && !arguments.slicing.many_files)
+        throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
     const Execution execution = arguments.run.execution(context);
     const bool stamped = job.shard && !job.output.empty();
     nlohmann::ordered_json origin;
@@ -372,16 +436,18 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             return 0;
         }
     }
-    const FileResult result = slice_in_time(job, execution, arguments.timeout);
+    const FileResult result = slice_in_time(arguments, job, execution);
     if (stamped)
         stamp_shard(job, result, origin, execution);
-    for (const PlateFile& file : result.files)
-        for (const std::string& warning : file.warnings)
-            context.messages.warn(warning);
-    for (const std::string& warning : layer_warnings(job, result))
+    if (!arguments.slicing.tells)
+        return 0;
+    for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
-        const std::string text = json_text(stats_json(context.command, result));
+        nlohmann::ordered_json stats = stats_json(context.command, result);
+        if (arguments.slicing.add_to_stats)
+            arguments.slicing.add_to_stats(stats);
+        const std::string text = json_text(stats);
         if (arguments.stats == "-")
             context.messages.result(text);
         else
@@ -396,8 +462,9 @@ int run_slice(SliceArguments& arguments, const Context& context) {
 
 } // namespace
 
-Command slice_command() {
+Command slice_command(Slicing slicing) {
     const auto arguments = std::make_shared<SliceArguments>();
+    arguments->slicing = std::move(slicing);
     return {
         .name = "slice",
         .summary = "cut a mesh into layers and write a slice file",
@@ -411,6 +478,7 @@ Command slice_command() {
             "number of threads nor on the order of the triangles.",
         .operands = {{.placeholder = "FILE",
                       .help = "a mesh: STL, 3MF, AMF, OBJ, PLY or OFF; - is standard input",
+                      .required = false,
                       .repeated = true,
                       .set =
                           [arguments](const std::string& text) {
@@ -419,7 +487,8 @@ Command slice_command() {
         .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
                    plan_options(*arguments), shard_options(*arguments), repair_options(arguments->repair),
                    layer_step_options(arguments->making), input_options(*arguments),
-                   checking_options(*arguments), timed_run_options(*arguments), common_options(true)},
+                   checking_options(*arguments), batch_options(arguments->batch),
+                   timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},
                      {"lamella slice part.stl -o part.sl1 --layer-height 0.05 --exposure 8",
@@ -431,6 +500,8 @@ Command slice_command() {
                      {"lamella slice part.stl --stats - --layers 100:110", "only figures, of ten layers"},
                      {"lamella slice part.stl -o part.3.cli --shard 3/8 --resume",
                       "the third of eight shares of the layers, unless it is done already"},
+                     {"lamella slice --batch parts -o layers --format cli",
+                      "each mesh in a folder by itself, into another folder"},
                      {"lamella slice part.stl -o part.cli --config machine.toml",
                       "with options kept in a file"}},
         .run = [arguments](const Context& context) {

@@ -7,15 +7,24 @@
 namespace lamella::app {
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands{slice_command(),   info_command(),       verify_command(),
-                                  compare_command(), convert_command(),    merge_command(),
-                                  make_command(),    completion_command(), help_command()};
+    const auto slice = [](const FileJob& job, const Execution& execution) {
+        return slice_file(job, execution);
+    };
+    std::vector<Command> commands{slice_command({.slice = slice}),
+                                  info_command(),
+                                  verify_command(),
+                                  compare_command(),
+                                  convert_command(),
+                                  merge_command(),
+                                  make_command(),
+                                  completion_command(),
+                                  help_command()};
     commands.back().operands.front().choices = names_of(commands);
     return commands;
 }
 
 std::span<const ExitCode> exit_codes() noexcept {
-    static constexpr std::array<ExitCode, 8> codes{
+    static constexpr std::array<ExitCode, 9> codes{
         {{0, "all went well"},
          {1, "a fault of Lamella itself: please report it"},
          {2, "the command line or a configuration file asks for what cannot be done"},
@@ -23,7 +32,8 @@ std::span<const ExitCode> exit_codes() noexcept {
          {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify, compare)"},
          {5, "a limit was hit, such as memory or --timeout"},
          {6, "the output cannot be written; nothing was left at its path"},
-         {130, "cancelled, by Ctrl-C or the terminate signal"}}};
+         {7, "of the files of a batch some failed; the results say which, and why"},
+         {130, "cancelled, by Ctrl-C, the terminate signal or the end of the terminal"}}};
     return codes;
 }
 

@@ -2,11 +2,27 @@
 
 // The commands of the program, one source each.
 
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+
 #include "command.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <functional>
 
 namespace lamella::app {
 
-[[nodiscard]] Command slice_command();
+/// Who slices, and who speaks of it.
+struct Slicing {
+    std::function<FileResult(const FileJob&, const Execution&)> slice;
+    bool tells = true; ///< results; not where another process does
+    /// More for --stats, once it has sliced.
+    std::function<void(nlohmann::ordered_json& stats)> add_to_stats = {};
+    bool many_files = true; ///< --batch is possible
+};
+
+[[nodiscard]] Command slice_command(Slicing slicing);
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command verify_command();

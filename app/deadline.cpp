@@ -1,5 +1,6 @@
 #include "deadline.hpp"
 
+#include "lamella/container/unfinished.hpp"
 #include "lamella/core/error.hpp"
 
 #include "numbers.hpp"
@@ -72,6 +73,7 @@ void Deadline::watch() {
     const bool reading = !started_ || last_.stage == Stage::read;
     if (!done_.wait_for(lock, reading ? patience_reading : patience, is_ending)) {
         const std::string text = "\nlamella: error: " + message() + "\n";
+        remove_unfinished();
         static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
         _exit(limit_exit_code);
     }

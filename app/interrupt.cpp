@@ -27,6 +27,22 @@ int checked(int descriptor) {
     return descriptor;
 }
 
+/// Whoever started the program may want it to go on, as nohup does.
+bool is_ignored(int number) {
+    struct sigaction action {};
+    return sigaction(number, nullptr, &action) == 0 && (action.sa_flags & SA_SIGINFO) == 0 &&
+           action.sa_handler == SIG_IGN;
+}
+
+sigset_t interrupts() {
+    sigset_t set;
+    sigemptyset(&set);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP})
+        if (!is_ignored(number))
+            sigaddset(&set, number);
+    return set;
+}
+
 /// Waits for any of them; how many there are, 0 after the time is up.
 int wait_for(std::span<pollfd> awaited, int milliseconds) {
     int ready = 0;
@@ -48,11 +64,13 @@ int wait_for(std::span<pollfd> awaited, int milliseconds) {
 
 } // namespace
 
+void block_interrupts() {
+    const sigset_t set = interrupts();
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
 Interrupt::Interrupt(const Messages& messages) : messages_(messages) {
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
+    const sigset_t set = interrupts();
     // Threads started later inherit the mask: the signals reach nobody but the descriptor.
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
     signals_ = checked(signalfd(-1, &set, SFD_CLOEXEC));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Ctrl-C and the terminate signal.
+// Ctrl-C, the terminate signal, and the end of the terminal.
 
 #include "messages.hpp"
 
@@ -9,10 +9,15 @@
 
 namespace lamella::app {
 
-/// While it lives, SIGINT and SIGTERM request a stop instead of ending the program, so that temporary files
-/// are removed. To be made before any other thread. Should the program be stuck (such as waiting for
-/// standard input) a short while after the signal, or should another signal come, its temporary files are
-/// removed for it and it is ended at once with exit code 130.
+/// Keeps SIGINT, SIGTERM and SIGHUP from all threads that are started from now on, but for those signals that
+/// the program was started to ignore: for programs that have other threads before Interrupt.
+void block_interrupts();
+
+/// While it lives, SIGINT, SIGTERM and SIGHUP request a stop instead of ending the program, so that temporary
+/// files are removed; but for those that the program was started to ignore. To be made before any other
+/// thread. Should the program be stuck (such as waiting for standard input) a short while after the signal,
+/// or should another signal come, its temporary files are removed for it and it is ended at once with exit
+/// code 130.
 class Interrupt {
   public:
     explicit Interrupt(const Messages& messages);

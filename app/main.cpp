@@ -1,118 +1,12 @@
-#include "lamella/core/error.hpp"
-
-#include "command_line.hpp"
 #include "commands.hpp"
-#include "config_file.hpp"
-#include "help_text.hpp"
-#include "interrupt.hpp"
-#include "messages.hpp"
-#include "names.hpp"
-#include "suggest.hpp"
-#include "text_file.hpp"
+#include "crash.hpp"
+#include "program.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <csignal>
-#include <exception>
-#include <filesystem>
-#include <new>
-#include <span>
 #include <string>
-#include <system_error>
 #include <vector>
 
-namespace lamella::app {
-namespace {
-
-int exit_code(ErrorKind kind) {
-    switch (kind) {
-    case ErrorKind::usage:
-        return 2;
-    case ErrorKind::input:
-        return 3;
-    case ErrorKind::defect:
-        return 4;
-    case ErrorKind::limit:
-        return 5;
-    case ErrorKind::output:
-        return 6;
-    case ErrorKind::cancelled:
-        return 130;
-    case ErrorKind::internal:
-        break;
-    }
-    return 1;
-}
-
-[[noreturn]] void refuse_command(const std::string& word, const std::vector<Command>& commands) {
-    const std::string meant = nearest(word, names_of(commands));
-    std::error_code ignored;
-    if (!meant.empty())
-        throw Error(ErrorKind::usage,
-                    fmt::format("there is no command \"{}\"; did you mean lamella {}?", word, meant));
-    if (std::filesystem::exists(word, ignored))
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("\"{}\" is a file; say what to do with it, such as: lamella info {}", word, word));
-    throw Error(ErrorKind::usage, fmt::format("there is no command \"{}\"; lamella --help lists them", word));
-}
-
-int run(const std::vector<std::string>& words, Messages& messages) {
-    std::vector<Command> commands = all_commands();
-    if (words.empty() || words[0] == "--help" || words[0] == "-h") {
-        print(program_help(commands));
-        return 0;
-    }
-    if (words[0] == "--version") {
-        print("lamella " LAMELLA_VERSION "\nMIT licence\n");
-        return 0;
-    }
-    const auto command = std::ranges::find(commands, words[0], &Command::name);
-    if (command == commands.end())
-        refuse_command(words[0], commands);
-    switch (parse(*command, std::span(words).subspan(1))) {
-    case Wish::help:
-        print(command_help(*command));
-        return 0;
-    case Wish::dump_config:
-        print(config_text(*command));
-        return 0;
-    case Wish::run:
-        break;
-    }
-    const Interrupt interrupt(messages);
-    return command->run({*command, messages, interrupt.token()});
-}
-
-int guarded_run(const std::vector<std::string>& words) {
-    Messages messages;
-    const auto fail = [&](const std::string& text, int code) {
-        messages.error(text, code);
-        return code;
-    };
-    try {
-        const int code = run(words, messages);
-        finish_printing();
-        return code;
-    } catch (const Error& error) {
-        return fail(error.kind() == ErrorKind::internal ? fmt::format("{} (please report this)", error.what())
-                                                        : error.what(),
-                    exit_code(error.kind()));
-    } catch (const std::bad_alloc&) {
-        return fail("memory ran out; free some, or slice fewer layers at once (--layers)",
-                    exit_code(ErrorKind::limit));
-    } catch (const std::exception& error) {
-        return fail(fmt::format("{} (please report this)", error.what()), exit_code(ErrorKind::internal));
-    }
-}
-
-} // namespace
-} // namespace lamella::app
-
 int main(int argc, char** argv) {
-    // A reader that went away and a file that grew too large are errors of writing, not ends of the program.
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);
-    return lamella::app::guarded_run(std::vector<std::string>(argv + 1, argv + argc));
+    lamella::app::prepare_for_crashes();
+    return lamella::app::run_program(lamella::app::all_commands(),
+                                     std::vector<std::string>(argv + 1, argv + argc));
 }

@@ -47,7 +47,7 @@ std::string one_line(std::string text) {
 }
 
 void Messages::progress(const Progress& progress) {
-    if (style_ == ProgressStyle::none)
+    if (style_ == ProgressStyle::none || is_silent())
         return;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
     if (style_ == ProgressStyle::json) {
@@ -61,11 +61,15 @@ void Messages::progress(const Progress& progress) {
 }
 
 void Messages::result(std::string_view text) {
+    if (is_silent())
+        return;
     clear_bar();
     print(text);
 }
 
 void Messages::warn(const std::string& text) {
+    if (is_silent())
+        return;
     clear_bar();
     if (style_ == ProgressStyle::json)
         put_json({{"warning", text}});
@@ -74,6 +78,8 @@ void Messages::warn(const std::string& text) {
 }
 
 void Messages::error(const std::string& text, int exit_code) {
+    if (is_silent())
+        return;
     clear_bar();
     if (style_ == ProgressStyle::json)
         put_json({{"error", text}, {"exit_code", exit_code}});
@@ -83,11 +89,18 @@ void Messages::error(const std::string& text, int exit_code) {
 
 void Messages::note(const std::string& text) {
     clear_bar();
-    if (style_ != ProgressStyle::json)
+    if (style_ != ProgressStyle::json && !is_silent())
         put(text);
 }
 
+void Messages::sum_up(const std::string& text, const std::string& json) {
+    clear_bar();
+    put(style_ == ProgressStyle::json ? json + "\n" : text);
+}
+
 std::string_view Messages::last_words() const noexcept {
+    if (is_silent())
+        return {};
     return style_ == ProgressStyle::json ? "\n{\"error\":\"cancelled\",\"exit_code\":130}\n"
                                          : "\nlamella: error: cancelled\n";
 }

@@ -16,6 +16,7 @@ enum class ProgressStyle {
     bar,  ///< a bar, but only where standard error is a terminal
     json, ///< everything on standard error is one JSON object a line
     none,
+    silent, ///< not even results and errors: of a process for which another one speaks
 };
 
 class Messages {
@@ -25,7 +26,11 @@ class Messages {
     Messages(const Messages&) = delete;
     Messages& operator=(const Messages&) = delete;
 
-    void set_style(ProgressStyle style) { style_ = style; }
+    /// What is silent stays so.
+    void set_style(ProgressStyle style) {
+        if (!is_silent())
+            style_ = style;
+    }
 
     /// To be called from one thread at a time, as Execution::progress is.
     void progress(const Progress& progress);
@@ -38,10 +43,13 @@ class Messages {
     void error(const std::string& text, int exit_code);
     /// What is no result here because standard output carries data. Programs are spared it.
     void note(const std::string& text);
+    /// How a run of many files went: for people, or as a JSON object for programs.
+    void sum_up(const std::string& text, const std::string& json);
     /// The error of a run that is ended at once, in whatever state it is; whoever writes it may hold no lock.
     [[nodiscard]] std::string_view last_words() const noexcept;
 
   private:
+    [[nodiscard]] bool is_silent() const { return style_ == ProgressStyle::silent; }
     void draw_bar(const Progress& progress, double seconds);
     void clear_bar();
 

@@ -215,13 +215,17 @@ std::vector<Option> read_limit_options(ReadLimits& target) {
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
     // Options of some formats have no preset: a configuration file that lists all presets must suit any
     // format.
-    return {choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
-                   names_of(layer_formats()), target.format),
-            length("units-mm",
-                   "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded; "
-                   "0.001 unless given",
-                   target.units_mm),
-            flag("short", "cli: 16-bit coordinates, half the size", target.short_form)};
+    return {
+        choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
+               names_of(layer_formats()), target.format),
+        length("units-mm",
+               "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded; "
+               "0.001 unless given",
+               target.units_mm),
+        flag("short", "cli: 16-bit coordinates, half the size", target.short_form),
+        row("max-output", ValueKind::text, "SIZE",
+            "stop when the layers take more than this in the slice file, such as 500M or 2G (exit code 5)",
+            [&target](const std::string& text) { target.max_output = parse_byte_size(text); })};
 }
 
 LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) const {
@@ -235,6 +239,7 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) con
     LayerWriteOptions options;
     options.units_mm = units_mm.value_or(options.units_mm);
     options.short_form = short_form;
+    options.most_bytes = max_output.value_or(0);
     picture.apply(with, options);
     return options;
 }

@@ -83,6 +83,7 @@ struct LayerOutputOptions {
     std::string format = {};
     std::optional<double> units_mm = {};
     bool short_form = false;
+    std::optional<std::uint64_t> max_output = {}; ///< bytes
     PictureArguments picture = {};
 
     /// Throws Error{usage} where options do not go with the format.

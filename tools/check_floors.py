@@ -43,6 +43,8 @@ THIRD_PARTY = {
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}
+# Of the programs.
+THIRD_PARTY_OF_CONSUMERS = {"mpi.h": "app/mpi_ranks.cpp"}
 
 # One file pair per engine in src/slicing. Only the table of engines knows them.
 ENGINES = ["sweep", "conventional", "ecc", "ecc_edge_match", "eecc"]
@@ -122,6 +124,8 @@ class House:
         return None
 
     def judge_foreign(self, name, header):
+        if name != THIRD_PARTY_OF_CONSUMERS.get(header, name):
+            return f"<{header}> may be visible in {THIRD_PARTY_OF_CONSUMERS[header]} only"
         if header in STANDARD or not name.startswith(("include/", "src/")):
             return None
         if name.startswith("include/"):

@@ -2,6 +2,7 @@
 
 #include "container/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -91,7 +92,14 @@ void AtomicDirectory::commit() {
     if (errno != ENOTEMPTY && errno != EEXIST)
         throw output_error(target_.string(), errno);
     check_replaceable();
-    // The old folder steps aside; should the new one fail to take its place, it steps back.
+    // Old and new one change places at once, so that there is one of them whatever happens.
+    if (::renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+        std::error_code ignored;
+        fs::remove_all(std::exchange(working_, {}), ignored);
+        return;
+    }
+    // Not every file system can do that. The old folder steps aside; should the new one fail to take its
+    // place, it steps back.
     fs::path aside;
     for (int attempt = 0; aside.empty(); ++attempt) {
         const fs::path candidate = beside(target_, attempt);

@@ -50,6 +50,10 @@ class AtomicFile {
 
     /// Bytes appended so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
+    /// Where the bytes are until `commit`, for other processes to write some of them; "" where they are
+    /// written in place.
+    [[nodiscard]] const std::string& working_path() const noexcept { return temporary_; }
+
     /// As given.
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
 

@@ -1,5 +1,7 @@
 #include "lamella/contour/normal_form.hpp"
 
+#include "lamella/contour/stack_hash.hpp"
+
 #include "core/pages.hpp"
 
 #define XXH_INLINE_ALL
@@ -174,6 +176,10 @@ std::uint64_t content_hash(const Layer& layer) noexcept {
     XXH3_64bits_update(&state, layer.offsets.data() + 1, layer.contours() * sizeof(std::uint64_t));
     XXH3_64bits_update(&state, layer.points.data(), layer.points.size() * sizeof(Point2));
     return XXH3_64bits_digest(&state);
+}
+
+std::uint64_t stack_hash(std::span<const std::uint64_t> layer_hashes) noexcept {
+    return XXH3_64bits(layer_hashes.data(), layer_hashes.size_bytes());
 }
 
 } // namespace lamella

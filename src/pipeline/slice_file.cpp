@@ -5,6 +5,7 @@
 
 #include "core/executor.hpp"
 #include "pipeline/layer_source.hpp"
+#include "pipeline/slicing_steps.hpp"
 #include "pipeline/stopwatch.hpp"
 
 #include <fmt/format.h>
@@ -69,7 +70,8 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
     return plan_uniform(box.min.z, box.max.z, job.layers);
 }
 
-/// `listed`: of the heights that the job lists, if it does.
+} // namespace
+
 Plan plan_of(const FileJob& job, LayerSource& source, Plan listed, const Execution& execution) {
     const Box3& box = source.plate().box;
     if (!job.z.empty())
@@ -83,6 +85,8 @@ Plan plan_of(const FileJob& job, LayerSource& source, Plan listed, const Executi
             box);
     return uniform_plan(job, box);
 }
+
+namespace {
 
 /// What is gathered about the layers while they pass, in any order and from any thread.
 class Gatherer {
@@ -194,6 +198,15 @@ std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, 
     return closed;
 }
 
+PlaneRange planes_of(const Shard& shard, LayerSource& source, const Plan& plan, const Execution& execution) {
+    if (shard.number < 1 || shard.number > shard.count)
+        throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
+                                                  shard.number, shard.count));
+    return divide_evenly(SlabSurvey(source.counts(plan, execution)), shard.count)[shard.number - 1];
+}
+
+} // namespace
+
 LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     LayerFileInfo info{
         .box = plate.box, .layers = plan.layers.size(), .bottom = plan.layers.front().bottom, .parts = {}};
@@ -202,14 +215,6 @@ LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     return info;
 }
 
-PlaneRange planes_of(const Shard& shard, LayerSource& source, const Plan& plan, const Execution& execution) {
-    if (shard.number < 1 || shard.number > shard.count)
-        throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
-                                                  shard.number, shard.count));
-    return divide_evenly(SlabSurvey(source.counts(plan, execution)), shard.count)[shard.number - 1];
-}
-
-/// What the result says of the parts before they are sliced.
 void describe_parts(const FileJob& job, const LayerSource& source, FileResult& result) {
     const Plate& plate = source.plate();
     check_heights(plate);
@@ -224,7 +229,6 @@ void describe_parts(const FileJob& job, const LayerSource& source, FileResult& r
     }
 }
 
-/// All layers of the source on their way through the job's policies to the writer, if there is one.
 void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan, LayerWriter* writer,
                   FileResult& result, const Engine& with, const Execution& execution) {
     Gatherer gatherer(plan, source.plate().parts.size(), job);
@@ -259,11 +263,16 @@ void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan, Lay
     };
     source.slice_to(sink, plan, execution, result, with);
     gatherer.finish(plan, result);
+}
+
+void check_closed(const FileJob& job, const FileResult& result) {
     if (job.strict && result.report.open_chains > 0)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
                                 job.inputs.front().path, result.report.open_chains, result.open.first_z));
 }
+
+namespace {
 
 void finish(LayerWriter& writer, FileResult& result) {
     const Stopwatch writing;
@@ -309,6 +318,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
         result.format = format->name;
     }
     slice_layers(job, *source, plan, writer.get(), result, with, execution);
+    check_closed(job, result);
     if (writer != nullptr)
         finish(*writer, result);
     result.seconds.weld += result.report.weld_seconds;

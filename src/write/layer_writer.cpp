@@ -7,6 +7,7 @@
 #include "write/geojson.hpp"
 #include "write/layered_svg.hpp"
 #include "write/layers_json.hpp"
+#include "write/limited_writer.hpp"
 #include "write/npz.hpp"
 #include "write/picture_stack.hpp"
 #include "write/sl1.hpp"
@@ -20,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 namespace lamella {
 
@@ -27,15 +29,20 @@ namespace {
 
 constexpr std::array formats{
     LayerFormat{"cli", ".cli",
-                "Common Layer Interface, binary; single precision, or 16 bits in the short form"},
-    LayerFormat{"cli-ascii", "", "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm"},
-    LayerFormat{"svg", ".svg", "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm"},
+                "Common Layer Interface, binary; single precision, or 16 bits in the short form", false,
+                true},
+    LayerFormat{"cli-ascii", "", "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm",
+                false, true},
+    LayerFormat{"svg", ".svg", "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm",
+                false, true},
     LayerFormat{"slc", ".slc", "SLC of 3D Systems, binary; single precision; closed contours only"},
     LayerFormat{"3mf", ".3mf", "3MF with slice stacks; coordinates to 0.001 mm; closed contours only"},
-    LayerFormat{"dxf", ".dxf", "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm"},
-    LayerFormat{"geojson", ".geojson", "GeoJSON, one feature per layer; coordinates to 0.001 mm"},
-    LayerFormat{"wkt", ".csv", "CSV with the layers as well-known text; coordinates to 0.001 mm"},
-    LayerFormat{"json", ".json", "all that layers have as JSON; exact"},
+    LayerFormat{"dxf", ".dxf", "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm", false, true},
+    LayerFormat{"geojson", ".geojson", "GeoJSON, one feature per layer; coordinates to 0.001 mm", false,
+                true},
+    LayerFormat{"wkt", ".csv", "CSV with the layers as well-known text; coordinates to 0.001 mm", false,
+                true},
+    LayerFormat{"json", ".json", "all that layers have as JSON; exact", false, true},
     LayerFormat{"npz", ".npz", "NumPy arrays; exact"},
     LayerFormat{"svg-layers", "", "a folder with one SVG picture per layer; coordinates to 0.001 mm", true},
     LayerFormat{"png", "", "a folder with one PNG picture per layer; as fine as its pixels", true},
@@ -72,34 +79,8 @@ void check_info(const LayerFileInfo& info) {
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
 
-} // namespace
-
-std::span<const LayerFormat> layer_formats() noexcept {
-    return formats;
-}
-
-const LayerFormat& layer_format(std::string_view name, const std::string& path) {
-    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-    for (const LayerFormat& format : formats) {
-        if (name.empty() ? !extension.empty() && format.extension == extension : format.name == name)
-            return format;
-    }
-    if (!name.empty())
-        throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
-    if (path == "-")
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("standard output has no extension to tell the format; name one of {}", names()));
-    throw Error(ErrorKind::usage,
-                fmt::format("the extension of '{}' tells no format; name one of {}", path, names()));
-}
-
-std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const LayerFormat& format,
-                                               const LayerFileInfo& info, const LayerWriteOptions& options) {
-    check_info(info);
-    if (format.directory && path == "-")
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} writes a folder and standard output is none; give a path", format.name));
+std::unique_ptr<LayerWriter> open_unlimited(const std::string& path, const LayerFormat& format,
+                                            const LayerFileInfo& info, const LayerWriteOptions& options) {
     if (format.name == "cli")
         return open_common_layer_binary(path, info, options);
     if (format.name == "cli-ascii")
@@ -130,6 +111,38 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
         return open_sl1(path, info, options, format.name);
     throw Error(ErrorKind::usage,
                 fmt::format("there is no format '{}'; choose from {}", format.name, names()));
+}
+
+} // namespace
+
+std::span<const LayerFormat> layer_formats() noexcept {
+    return formats;
+}
+
+const LayerFormat& layer_format(std::string_view name, const std::string& path) {
+    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+    for (const LayerFormat& format : formats) {
+        if (name.empty() ? !extension.empty() && format.extension == extension : format.name == name)
+            return format;
+    }
+    if (!name.empty())
+        throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
+    if (path == "-")
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("standard output has no extension to tell the format; name one of {}", names()));
+    throw Error(ErrorKind::usage,
+                fmt::format("the extension of '{}' tells no format; name one of {}", path, names()));
+}
+
+std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const LayerFormat& format,
+                                               const LayerFileInfo& info, const LayerWriteOptions& options) {
+    check_info(info);
+    if (format.directory && path == "-")
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} writes a folder and standard output is none; give a path", format.name));
+    std::unique_ptr<LayerWriter> writer = open_unlimited(path, format, info, options);
+    return options.most_bytes == 0 ? std::move(writer) : limited(std::move(writer), path, options.most_bytes);
 }
 
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,

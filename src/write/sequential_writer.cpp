@@ -36,8 +36,20 @@ std::vector<MeasuredRing> measured_rings(const Layer& layer) {
 
 SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
                                    Holds holds)
-    : file_(path), order_(info), left_out_(holds) {
-    file_.append(head);
+    : piece_(info.piece), file_layers_(info.layers), order_(info), left_out_(holds) {
+    if (piece_ == nullptr)
+        file_.emplace(path);
+    if (piece_ == nullptr || piece_->before == 0)
+        append_bytes(head);
+}
+
+void SequentialWriter::append_bytes(std::string_view bytes) {
+    if (file_) {
+        file_->append(bytes);
+        return;
+    }
+    piece_bytes_ += bytes.size();
+    piece_->put(bytes);
 }
 
 std::function<void()> SequentialWriter::prepare(std::span<const Layer> parts) {
@@ -49,15 +61,18 @@ std::function<void()> SequentialWriter::prepare(std::span<const Layer> parts) {
             top = layer.top] {
         order_.next(z);
         left_out_.note(extras);
-        file_.append(layer_head({order_.count() - 1, index, z, bottom, top}));
-        file_.append(buffer->view());
+        const std::uint64_t before = piece_ != nullptr ? piece_->before : 0;
+        append_bytes(layer_head({before + order_.count() - 1, index, z, bottom, top}));
+        append_bytes(buffer->view());
     };
 }
 
 void SequentialWriter::finish() {
     order_.end();
-    file_.append(tail());
-    file_.commit();
+    if (piece_ == nullptr || piece_->before + piece_->layers == file_layers_)
+        append_bytes(tail());
+    if (file_)
+        file_->commit();
 }
 
 } // namespace lamella

@@ -22,7 +22,8 @@ namespace lamella {
 /// announced.
 class LayerOrder {
   public:
-    explicit LayerOrder(const LayerFileInfo& info) : announced_(info.layers), parts_(info.parts.size()) {}
+    explicit LayerOrder(const LayerFileInfo& info)
+        : announced_(info.piece != nullptr ? info.piece->layers : info.layers), parts_(info.parts.size()) {}
 
     /// Throws Error{usage} when there is not one layer for each part.
     void check_parts(std::size_t parts) const;
@@ -54,7 +55,7 @@ class SequentialWriter : public LayerWriter {
   public:
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
     void finish() final;
-    [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_.bytes(); }
+    [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_ ? file_->bytes() : piece_bytes_; }
     [[nodiscard]] std::vector<std::string> warnings() const final { return left_out_.warnings(); }
 
   protected:
@@ -78,7 +79,12 @@ class SequentialWriter : public LayerWriter {
     [[nodiscard]] virtual std::string tail() { return {}; }
 
   private:
-    AtomicFile file_;
+    void append_bytes(std::string_view bytes);
+
+    std::optional<AtomicFile> file_; ///< or
+    const LayerFilePiece* piece_;    ///< a piece of one
+    std::uint64_t piece_bytes_ = 0;
+    std::uint64_t file_layers_;
     LayerOrder order_;
     LeftOut left_out_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();

@@ -31,7 +31,7 @@ class ProgramDocs(ProgramTest):
 
     def test_the_exit_codes(self):
         codes = re.findall(r"^ +(\d+)  (.*)$", self.succeed("--help").text, re.MULTILINE)
-        self.assertEqual(len(codes), 8)
+        self.assertEqual(len(codes), 9)
         for code, _ in codes:
             self.assertRegex(self.page, rf"(?m)^\| {code} \|")
 

@@ -1,4 +1,5 @@
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/contour/stack_hash.hpp"
 
 #include <gtest/gtest.h>
 
@@ -195,6 +196,12 @@ TEST(ContentHash, IsXxh3OverTheDocumentedBytes) {
     EXPECT_EQ(content_hash(raw_layer({})), 0xd0a66a65c7528968U);
     EXPECT_EQ(content_hash(raw_layer({{{{0, 0}, {1, 0}, {0, 1}}}, {{{2, 3}, {4, 5.5}}, false}})),
               0x719359391f148b9dU);
+}
+
+TEST(StackHash, IsXxh3OverTheHashesOfTheLayers) {
+    // The value of `xxhsum -H3` over the same sixteen bytes.
+    EXPECT_EQ(stack_hash(std::vector<std::uint64_t>{1, 2}), 0x07ee86c281446befU);
+    EXPECT_NE(stack_hash(std::vector<std::uint64_t>{2, 1}), stack_hash(std::vector<std::uint64_t>{1, 2}));
 }
 
 } // namespace

@@ -22,15 +22,29 @@ struct PartInfo {
     Box3 box = {}; ///< mm; empty where nothing is known
 };
 
+/// A piece of a slice file, for formats whose files are layers one after the other (LayerFormat::pieces):
+/// several processes write one file so. The pieces of a file, put together, are the file.
+struct LayerFilePiece {
+    std::uint64_t before = 0; ///< layers of the file before those of the piece
+    std::uint64_t layers = 0; ///< of the piece
+    /// Takes its bytes, in order.
+    std::function<void(std::string_view)> put;
+};
+
 /// What the head of a slice file says, known before the first layer is.
 struct LayerFileInfo {
     Box3 box = {};                   ///< of all parts, mm; never empty
     std::uint64_t layers = 0;        ///< how many planes will follow
     double bottom = 0;               ///< of the first layer
     std::vector<PartInfo> parts{{}}; ///< at least one
+    /// Where set: only this piece is written, not to a file. It must outlive the writer.
+    const LayerFilePiece* piece = nullptr;
 };
 
 struct LayerWriteOptions {
+    /// Error{limit} where the layers take more than so many bytes; 0 is no limit. What ends a file, such as
+    /// the directory of an archive, does not count.
+    std::uint64_t most_bytes = 0;
     /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
     /// the ASCII and the short binary form; the long binary form keeps single precision.
     double units_mm = 0.001;
@@ -49,6 +63,7 @@ struct LayerFormat {
     std::string_view extension; ///< with the dot; "" when the format is only chosen by name
     std::string_view summary;   ///< one line for help texts, quantisation included
     bool directory = false;     ///< writes one file per layer into a directory
+    bool pieces = false;        ///< can be written piece by piece
 };
 
 /// All formats, in the order in which help lists them.

@@ -1,0 +1,225 @@
+#include "batch_files.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "numbers.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 6> mesh_extensions{".stl", ".3mf", ".amf", ".obj", ".ply", ".off"};
+
+std::string lower_case(std::string text) {
+    for (char& c : text)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+}
+
+/// The extension that says what a file holds: ".stl" of "part.STL.gz".
+std::string mesh_extension(fs::path name) {
+    if (lower_case(name.extension().string()) == ".gz")
+        name = name.stem();
+    return lower_case(name.extension().string());
+}
+
+bool is_mesh_name(const fs::path& name) {
+    return std::ranges::find(mesh_extensions, mesh_extension(name)) != mesh_extensions.end();
+}
+
+/// Without the extension, nor that of gzip.
+fs::path stem_of(const fs::path& path) {
+    const fs::path name = path.filename();
+    return lower_case(name.extension().string()) == ".gz" ? name.stem().stem() : name.stem();
+}
+
+[[noreturn]] void refuse(const std::string& source, const std::string& what) {
+    throw Error(ErrorKind::input, fmt::format("{}: {}", source, what));
+}
+
+std::vector<std::string> files_in(const std::string& folder, const std::string& results) {
+    std::error_code error;
+    const fs::path apart = results.empty() ? fs::path() : fs::weakly_canonical(results, error);
+    const bool all = apart.empty() || apart == fs::canonical(folder, error);
+    std::vector<std::string> found;
+    fs::recursive_directory_iterator entries(folder, error);
+    for (; !error && entries != fs::recursive_directory_iterator(); entries.increment(error)) {
+        const fs::path& path = entries->path();
+        std::error_code ignored;
+        const bool hidden = path.filename().string().starts_with('.');
+        if (entries->is_directory(ignored)) {
+            if (hidden || (!all && fs::weakly_canonical(path, ignored) == apart))
+                entries.disable_recursion_pending();
+        } else if (!hidden && is_mesh_name(path)) {
+            found.push_back(path.string());
+        }
+    }
+    if (error)
+        refuse(folder, fmt::format("the folder cannot be listed: {}", error.message()));
+    if (found.empty())
+        refuse(folder, "no file in this folder has a name as of a mesh (.stl, .3mf, .amf, .obj, .ply or "
+                       ".off); other names can be given in a list");
+    std::ranges::sort(found);
+    return found;
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+    const char separator = text.find('\0') == std::string_view::npos ? '\n' : '\0';
+    std::vector<std::string> lines;
+    while (!text.empty()) {
+        const std::size_t end = text.find(separator);
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        if (separator == '\n' && line.ends_with('\r'))
+            line.remove_suffix(1);
+        if (!line.empty() && (separator == '\0' || !line.starts_with('#')))
+            lines.emplace_back(line);
+    }
+    return lines;
+}
+
+std::vector<std::string> files_listed(const std::string& list) {
+    std::vector<std::string> lines = lines_of(read_text_file(list == "-" ? "/dev/stdin" : list));
+    if (lines.empty())
+        refuse(list == "-" ? "standard input" : list, "the list names no file; expected one path a line");
+    if (std::ranges::find(lines, "-") != lines.end())
+        refuse(list, "standard input (-) cannot be one of many files");
+    return lines;
+}
+
+/// The deepest folder that all paths lie in.
+fs::path common_folder(std::span<const fs::path> paths) {
+    std::optional<fs::path> common;
+    for (const fs::path& path : paths) {
+        const fs::path folder = path.parent_path();
+        if (!common) {
+            common = folder;
+            continue;
+        }
+        fs::path shared;
+        auto ours = common->begin();
+        for (auto theirs = folder.begin();
+             ours != common->end() && theirs != folder.end() && *ours == *theirs; ++ours, ++theirs)
+            shared /= *ours;
+        common = std::move(shared);
+    }
+    return common.value_or(fs::path());
+}
+
+/// The pattern with these in the places of {name}, {folder} and {index}.
+std::string filled(std::string_view pattern, const std::array<std::string, 3>& values) {
+    constexpr std::array<std::string_view, 3> placeholders{"{name}", "{folder}", "{index}"};
+    std::string text;
+    std::string_view rest = pattern;
+    for (std::size_t brace = 0; (brace = rest.find('{')) != std::string_view::npos;) {
+        text += rest.substr(0, brace);
+        rest.remove_prefix(brace);
+        const auto found = std::ranges::find_if(
+            placeholders, [&](std::string_view placeholder) { return rest.starts_with(placeholder); });
+        if (found == placeholders.end())
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: \"{}\" is none of {{name}}, {{folder}} and {{index}}", pattern,
+                                    rest.substr(0, rest.find('}') + 1)));
+        text += values.at(static_cast<std::size_t>(found - placeholders.begin()));
+        rest.remove_prefix(found->size());
+    }
+    return text.append(rest);
+}
+
+/// "out/a.cli", ".obj": "out/a.obj.cli".
+std::string with_tag(const fs::path& name, const std::string& tag) {
+    return (name.parent_path() / (name.stem().string() + tag + name.extension().string())).string();
+}
+
+} // namespace
+
+std::vector<std::string> batch_inputs(const std::string& source, const std::string& results) {
+    std::error_code ignored;
+    return fs::is_directory(source, ignored) ? files_in(source, results) : files_listed(source);
+}
+
+void check_distinct(std::span<const std::string> inputs, std::span<const std::string> outputs) {
+    using Identity = std::pair<dev_t, ino_t>;
+    const auto identity = [](const std::string& path) -> std::optional<Identity> {
+        struct stat status {};
+        if (stat(path.c_str(), &status) != 0)
+            return std::nullopt;
+        return Identity{status.st_dev, status.st_ino};
+    };
+    std::map<Identity, const std::string*> known;
+    for (const std::string& input : inputs)
+        if (const auto file = identity(input))
+            known.emplace(*file, &input);
+    for (const std::string& output : outputs) {
+        const auto file = identity(output);
+        if (!file)
+            continue;
+        if (const auto found = known.find(*file); found != known.end())
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: this output would overwrite the input {}; choose another folder",
+                                    output, *found->second));
+    }
+}
+
+bool has_placeholder(std::string_view pattern) noexcept {
+    return pattern.find('{') != std::string_view::npos;
+}
+
+bool OutputNames::take(const std::string& name) {
+    return !folders_.contains(name) && taken_.insert(name).second;
+}
+
+void OutputNames::note_folders(const fs::path& name) {
+    for (fs::path folder = name.parent_path(); !folder.empty() && folder != folder.parent_path();
+         folder = folder.parent_path()) {
+        if (taken_.contains(folder.string()))
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: would lie within the result {}; choose another folder",
+                                    name.string(), folder.string()));
+        if (!folders_.insert(folder.string()).second)
+            return; // and so are those above it
+    }
+}
+
+std::vector<std::string> OutputNames::give(std::span<const std::string> inputs, const std::string& pattern,
+                                           std::string_view extension) {
+    std::vector<fs::path> paths;
+    for (const std::string& input : inputs)
+        paths.push_back(fs::absolute(input).lexically_normal());
+    const fs::path shared = common_folder(paths);
+    std::vector<fs::path> wanted;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        const fs::path folder = paths[i].parent_path().lexically_relative(shared);
+        const std::string stem = stem_of(paths[i]).string();
+        const fs::path named = has_placeholder(pattern)
+                                   ? fs::path(filled(pattern, {stem, folder.string(), std::to_string(i)}))
+                                   : fs::path(pattern) / folder / (stem + std::string(extension));
+        wanted.push_back(named.lexically_normal());
+        note_folders(wanted.back());
+    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        std::string name = wanted[i].string();
+        const std::string own = paths[i].extension().string();
+        for (std::size_t number = 1; !take(name); ++number)
+            name = with_tag(wanted[i], number == 1 ? own : fmt::format("{}-{}", own, number));
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+} // namespace lamella::app

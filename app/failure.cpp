@@ -1,0 +1,76 @@
+#include "failure.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "crash.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstring>
+#include <new>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+Failure failure(ErrorKind kind, std::string text) {
+    switch (kind) {
+    case ErrorKind::usage:
+        return {"usage", 2, std::move(text)};
+    case ErrorKind::input:
+        return {"input", 3, std::move(text)};
+    case ErrorKind::defect:
+        return {"defect", 4, std::move(text)};
+    case ErrorKind::limit:
+        return {"limit", 5, std::move(text)};
+    case ErrorKind::output:
+        return {"output", 6, std::move(text)};
+    case ErrorKind::cancelled:
+        return {"cancelled", 130, std::move(text)};
+    case ErrorKind::internal:
+        break;
+    }
+    return {"internal", 1, fmt::format("{} (please report this)", text)};
+}
+
+} // namespace
+
+Failure failure_of(const std::exception_ptr& error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const Error& known) {
+        return failure(known.kind(), known.what());
+    } catch (const std::bad_alloc&) {
+        return failure(ErrorKind::limit,
+                       "memory ran out; free some, or slice fewer layers at once (--layers)");
+    } catch (const std::exception& unknown) {
+        return failure(ErrorKind::internal, unknown.what());
+    }
+}
+
+Failure failure_of_process(int status, const std::string& path) {
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 5)
+        return failure(ErrorKind::limit, fmt::format("{}: stopped by --timeout while it was stuck", path));
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 130)
+        return failure(ErrorKind::cancelled, "cancelled");
+    if (WIFEXITED(status) && WEXITSTATUS(status) == lost_input_exit_code)
+        return failure(
+            ErrorKind::input,
+            fmt::format("{}: the file became shorter while it was read, or its disk failed", path));
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+        return failure(
+            ErrorKind::limit,
+            fmt::format("{}: the process that worked on it was killed, as systems do with what takes "
+                        "too much memory",
+                        path));
+    const std::string how = WIFSIGNALED(status)
+                                ? fmt::format("signal {}, {}", WTERMSIG(status), strsignal(WTERMSIG(status)))
+                                : fmt::format("exit code {}", WEXITSTATUS(status));
+    return {"crash", 1,
+            fmt::format("{}: the process that worked on it crashed ({}); please report this with the file",
+                        path, how)};
+}
+
+} // namespace lamella::app

@@ -1,0 +1,26 @@
+#pragma once
+
+// What went wrong, as exit codes and results tell it.
+
+#include <exception>
+#include <string>
+#include <string_view>
+
+namespace lamella::app {
+
+/// The exit code of a batch of which some files failed.
+constexpr int batch_failed_exit_code = 7;
+
+struct Failure {
+    std::string_view kind; ///< the name of the ErrorKind, such as "input"; or "crash"
+    int exit_code = 1;
+    std::string text; ///< for a person
+};
+
+/// Of any exception.
+[[nodiscard]] Failure failure_of(const std::exception_ptr& error);
+
+/// Of a process that ended before it could tell; `status` as of waitpid, `path` the file that it worked on.
+[[nodiscard]] Failure failure_of_process(int status, const std::string& path);
+
+} // namespace lamella::app

@@ -1,0 +1,84 @@
+#include "program.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "command_line.hpp"
+#include "config_file.hpp"
+#include "failure.hpp"
+#include "help_text.hpp"
+#include "interrupt.hpp"
+#include "messages.hpp"
+#include "names.hpp"
+#include "suggest.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+[[noreturn]] void refuse_command(const std::string& word, const std::vector<Command>& commands) {
+    const std::string meant = nearest(word, names_of(commands));
+    std::error_code ignored;
+    if (!meant.empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("there is no command \"{}\"; did you mean lamella {}?", word, meant));
+    if (std::filesystem::exists(word, ignored))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("\"{}\" is a file; say what to do with it, such as: lamella info {}", word, word));
+    throw Error(ErrorKind::usage, fmt::format("there is no command \"{}\"; lamella --help lists them", word));
+}
+
+int run(std::vector<Command>& commands, const std::vector<std::string>& words, Messages& messages) {
+    if (words.empty() || words[0] == "--help" || words[0] == "-h") {
+        messages.result(program_help(commands));
+        return 0;
+    }
+    if (words[0] == "--version") {
+        messages.result("lamella " LAMELLA_VERSION "\nMIT licence\n");
+        return 0;
+    }
+    const auto command = std::ranges::find(commands, words[0], &Command::name);
+    if (command == commands.end())
+        refuse_command(words[0], commands);
+    switch (parse(*command, std::span(words).subspan(1))) {
+    case Wish::help:
+        messages.result(command_help(*command));
+        return 0;
+    case Wish::dump_config:
+        messages.result(config_text(*command));
+        return 0;
+    case Wish::run:
+        break;
+    }
+    const Interrupt interrupt(messages);
+    return command->run({*command, messages, interrupt.token()});
+}
+
+} // namespace
+
+int run_program(std::vector<Command> commands, const std::vector<std::string>& words, bool speaks) {
+    Messages messages;
+    if (!speaks)
+        messages.set_style(ProgressStyle::silent);
+    try {
+        const int code = run(commands, words, messages);
+        finish_printing();
+        return code;
+    } catch (...) {
+        const Failure failure = failure_of(std::current_exception());
+        messages.error(failure.text, failure.exit_code);
+        return failure.exit_code;
+    }
+}
+
+} // namespace lamella::app

@@ -1,0 +1,171 @@
+#include "worker_team.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "crash.hpp"
+#include "interrupt.hpp"
+#include "messages.hpp"
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+// A packet keeps its bounds, and the end of the other side shows as one of no bytes.
+constexpr int packets = SOCK_SEQPACKET | SOCK_CLOEXEC;
+constexpr std::size_t longest_answer = std::size_t{1} << 16; // far below what a socket takes at once
+
+[[noreturn]] void fail(int system_error) {
+    throw Error(ErrorKind::limit, fmt::format("no further process can be started: {}; choose fewer --jobs",
+                                              std::generic_category().message(system_error)));
+}
+
+/// What a large task took goes back to the system when it is done; else the allocator would learn from it to
+/// keep as much for ever.
+void return_memory() {
+    constexpr int own_pages = 4 << 20;
+    constexpr int kept = 8 << 20;
+    mallopt(M_MMAP_THRESHOLD, own_pages);
+    mallopt(M_TRIM_THRESHOLD, kept);
+}
+
+/// Whether all of it went; the other side may be gone.
+bool send_packet(int socket, const void* data, std::size_t bytes) {
+    ssize_t sent = 0;
+    do
+        sent = send(socket, data, bytes, MSG_NOSIGNAL);
+    while (sent < 0 && errno == EINTR);
+    return sent == static_cast<ssize_t>(bytes);
+}
+
+/// The length of the packet; 0 or less when the other side is gone.
+ssize_t receive_packet(int socket, void* data, std::size_t bytes) {
+    ssize_t got = 0;
+    do
+        got = recv(socket, data, bytes, 0);
+    while (got < 0 && errno == EINTR);
+    return got;
+}
+
+} // namespace
+
+WorkerTeam::WorkerTeam(std::size_t size, Work work) : work_(std::move(work)), workers_(size) {}
+
+WorkerTeam::~WorkerTeam() {
+    for (Worker& worker : workers_) {
+        if (worker.process < 0)
+            continue;
+        if (worker.task)
+            kill(worker.process, SIGTERM);
+        close(worker.socket);
+    }
+    for (const Worker& worker : workers_)
+        while (worker.process > 0 && waitpid(worker.process, nullptr, 0) < 0 && errno == EINTR) {
+        }
+}
+
+void WorkerTeam::start(const WorkerTask& task) {
+    const auto worker = std::ranges::find_if(workers_, [](const Worker& w) { return !w.task; });
+    if (worker == workers_.end())
+        throw Error(ErrorKind::internal, "all workers have a task");
+    // A worker may have died since its last answer: then another one takes its place.
+    while (worker->process < 0 || !send_packet(worker->socket, &task, sizeof task)) {
+        if (worker->process > 0)
+            static_cast<void>(answer_of(*worker));
+        launch(*worker);
+    }
+    worker->task = task.index;
+}
+
+void WorkerTeam::launch(Worker& worker) {
+    std::array<int, 2> ends{};
+    if (socketpair(AF_UNIX, packets, 0, ends.data()) != 0)
+        fail(errno);
+    static_cast<void>(std::fflush(nullptr)); // what is buffered is this process's to write
+    const pid_t parent = getpid();
+    const pid_t process = fork();
+    if (process < 0) {
+        const int system_error = errno;
+        close(ends[0]);
+        close(ends[1]);
+        fail(system_error);
+    }
+    if (process == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGTERM);
+        if (getppid() != parent)
+            _exit(0);
+        close(ends[0]);
+        for (const Worker& other : workers_)
+            if (other.process > 0)
+                close(other.socket);
+        serve(ends[1]);
+    }
+    close(ends[1]);
+    worker = {process, ends[0], std::nullopt};
+}
+
+void WorkerTeam::serve(int socket) const {
+    return_memory();
+    {
+        Messages messages;
+        messages.set_style(ProgressStyle::silent);
+        be_silent_at_crashes();
+        const Interrupt interrupt(messages);
+        WorkerTask task;
+        while (!interrupt.token().stop_requested() &&
+               receive_packet(socket, &task, sizeof task) == sizeof task) {
+            const std::string text = work_(task, interrupt.token());
+            if (!send_packet(socket, text.data(), std::min(text.size(), longest_answer)))
+                break;
+        }
+    }
+    _exit(0); // nothing of what belongs to the other process is to be undone here
+}
+
+std::vector<WorkerAnswer> WorkerTeam::wait(int wake) {
+    std::vector<pollfd> awaited{{wake, POLLIN, 0}};
+    for (const Worker& worker : workers_)
+        awaited.push_back({worker.task ? worker.socket : -1, POLLIN, 0});
+    while (poll(awaited.data(), awaited.size(), -1) < 0)
+        if (errno != EINTR)
+            throw std::system_error(errno, std::generic_category(), "cannot wait for workers");
+    std::vector<WorkerAnswer> answers;
+    for (std::size_t i = 0; i < workers_.size(); ++i)
+        if (awaited[i + 1].revents != 0)
+            answers.push_back(answer_of(workers_[i]));
+    return answers;
+}
+
+WorkerAnswer WorkerTeam::answer_of(Worker& worker) {
+    WorkerAnswer answer;
+    answer.index = worker.task.value_or(0);
+    std::string text(longest_answer, '\0');
+    const ssize_t got = receive_packet(worker.socket, text.data(), text.size());
+    worker.task.reset();
+    if (got > 0) {
+        text.resize(static_cast<std::size_t>(got));
+        answer.text = std::move(text);
+        return answer;
+    }
+    close(worker.socket);
+    while (waitpid(worker.process, &answer.status, 0) < 0 && errno == EINTR) {
+    }
+    worker = {};
+    return answer;
+}
+
+} // namespace lamella::app

@@ -1,0 +1,70 @@
+#pragma once
+
+// Values as bytes, for messages between processes of one program on like machines.
+
+#include "lamella/core/error.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace lamella {
+
+class Packer {
+  public:
+    template <class T>
+    requires std::is_trivially_copyable_v<T> Packer& put(const T& value) {
+        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+        return *this;
+    }
+    template <class T>
+    requires std::is_trivially_copyable_v<T> Packer& put_all(std::span<const T> values) {
+        put(std::uint64_t{values.size()});
+        bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+        return *this;
+    }
+    [[nodiscard]] std::string take() { return std::move(bytes_); }
+
+  private:
+    std::string bytes_;
+};
+
+/// Takes them out in the order in which they were put in. The bytes must outlive it.
+class Unpacker {
+  public:
+    explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
+
+    template <class T>
+    [[nodiscard]] T get() {
+        T value;
+        std::memcpy(&value, next(sizeof value), sizeof value);
+        return value;
+    }
+    template <class T>
+    [[nodiscard]] std::vector<T> get_all() {
+        const auto count = get<std::uint64_t>();
+        std::vector<T> values(count);
+        if (count > 0)
+            std::memcpy(values.data(), next(count * sizeof(T)), count * sizeof(T));
+        return values;
+    }
+    [[nodiscard]] bool empty() const noexcept { return rest_.empty(); }
+
+  private:
+    const char* next(std::size_t bytes) {
+        if (bytes > rest_.size())
+            throw Error(ErrorKind::internal, "a message between processes is too short");
+        const char* const at = rest_.data();
+        rest_.remove_prefix(bytes);
+        return at;
+    }
+
+    std::string_view rest_;
+};
+
+} // namespace lamella

@@ -1,0 +1,81 @@
+#pragma once
+
+// What is summed up while the triangles of a file stream by.
+
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include "mesh/folds.hpp"
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+namespace lamella {
+
+/// What one pass over a file tells of where it lies.
+class Extent {
+  public:
+    explicit Extent(const Transform& placement) : placement_(placement) {}
+
+    /// From any thread.
+    void add(const TriangleSoup& batch, std::uint64_t number) {
+        const TriangleSoup placed = batch.transformed(placement_);
+        const Box3 box = bounding_box(placed, {.threads = 1});
+        const std::lock_guard lock(mutex_);
+        box_.add(box);
+        if (number <= first_batch_) {
+            first_batch_ = number;
+            first_corner_ = batch.stored(0)[0];
+        }
+    }
+
+    [[nodiscard]] const Box3& box() const noexcept { return box_; }
+    /// As stored, of the first triangle.
+    [[nodiscard]] const Point3f& first_corner() const noexcept { return first_corner_; }
+
+  private:
+    Transform placement_;
+    std::mutex mutex_;
+    Box3 box_;
+    std::uint64_t first_batch_ = ~std::uint64_t{0};
+    Point3f first_corner_;
+};
+
+/// The volume of a mesh from its batches, with the bits of `volume` where those are whole pieces of it.
+class VolumeSum {
+  public:
+    VolumeSum(const Transform& placement, const Point3f& first) : placement_(placement) {
+        origin_ = placement({first.x, first.y, first.z});
+    }
+
+    /// From any thread.
+    void add(const TriangleSoup& batch, std::uint64_t number) {
+        double sum = 0;
+        for (std::size_t i = 0; i < batch.size(); ++i)
+            sum += six_volumes(batch.placed(i), origin_);
+        const std::lock_guard lock(mutex_);
+        if (pieces_.size() <= number)
+            pieces_.resize(number + 1, 0);
+        pieces_[number] = sum;
+    }
+
+    /// Sums of the batches, in their order.
+    [[nodiscard]] const std::vector<double>& pieces() const noexcept { return pieces_; }
+
+    [[nodiscard]] double volume() const noexcept {
+        double total = 0;
+        for (const double piece : pieces_)
+            total += piece;
+        return total / 6;
+    }
+
+  private:
+    Transform placement_;
+    Point3 origin_;
+    std::mutex mutex_;
+    std::vector<double> pieces_;
+};
+
+} // namespace lamella

@@ -1,0 +1,272 @@
+"""lamella slice --batch: many files share the processors, and none of them can hold up the others."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main
+
+
+class Batch(ProgramTest):
+    def records(self, result):
+        return [json.loads(line) for line in result.out.splitlines()]
+
+    def batch(self, code, *arguments, **keywords):
+        result = self.run_program("slice", "--batch", *arguments, **keywords)
+        self.assertEqual(result.code, code, result.err)
+        return self.records(result)
+
+    def boxes(self, folder, count):
+        """Boxes of different sizes, so that no result can pass for another."""
+        self.path(folder).mkdir(parents=True, exist_ok=True)
+        names = [f"{folder}/box{i:02}.stl" for i in range(count)]
+        for i, name in enumerate(names):
+            self.write(name, binary_stl(box_triangles(1 + i, 2, 3)))
+        return names
+
+    def test_every_file_comes_out_as_by_itself(self):
+        names = self.boxes("parts", 12) + self.boxes("parts/more", 3)
+        records = self.batch(0, "parts", "-o", "out", "--format", "cli", "--layer-height", "0.2", "--stats", "out")
+        self.assertEqual([r["path"] for r in records], sorted(names))
+        for record in records:
+            single = self.succeed("slice", record["path"], "-o", "single.cli", "--layer-height", "0.2", "--stats", "-")
+            self.assertEqual(record["output"], record["path"].replace("parts", "out", 1).replace(".stl", ".cli"))
+            self.assertEqual(self.bytes_of(record["output"]), self.bytes_of("single.cli"))
+            figures = single.json()
+            self.assertEqual(record["layers"], len(figures["layers"]))
+            for key in ["points", "contours", "open_chains", "volume_mm3"]:
+                self.assertEqual(record[key], figures[key])
+            kept = json.loads(self.bytes_of(record["output"].replace(".cli", ".json")))
+            self.assertEqual(kept["layers"], figures["layers"])
+        self.assertEqual(len({r["hash"] for r in records}), 12)  # the three are like the first three
+
+    def test_the_results_depend_on_no_number_of_jobs(self):
+        self.boxes("parts", 20)
+        outcomes = []
+        for jobs in ["1", "3", "7"]:
+            records = self.batch(0, "parts", "-o", f"out{jobs}", "--format", "cli", "--jobs", jobs)
+            for record in records:
+                for varying in ["seconds", "output"]:
+                    del record[varying]
+            outcomes.append(records)
+        self.assertEqual(outcomes[0], outcomes[1])
+        self.assertEqual(outcomes[0], outcomes[2])
+
+    def test_files_that_fail_hold_up_nobody(self):
+        self.boxes("parts", 4)
+        self.write("parts/box00a.stl", b"no mesh at all")
+        self.write("parts/box01a.obj", b"")
+        self.write("parts/box02a.stl", binary_stl(box_triangles(1, 1, 1))[:200])
+        result = self.run_program("slice", "--batch", "parts", "-o", "out", "--format", "cli", "--max-triangles", "99")
+        self.assertEqual(result.code, 7)
+        records = self.records(result)
+        self.assertEqual([r["ok"] for r in records], [True, False, True, False, True, False, True])
+        for record in records:
+            if record["ok"]:
+                self.assertTrue(self.path(record["output"]).exists())
+                continue
+            self.assertIsNone(record["output"])
+            self.assertEqual((record["error"]["kind"], record["error"]["exit_code"]), ("input", 3))
+            single = self.run_program("slice", record["path"], "-o", "x.cli")
+            self.assertEqual(single.err, f"lamella: error: {record['error']['text']}\n")
+            self.assertIn(single.err, result.err)
+        self.assertIn("7 files: 4 sliced, 3 failed (3 input)", result.err)
+        self.assertEqual(len(list(self.path("out").iterdir())), 4)
+
+    def test_limits_are_those_of_each_file(self):
+        self.boxes("parts", 3)
+        self.succeed("make", "sphere", "-o", "parts/box01a.stl")
+        records = self.batch(7, "parts", "-o", "out", "--format", "cli", "--max-triangles", "100")
+        self.assertEqual([r["ok"] for r in records], [True, True, False, True])
+        self.assertEqual(records[2]["error"]["kind"], "limit")
+
+    def test_a_list_in_its_order(self):
+        self.boxes("a", 2)
+        self.boxes("b", 2)
+        listed = ["b/box01.stl", "a/box00.stl", "b/box00.stl"]
+        self.write("list.txt", "# of tonight\nb/box01.stl\r\n\na/box00.stl\nb/box00.stl")
+        expected = ["out/b/box01.svg", "out/a/box00.svg", "out/b/box00.svg"]
+        records = self.batch(0, "list.txt", "-o", "out", "--format", "svg")
+        self.assertEqual([(r["path"], r["output"]) for r in records], list(zip(listed, expected)))
+        records = self.batch(0, "-", "-o", "out", "--format", "svg", stdin="\n".join(listed).encode())
+        self.assertEqual([r["path"] for r in records], listed)
+        self.write("a/#odd\nname.stl", binary_stl(box_triangles(1, 1, 1)))
+        records = self.batch(0, "-", "-o", "out", "--format", "svg", stdin=b"a/#odd\nname.stl\0")
+        self.assertEqual([r["output"] for r in records], ["out/#odd\nname.svg"])
+
+    def test_names_of_results_never_collide(self):
+        self.boxes("a", 1)
+        self.boxes("b", 1)
+        self.succeed("make", "box", "-o", "a/box00.obj")
+        self.succeed("make", "box", "-o", "a/box00.ply")
+        everything = "a/box00.stl\na/box00.obj\na/box00.ply\na/box00.obj\nb/box00.stl\n"
+        records = self.batch(0, "-", "-o", "out", "--format", "cli", stdin=everything.encode())
+        self.assertEqual([r["output"] for r in records], [
+            "out/a/box00.cli", "out/a/box00.obj.cli", "out/a/box00.ply.cli", "out/a/box00.obj-2.cli", "out/b/box00.cli"])
+        records = self.batch(0, "-", "-o", "flat/{name}.cli", stdin=everything.encode())
+        self.assertEqual([r["output"] for r in records], [
+            "flat/box00.cli", "flat/box00.obj.cli", "flat/box00.ply.cli", "flat/box00.obj-2.cli", "flat/box00.stl.cli"])
+        records = self.batch(0, "-", "-o", "o/{folder}-{index}-{name}.svg", stdin=everything.encode())
+        self.assertEqual(records[4]["output"], "o/b-4-box00.svg")
+        # Pictures go into folders: none of them may be the folder of another.
+        self.boxes("c", 1)
+        self.boxes("c/box00", 1)
+        records = self.batch(0, "c", "-o", "pictures", "--format", "svg-layers")
+        self.assertEqual([r["output"] for r in records], ["pictures/box00.stl", "pictures/box00/box00"])
+        self.fail_with(2, "would lie within the result p/box00", "slice", "--batch", "a", "-o", "p", "--format", "svg-layers",
+                       "--stats", "p/{name}/{name}.json")
+
+    def test_results_in_the_folder_itself_are_no_inputs_of_the_next_run(self):
+        self.boxes("parts", 2)
+        for _ in range(2):
+            records = self.batch(0, "parts", "-o", "parts/layers", "--format", "3mf")
+            self.assertEqual(len(records), 2)
+        self.fail_with(2, r"would overwrite the input parts/layers/box00\.3mf", "slice", "--batch", "parts", "-o", "parts",
+                       "--format", "3mf")
+
+    def test_options_come_from_a_configuration_file_as_well(self):
+        self.boxes("parts", 1)
+        self.write("machine.toml", "layer-height = 0.5\njobs = 2\nformat = \"svg\"\n")
+        self.assertEqual(self.batch(0, "parts", "-o", "out", "--config", "machine.toml")[0]["layers"], 6)
+
+    def test_what_makes_no_sense(self):
+        self.boxes("parts", 1)
+        self.fail_with(2, "where should the result go", "slice", "--batch", "parts")
+        self.fail_with(2, "unknown|extension|format", "slice", "--batch", "parts", "-o", "out")
+        self.fail_with(2, "contradict", "slice", "--batch", "parts", "parts/box00.stl", "-o", "out", "--format", "cli")
+        self.fail_with(2, "contradict", "slice", "--batch", "parts", "-o", "-", "--format", "cli")
+        self.fail_with(2, r"\{nam\}.*none of", "slice", "--batch", "parts", "-o", "out/{nam}.cli")
+        self.fail_with(2, "contradict", "slice", "parts/box00.stl", "-o", "x.cli", "--jobs", "2")
+        self.fail_with(2, "too many", "slice", "--batch", "parts", "-o", "o{name}.cli", "--jobs", "99999")
+        self.fail_with(3, "there is no|No such", "slice", "--batch", "nowhere", "-o", "out", "--format", "cli")
+        self.fail_with(3, "names no file", "slice", "--batch", "-", "-o", "out", "--format", "cli", stdin=b"# none\n")
+        self.path("empty").mkdir()
+        self.fail_with(3, "no file in this folder", "slice", "--batch", "empty", "-o", "out", "--format", "cli")
+        self.fail_with(6, "cannot be made", "slice", "--batch", "parts", "-o", "parts/box00.stl", "--format", "cli")
+
+    def test_a_large_file_gets_more_threads(self):
+        self.path("parts").mkdir()
+        self.succeed("make", "sphere", "--detail", "9", "-o", "parts/large.stl")
+        self.assertGreater(self.path("parts/large.stl").stat().st_size, 48_000_000)
+        self.write("parts/small.stl", binary_stl(box_triangles(1, 1, 1)))
+        records = self.batch(0, "parts", "--jobs", "3", "--stats", "out", "--layer-height", "0.5")
+        self.assertEqual([r["threads"] for r in records], [3, 1])
+        records = self.batch(0, "parts", "--jobs", "3", "--threads", "2", "--stats", "out", "--layer-height", "0.5")
+        self.assertEqual([r["threads"] for r in records], [2, 1])
+
+
+class Workers(ProgramTest):
+    """What happens to the processes that do the work."""
+
+    def start(self, files, *arguments):
+        """A batch of small boxes and of pipes that nobody writes to: whoever reads them is stuck."""
+        self.path("in").mkdir()
+        for name in files:
+            if name.startswith("pipe"):
+                os.mkfifo(self.path(f"in/{name}.stl"))
+            else:
+                self.write(f"in/{name}.stl", binary_stl(box_triangles(1, 1, 1)))
+        self.write("list", "".join(f"in/{name}.stl\n" for name in files))
+        process = subprocess.Popen([PROGRAM, "slice", "--batch", "list", "-o", "out", "--format", "cli", *arguments],
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        return process
+
+    @staticmethod
+    def workers(process):
+        return [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+    @staticmethod
+    def holds_open(pid, path):
+        try:
+            return any(os.readlink(link) == str(path) for link in Path(f"/proc/{pid}/fd").iterdir())
+        except FileNotFoundError:
+            return False
+
+    def wait_for_reader(self, process, name):
+        """The worker that reads the pipe, once it does."""
+        path = self.path(f"in/{name}.stl").resolve()
+        while process.poll() is None:
+            for pid in self.workers(process):
+                if self.holds_open(pid, path):
+                    return pid
+            time.sleep(0.01)
+        self.fail(process.stderr.read())
+
+    def end_of(self, process):
+        out, err = process.communicate(timeout=120)
+        return [json.loads(line) for line in out.splitlines()], err.decode()
+
+    def test_one_that_dies_takes_nobody_along(self):
+        for number, kind, code in [(signal.SIGSEGV, "crash", 1), (signal.SIGKILL, "limit", 5),
+                                   (signal.SIGBUS, "input", 3)]:
+            with self.subTest(number):
+                process = self.start(["box1", "pipe", "box2", "box3"], "--jobs", "2")
+                os.kill(self.wait_for_reader(process, "pipe"), number)
+                records, err = self.end_of(process)
+                self.assertEqual(process.returncode, 7)
+                self.assertEqual([r["ok"] for r in records], [True, False, True, True])
+                self.assertEqual((records[1]["error"]["kind"], records[1]["error"]["exit_code"]), (kind, code))
+                self.assertIn("in/pipe.stl: ", records[1]["error"]["text"])
+                self.assertIn(f"1 failed (1 {kind})", err)
+                self.assertEqual(sorted(p.name for p in self.path("out").iterdir()), ["box1.cli", "box2.cli", "box3.cli"])
+            self.doCleanups()
+            self.setUp()
+
+    def test_one_that_is_stuck_is_ended_by_its_timeout(self):
+        process = self.start(["box1", "pipe1", "box2", "pipe2", "box3"], "--jobs", "1", "--timeout", "0.3")
+        records, _ = self.end_of(process)
+        self.assertEqual(process.returncode, 7)
+        self.assertEqual([r["ok"] for r in records], [True, False, True, False, True])
+        for record in [records[1], records[3]]:
+            self.assertEqual(record["error"]["kind"], "limit")
+            self.assertIn("--timeout", record["error"]["text"])
+
+    def test_a_batch_that_is_stopped_leaves_neither_files_nor_processes(self):
+        for number in [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]:
+            with self.subTest(number):
+                process = self.start(["box1", "pipe1", "pipe2", "box2"], "--jobs", "2")
+                workers = [self.wait_for_reader(process, name) for name in ["pipe1", "pipe2"]]
+                process.send_signal(number)
+                records, err = self.end_of(process)
+                self.assertEqual(process.returncode, 130)
+                self.assertEqual([r["path"] for r in records], ["in/box1.stl"])
+                self.assertIn("cancelled", err)
+                self.assertEqual([p.name for p in self.path("out").iterdir()], ["box1.cli"])
+                self.assert_gone(workers)
+            self.doCleanups()
+            self.setUp()
+
+    def test_workers_end_with_a_program_that_is_killed(self):
+        process = self.start(["pipe1", "pipe2"], "--jobs", "2")
+        workers = [self.wait_for_reader(process, name) for name in ["pipe1", "pipe2"]]
+        process.kill()
+        process.communicate()
+        self.assert_gone(workers)
+
+    def assert_gone(self, workers):
+        end = time.monotonic() + 60
+        while any(Path(f"/proc/{pid}/fd").exists() and self.is_alive(pid) for pid in workers):
+            self.assertLess(time.monotonic(), end, "a worker lives on")
+            time.sleep(0.02)
+
+    @staticmethod
+    def is_alive(pid):
+        try:
+            return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+        except (FileNotFoundError, ProcessLookupError):
+            return False
+
+    def test_nobody_reads_the_results(self):
+        process = self.start(["box%d" % i for i in range(50)])
+        process.stdout.close()
+        self.assertEqual(process.wait(timeout=60), 6)
+        self.assertIn(b"standard output", process.stderr.read())
+        process.stderr.close()
+
+
+if __name__ == "__main__":
+    main()

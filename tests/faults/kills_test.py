@@ -1,0 +1,111 @@
+"""Programs that are killed at any moment, and programs that write to the same place: the result is always a whole one."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "app"))
+from program import PROGRAM, ProgramTest, binary_stl, box_triangles  # noqa: E402
+
+AT_LENGTH = "LAMELLA_FAULTS_AT_LENGTH" in os.environ
+FORMATS = ["cli", "svg", "3mf", "npz", "svg-layers", "png", "sl1"]
+
+
+def content(path):
+    if path.is_dir():
+        return {p.name: p.read_bytes() for p in path.iterdir()}
+    return path.read_bytes() if path.exists() else None
+
+
+class Kills(ProgramTest):
+    def start(self, *arguments):
+        process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_at_random_moments(self):
+        self.succeed("make", "torus")
+        seed = random.randrange(10**6)
+        chance = random.Random(seed)
+        counts = {"before": 0, "after": 0}
+        for name in FORMATS:
+            command = ["slice", "torus.stl", "-o", "out", "--format", name, "--layer-height", "0.05"]
+            start = time.monotonic()
+            self.succeed(*command)
+            took = time.monotonic() - start
+            new = content(self.path("out"))
+            self.succeed(*command, "--translate", "1,2,0")
+            old = content(self.path("out"))
+            self.assertNotEqual(old, new)
+            for _ in range(100 if AT_LENGTH else 8):
+                process = self.start(*command)
+                time.sleep(chance.uniform(0, took))
+                process.send_signal(signal.SIGKILL)
+                process.wait()
+                now = content(self.path("out"))
+                self.assertIn(now, [old, new], f"{name}, seed {seed}")
+                counts["after" if now == new else "before"] += 1
+                if now == new:
+                    self.succeed(*command, "--translate", "1,2,0")
+            self.succeed(*command)
+            self.assertEqual(content(self.path("out")), new)
+            self.path("out").rename(self.path(f"{name}-done"))
+        print(f"\nkilled before the result was there: {counts['before']}, after: {counts['after']}", file=sys.stderr)
+
+    def test_several_runs_on_one_output(self):
+        self.succeed("make", "torus")
+        for name in FORMATS:
+            with self.subTest(name):
+                wholes = []
+                commands = [["slice", "torus.stl", "-o", "out", "--format", name, "--layer-height", "0.2",
+                             f"--translate={i},0,0"] for i in range(4)]
+                for command in commands:
+                    self.succeed(*command)
+                    wholes.append(content(self.path("out")))
+                for _ in range(20 if AT_LENGTH else 3):
+                    processes = [self.start(*command) for command in commands]
+                    while any(p.poll() is None for p in processes):
+                        pass
+                    self.assertEqual([p.returncode for p in processes], [0] * 4,
+                                     [p.stderr.read() for p in processes])
+                    self.assertIn(content(self.path("out")), wholes)
+                    self.assertEqual(self.listing_of_temporaries(), [])
+                self.path("out").rename(self.path(f"{name}-done"))
+
+    def listing_of_temporaries(self):
+        return [p for p in self.listing() if ".tmp" in p or ".part" in p]
+
+    def test_a_batch_is_done_again_after_a_kill(self):
+        self.path("in").mkdir()
+        for i in range(300):
+            self.write(f"in/{i:03}.stl", binary_stl(box_triangles(1 + i, 2, 3)))
+        command = ["slice", "--batch", "in", "-o", "out", "--format", "cli"]
+        self.succeed(*command)
+        expected = {p.name: p.read_bytes() for p in self.path("out").iterdir()}
+        for _ in range(20 if AT_LENGTH else 3):
+            for path in self.path("out").iterdir():
+                path.unlink()
+            process = self.start(*command)
+            while process.poll() is None and len(list(self.path("out").iterdir())) < 50:
+                pass
+            process.kill()
+            process.wait()
+            # Workers end by themselves, and finish nothing after that.
+            before = None
+            while before != (before := sorted(p.name for p in self.path("out").iterdir())):
+                time.sleep(0.2)
+            for path in self.path("out").iterdir():
+                self.assertEqual(path.read_bytes(), expected[path.name], path)
+            self.succeed(*command)
+            self.assertEqual({p.name: p.read_bytes() for p in self.path("out").iterdir()}, expected)
+
+
+if __name__ == "__main__":
+    unittest.main()

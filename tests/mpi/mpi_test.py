@@ -1,0 +1,151 @@
+"""lamella-mpi: the same bytes and statistics as by one process, and no output when a rank dies."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "app"))
+from program import ProgramTest, Result, binary_stl, box_triangles, open_box  # noqa: E402
+
+MPI_PROGRAM = os.environ.get("LAMELLA_MPI_PROGRAM", "")
+MPIRUN = os.environ.get("LAMELLA_MPIRUN", "mpirun")
+RANKS_TEST = os.environ.get("LAMELLA_MPI_RANKS_TEST", "")
+RANKS = [1, 2, 3, 5]
+
+
+@unittest.skipUnless(MPI_PROGRAM and shutil.which(MPIRUN), "run by ctest, where there is an MPI")
+class MpiTest(ProgramTest):
+    def command(self, ranks, *arguments):
+        return [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), *map(str, arguments)]
+
+    def by(self, ranks, *arguments):
+        # Tests may run beside each other, and processes of MPI wait busily unless told not to.
+        environment = dict(os.environ, OMPI_MCA_mpi_yield_when_idle="1")
+        return Result(subprocess.run(self.command(ranks, MPI_PROGRAM, *arguments), cwd=self.folder, capture_output=True,
+                                     timeout=240, env=environment))
+
+    def all_of(self, path):
+        path = self.path(path)
+        return {p.name: p.read_bytes() for p in path.iterdir()} if path.is_dir() else path.read_bytes()
+
+    @staticmethod
+    def figures(text):
+        stats = json.loads(text)
+        for varying in ["seconds", "peak_rss_bytes", "threads", "ranks"]:
+            stats.pop(varying, None)
+        return stats
+
+
+class Results(MpiTest):
+    def test_the_same_bytes_and_statistics(self):
+        self.succeed("make", "rook")
+        for options in [["--format", "cli"], ["--format", "cli", "--short", "--units-mm", "0.01"], ["--format", "svg"],
+                        ["--format", "json"], ["--format", "npz"], ["--format", "png"]]:
+            common = ["slice", "rook.stl", *options, "--layer-height", "0.7", "-o", "out", "--stats", "stats.json"]
+            if "--short" in options:
+                common += ["--translate", "50,50,50"]
+            self.succeed(*common)
+            expected, figures = self.all_of("out"), self.figures(self.bytes_of("stats.json"))
+            for ranks in RANKS if options == ["--format", "cli"] else [3]:
+                with self.subTest(options, ranks=ranks):
+                    self.path("stats.json").unlink()
+                    result = self.by(ranks, *common)
+                    self.assertEqual(result.code, 0, result.err)
+                    self.assertEqual(self.all_of("out"), expected)
+                    self.assertEqual(self.figures(self.bytes_of("stats.json")), figures)
+                    self.assertEqual(result.text.count("written  out"), 1)
+            path = self.path("out")
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+
+    def test_what_cannot_be_shared_out_is_read_by_all(self):
+        self.succeed("make", "torus", "-o", "torus.obj")
+        self.succeed("slice", "torus.obj", "-o", "one.cli", "--adaptive", "0.1:0.4")
+        result = self.by(3, "slice", "torus.obj", "-o", "many.cli", "--adaptive", "0.1:0.4")
+        self.assertEqual(result.code, 0, result.err)
+        self.assertEqual(self.bytes_of("many.cli"), self.bytes_of("one.cli"))
+
+    def test_standard_output(self):
+        self.box()
+        one = self.succeed("slice", "box.stl", "-o", "-", "--format", "svg")
+        many = self.by(3, "slice", "box.stl", "-o", "-", "--format", "svg")
+        self.assertEqual(many.code, 0, many.err)
+        self.assertEqual(many.out, one.out)
+
+    def test_messages_of_any_length(self):
+        for ranks in RANKS:
+            result = subprocess.run(self.command(ranks, RANKS_TEST), capture_output=True, timeout=120)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+
+class Failures(MpiTest):
+    def fail_together(self, code, pattern, *arguments):
+        before = self.listing()
+        result = self.by(3, *arguments)
+        self.assertEqual(result.code, code, result.err)
+        errors = [line for line in result.err.splitlines() if line.startswith("lamella: error: ")]
+        self.assertEqual(len(errors), 1, result.err)
+        self.assertRegex(errors[0], pattern)
+        self.assertEqual(self.listing(), before)
+
+    def test_errors_are_told_once(self):
+        self.box()
+        self.write("open.stl", binary_stl(open_box(1, 2, 3)))
+        self.write("noise.stl", b"no mesh")
+        self.fail_together(2, "--layer-hight", "slice", "box.stl", "-o", "out.cli", "--layer-hight", "1")
+        self.fail_together(2, "standard input", "slice", "-", "-o", "out.cli")
+        self.fail_together(2, "--batch is for lamella", "slice", "--batch", ".", "-o", "out", "--format", "cli")
+        self.fail_together(3, "no such file", "slice", "missing.stl", "-o", "out.cli")
+        self.fail_together(3, "noise.stl", "slice", "noise.stl", "-o", "out.cli")
+        self.fail_together(4, "open.stl", "slice", "open.stl", "-o", "out.cli", "--strict")
+        self.fail_together(5, "more than the 100 that it may", "slice", "box.stl", "-o", "out.cli", "--max-output", "100")
+        self.fail_together(6, "does not exist", "slice", "box.stl", "-o", "nowhere/out.cli")
+
+    def ranks_of(self, process):
+        """The processes of the program: whose command it is."""
+        found = []
+        for entry in Path("/proc").iterdir():
+            if not entry.name.isdigit():
+                continue
+            try:
+                words = (entry / "cmdline").read_bytes().split(b"\0")
+                if words[0].decode() == MPI_PROGRAM and Path(os.readlink(entry / "cwd")) == self.folder.resolve():
+                    found.append(int(entry.name))
+            except (FileNotFoundError, ProcessLookupError, PermissionError):
+                continue
+        return sorted(found)
+
+    def test_a_rank_that_dies_ends_the_job_without_an_output(self):
+        self.write("part.stl", binary_stl(box_triangles(10, 20, 30)))
+        self.write("out.cli", "old")
+        for victim in [2, 0]:
+            with self.subTest(victim):
+                # Millions of layers: minutes of work, had it been left alone.
+                process = subprocess.Popen(self.command(3, MPI_PROGRAM, "slice", "part.stl", "-o", "out.cli",
+                                                        "--layer-height", "0.000003"), cwd=self.folder,
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+                self.addCleanup(process.stderr.close)
+                self.addCleanup(process.kill)
+                # The temporary file is there: all ranks are slicing.
+                while not any(name.endswith(".tmp") for name in self.listing()):
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
+                ranks = self.ranks_of(process)
+                self.assertEqual(len(ranks), 3)
+                os.kill(ranks[victim], signal.SIGKILL)
+                self.assertNotEqual(process.wait(timeout=60), 0)
+                self.assertIn(b"signal 9", process.stderr.read())
+                self.assertEqual(self.bytes_of("out.cli"), b"old")
+                self.assertEqual(self.ranks_of(process), [])
+                # Nobody but rank 0 knows of the temporary file.
+                left = [name for name in self.listing() if name.endswith(".tmp")]
+                self.assertEqual(len(left), 1 if victim == 0 else 0, left)
+
+
+if __name__ == "__main__":
+    unittest.main()
