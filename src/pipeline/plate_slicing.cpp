@@ -1,5 +1,7 @@
 #include "pipeline/plate_slicing.hpp"
 
+#include "lamella/slicing/slabs.hpp"
+
 #include "core/executor.hpp"
 
 #include <algorithm>
@@ -15,9 +17,9 @@ namespace {
 /// Progress of several runs of one kind as that of one.
 class JointProgress {
   public:
-    JointProgress(const Plate& plate, const Plan& plan) {
+    JointProgress(const Plate& plate, const Plan& plan, std::size_t windows) {
         for (const PlateShape& shape : plate.shapes)
-            triangles_ += shape.mesh.size();
+            triangles_ += shape.mesh.size() * windows;
         planes_ = plate.shapes.size() * plan.layers.size();
     }
 
@@ -85,21 +87,37 @@ Layer moved(const Layer& layer, double dx, double dy) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
-                 SliceReport& report, const Engine& with) {
-    report = {};
-    report.layers = plan.layers.size();
-    JointProgress progress(plate, plan);
-    std::vector<LayerStack> stacks;
-    for (const PlateShape& shape : plate.shapes) {
-        SliceReport ours;
-        stacks.push_back(slice(shape.mesh, plan, progress.next(execution), &ours, with));
-        add(report, ours);
+/// Runs of planes on which all shapes together have no more points than that, where a single plane has not.
+/// One run where they need not be counted to know.
+std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint64_t most_points,
+                                const Execution& execution) {
+    const auto planes = static_cast<std::uint32_t>(plan.layers.size());
+    std::uint64_t triangles = 0;
+    for (const PlateShape& shape : plate.shapes)
+        triangles += shape.mesh.size();
+    if (triangles <= most_points / planes)
+        return {{0, planes}};
+    PlaneCounts counts(planes);
+    for (const PlateShape& shape : plate.shapes)
+        counts.add(count_planes(shape.mesh, plan, execution));
+    const SlabSurvey survey(counts);
+    std::vector<PlaneRange> result{{0, 0}};
+    std::uint64_t points = 0;
+    for (std::uint32_t p = 0; p < planes; ++p) {
+        points += survey.points(p);
+        if (points > most_points && result.back().size() > 0) {
+            result.push_back({p, p});
+            points = survey.points(p);
+        }
+        result.back().end = p + 1;
     }
-    Executor executor(execution);
-    // Formatted in parallel, written in order: so many planes at a time that all workers have some.
-    const std::size_t planes = plan.layers.size();
-    const std::size_t at_once = std::size_t{4} * executor.workers();
+    return result;
+}
+
+/// The layers of all parts on a run of planes, formatted in parallel, written in order. Empties the stacks.
+void hand_on(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>& stacks, Executor& executor) {
+    const std::size_t planes = stacks.front().size();
+    const std::size_t at_once = std::size_t{4} * executor.workers(); // so that all workers have some
     std::vector<std::function<void()>> actions(at_once);
     for (std::size_t first = 0; first < planes; first += at_once) {
         const std::size_t count = std::min(at_once, planes - first);
@@ -119,12 +137,35 @@ void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, co
     }
 }
 
+void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
+                 SliceReport& report, const Engine& with, std::uint64_t points_in_flight) {
+    report = {};
+    report.layers = plan.layers.size();
+    // Each window takes a look at all triangles: they are few, and large. Engines that weld would do so anew.
+    constexpr std::uint64_t share = 4;
+    const auto all = static_cast<std::uint32_t>(plan.layers.size());
+    const std::vector<PlaneRange> runs = with.welds || points_in_flight == 0
+                                             ? std::vector<PlaneRange>{{0, all}}
+                                             : windows(plate, plan, share * points_in_flight, execution);
+    JointProgress progress(plate, plan, runs.size());
+    Executor executor(execution);
+    for (const PlaneRange& run : runs) {
+        std::vector<LayerStack> stacks;
+        for (const PlateShape& shape : plate.shapes) {
+            SliceReport ours;
+            stacks.push_back(slice(shape.mesh, part_of(plan, run), progress.next(execution), &ours, with));
+            add(report, ours);
+        }
+        hand_on(sink, plate, stacks, executor);
+    }
+}
+
 } // namespace
 
 void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
                     SliceReport& report, const Engine& with, std::uint64_t points_in_flight) {
     if (plate.parts.size() > 1) {
-        slice_parts(sink, plate, plan, execution, report, with);
+        slice_parts(sink, plate, plan, execution, report, with, points_in_flight);
         return;
     }
     const LayerSink single = [&](Layer&& layer) {

@@ -103,6 +103,17 @@ class Memory(ProgramTest):
         self.check("lattice.stl", "--copies", 2, "sphere.stl", "--translate", "0,0,3", "--layer-height", "0.5",
                    threads=[1, 2])
 
+    def test_a_mesh_that_fits_with_layers_that_do_not(self):
+        self.succeed("make", "sheet", "--holes", 25, "-o", "sheet.stl")
+        plate = ["sheet.stl", "--copies", 3, "--layer-height", 0.005]
+        whole = self.slice(*plate)
+        windows = self.slice(*plate, "--max-memory", "110M", "--threads", 2)
+        self.assertNotIn("slabs", list(windows))
+        self.assertEqual(windows["layers"], whole["layers"])
+        self.assertEqual(windows["parts"], whole["parts"])
+        self.assertGreater(16 * whole["parts"][0]["points"], 2 * 110e6)
+        self.assertLess(windows["peak_rss_bytes"], 1.1 * 110e6)
+
     def test_layers_where_nothing_is(self):
         self.succeed("make", "sphere", "--detail", 7, "-o", "low.stl")
         self.succeed("make", "sphere", "--detail", 7, "--translate", "0,0,40", "-o", "high.stl")
@@ -186,7 +197,7 @@ class Memory(ProgramTest):
     def test_open_contours_are_counted_as_ever(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10) * 30000))
         whole = self.slice("open.stl", "--layer-height", "2")
-        slabs = self.slice("open.stl", "--layer-height", "2", "--max-memory", "110M", "--threads", 2)
+        slabs = self.slice("open.stl", "--layer-height", "2", "--max-memory", "160M", "--threads", 2)
         self.assertIn("slabs", slabs)
         self.assertEqual(whole["layers"], slabs["layers"])
 
