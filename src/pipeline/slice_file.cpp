@@ -303,6 +303,14 @@ LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
 
 } // namespace
 
+Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
+    check_heights(plate);
+    Plan listed;
+    if (!job.z.empty())
+        listed = plan_listed(job.z, job.layers.slice_at);
+    return plan_of(job, plate, std::move(listed), execution);
+}
+
 FileResult slice_file(const FileJob& job, const Execution& execution) {
     const Stopwatch total;
     FileResult result;
