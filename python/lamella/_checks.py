@@ -50,6 +50,8 @@ def verify(
     layers: a path or a Stack.
     mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
     at: where in their thickness the layers were cut, if not where they say: "bottom", "middle" or "top".
+    threads: 0 takes one for each processor.
+    progress: called as progress(stage, done, total) now and then, from the thread that called this.
 
     Raises InputError.
     """

@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 from typing import Iterator, List, Optional, Sequence, Tuple, Union
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _lamella
 from ._errors import InputError, UsageError
 from ._lamella import Layer, LayerStream, Mesh, Stack
@@ -18,7 +21,7 @@ Layers = Union[Stack, LayerStream, Sequence[Stack]]
 
 def read_layers(path: PathLike, *, threads: int = 0, progress: Optional[Progress] = None) -> Stack:
     stack, warnings = _lamella.read_layers(os.fsencode(path), thread_count(threads), progress)
-    warn(warnings)
+    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
     return stack
 
 
@@ -143,7 +146,7 @@ def _length(what: Layers) -> int:
     return len(what) if isinstance(what, Stack) else len(what[0])
 
 
-def _planes(what: Layers) -> Tuple[List[Tuple[str, _lamella.Bounds]], Iterator[List[Layer]], float]:
+def _planes(what: Layers) -> Tuple[List[Tuple[str, npt.NDArray[np.float64]]], Iterator[List[Layer]], float]:
     """The label and the bounds of each part, the layers plane by plane, and where the first one begins."""
     if isinstance(what, LayerStream):
         return [(what.label, what.bounds)], ([layer] for layer in what), what._bottom

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from ._meshes import Progress
 
-Bounds = npt.NDArray[np.float64]
+_Bounds = npt.NDArray[np.float64]
 
 __version__: str
 
@@ -18,7 +18,7 @@ class Mesh:
     @property
     def faces(self) -> npt.NDArray[np.uint32]: ...
     @property
-    def bounds(self) -> Bounds: ...
+    def bounds(self) -> _Bounds: ...
     @property
     def volume(self) -> float: ...
     @property
@@ -114,7 +114,7 @@ class Stack:
     @property
     def label(self) -> str: ...
     @property
-    def bounds(self) -> Bounds: ...
+    def bounds(self) -> _Bounds: ...
     @property
     def matrix(self) -> npt.NDArray[np.float64]: ...
     @property
@@ -137,7 +137,7 @@ class LayerStream:
     @property
     def z(self) -> npt.NDArray[np.float64]: ...
     @property
-    def bounds(self) -> Bounds: ...
+    def bounds(self) -> _Bounds: ...
     @property
     def label(self) -> str: ...
     @property
@@ -189,7 +189,7 @@ def read_layers(path: bytes, threads: int, progress: Optional[Progress], /) -> T
 def open_writer(
     path: bytes,
     format: str,
-    parts: Sequence[Tuple[str, Bounds]],
+    parts: Sequence[Tuple[str, _Bounds]],
     layers: int,
     bottom: float,
     units_mm: Optional[float],

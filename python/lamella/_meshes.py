@@ -93,7 +93,7 @@ def read_mesh(
     mesh = _lamella.read_mesh(
         os.fsencode(path), label, unit_mm, strict, max_triangles, max_memory, thread_count(threads), progress
     )
-    warn(mesh.warnings)
+    warn(f"{mesh.path}: {warning}" for warning in mesh.warnings)
     return mesh
 
 
@@ -132,9 +132,10 @@ def as_mesh(part: MeshLike, **reading: Any) -> Mesh:
         return read_mesh(part, **reading)
     if isinstance(part, np.ndarray):
         return _mesh_of_triangles(part)
-    if isinstance(part, (tuple, list)) and len(part) == 2:
-        return mesh_of_arrays(*part)
-    if hasattr(part, "vertices") and hasattr(part, "faces"):
+    if isinstance(part, (tuple, list)):
+        if len(part) == 2:
+            return mesh_of_arrays(*part)
+    elif hasattr(part, "vertices") and hasattr(part, "faces"):
         return mesh_of_arrays(part.vertices, part.faces)
     raise TypeError(
         "a mesh is a path, a lamella.Mesh, a pair of arrays (vertices, faces), or something with .vertices and "

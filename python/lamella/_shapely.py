@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 def multi_polygon(layer: Layer) -> Any:
     try:
-        from shapely.geometry import MultiPolygon, Polygon
+        from shapely.geometry import MultiPolygon, Polygon  # type: ignore[import]
     except ImportError as error:
         raise ImportError("to_shapely needs shapely: on Debian, apt install python3-shapely") from error
     return MultiPolygon([

@@ -299,6 +299,11 @@ StackPointer unpickled(const py::tuple& state) {
     return stack;
 }
 
+/// Goes by __getitem__ and the error that ends it.
+py::object each_of(const py::object& sequence) {
+    return py::reinterpret_steal<py::object>(PySeqIter_New(sequence.ptr()));
+}
+
 void bind_layer(py::module_& module) {
     py::class_<SharedLayer, LayerPointer>(
         module, "Layer",
@@ -416,6 +421,7 @@ void bind_layer(py::module_& module) {
             "The layer with points left out, so that no contour moves by more than `tolerance` millimetres.")
         .def("__len__", [](const SharedLayer& self) { return self.get().contours(); })
         .def("__getitem__", &contour_of, py::arg("contour"))
+        .def("__iter__", &each_of)
         .def("__eq__", [](const SharedLayer& self, const SharedLayer& other) { return same(self, other); },
              py::is_operator())
         .def("__hash__", [](const SharedLayer& self) { return self.hash() >> 1; })
@@ -493,6 +499,7 @@ void bind_stack(py::module_& module) {
                  return self.layers[place_in(index, self.layers.size(), "layer")];
              })
         .def("__getitem__", &part_of)
+        .def("__iter__", &each_of)
         .def("__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },
              py::is_operator())
         .def("__repr__", &stack_text)

@@ -139,15 +139,15 @@ def interrupted(code, *arguments):
 
 
 def test_ctrl_c_stops_slicing(bodies):
-    # Far more work than anybody would wait for, had it been left alone.
+    # Hours of work, had it been left alone.
     code = """
 import sys, lamella
 said = []
 def progress(stage, done, total):
-    if stage == "link" and not said:
+    if stage == "weld" and not said:
         said.append(print("ready", flush=True))
 try:
-    lamella.slice(sys.argv[1], 0.0005, engine="conventional", progress=progress)
+    lamella.slice(sys.argv[1], 0.01, engine="conventional", progress=progress)
     print("finished")
 except KeyboardInterrupt:
     print("interrupted")
@@ -226,7 +226,7 @@ def test_errors_of_a_stream_arrive(rook):
         lamella.iter_layers(str(rook) + ".missing")
     with pytest.raises(lamella.UsageError):
         lamella.iter_layers(rook, -1)
-    with pytest.raises(lamella.UsageError, match="there are"):
+    with pytest.raises(lamella.UsageError, match="the engines are: sweep"):
         lamella.iter_layers(rook, engine="zigzag")
 
 
