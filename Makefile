@@ -8,7 +8,7 @@ THREADED := core mesh contour read slicing polygon pipeline
 # Long tests in those rooms of what runs on one thread.
 UNTHREADED := Engines|Shapes|Head|Sole|Crossings
 blank := $(subst ,, )
-SOURCES = $(shell find app bench examples include src tests -name '*.[ch]pp' 2>/dev/null)
+SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
 # A compiler cache is used where there is one.
 ifneq ($(shell command -v ccache),)
@@ -21,9 +21,9 @@ help:  ## this list
 packages:  ## install the Debian packages that a build needs
 	@tools/install_packages.sh tools/packages.txt
 
-build: packages  ## build the program: build/lamella
+build: packages  ## build the program, build/lamella, and the Python package, build/python
 	cmake --preset release
-	cmake --build build --target lamella_app
+	cmake --build build --target lamella_app lamella_python_package
 
 demo: build  ## make, slice and verify two parts; pictures and slice files are left in out/
 	@python3 tools/demo.py build/lamella out
@@ -88,6 +88,11 @@ read-meshes: build packages-rivals  ## compare with other readers of meshes: out
 	cmake --build build-bench --target bench/read_meshes/all
 	python3 -B -m bench.read_meshes $(OPTIONS)
 
+python-bench: build packages-rivals  ## compare with other ways to slice in Python: out/python/ (bench/README.md)
+	cmake --preset bench
+	cmake --build build-bench --target lamella_library_slicer lamella_cgal_slicer
+	python3 -B -m bench.python $(OPTIONS)
+
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
 
@@ -113,4 +118,4 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
-        bench packages-rivals rivals read-meshes paper format format-check lint install clean
+        bench packages-rivals rivals read-meshes python-bench paper format format-check lint install clean

@@ -45,12 +45,13 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
 
 /// The layers of the file, and its warnings.
 std::pair<StackPointer, py::list> read_stack(const std::string& path, unsigned threads,
-                                                             const py::object& progress) {
+                                             const py::object& progress) {
     std::vector<std::string> warnings;
     const StackPointer read = result_of(threads, progress, [&](const Execution& execution) {
         LayerFile file = read_layers(path, execution);
         const bool several = file.parts.size() > 1;
-        StackPointer stack = stack_of(file, several ? std::string() : file.parts.front().label, file.merged());
+        StackPointer stack =
+            stack_of(file, several ? std::string() : file.parts.front().label, file.merged());
         if (several)
             for (LayerPart& part : file.parts)
                 stack->parts.push_back(stack_of(file, part.label, std::move(part.layers)));
@@ -98,11 +99,12 @@ std::optional<AlongXY<T>> along_xy(const std::optional<std::pair<T, T>>& pair) {
 
 using PartNames = std::vector<std::pair<std::string, Bounds>>;
 
-std::unique_ptr<StackWriter> open_writer(
-    const std::string& path, const std::string& format, const PartNames& parts, std::uint64_t layers, double bottom,
-    std::optional<double> units_mm, bool short_form, const std::optional<std::pair<double, double>>& pixel_mm,
-    const std::optional<std::pair<std::uint32_t, std::uint32_t>>& pixels,
-    const std::optional<std::pair<double, double>>& display_mm) {
+std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::string& format,
+                                         const PartNames& parts, std::uint64_t layers, double bottom,
+                                         std::optional<double> units_mm, bool short_form,
+                                         const std::optional<std::pair<double, double>>& pixel_mm,
+                                         const std::optional<std::pair<std::uint32_t, std::uint32_t>>& pixels,
+                                         const std::optional<std::pair<double, double>>& display_mm) {
     LayerFileInfo info{.box = {}, .layers = layers, .bottom = bottom, .parts = {}};
     for (const auto& [label, bounds] : parts) {
         info.parts.push_back({label, box_of(bounds)});
@@ -117,7 +119,8 @@ std::unique_ptr<StackWriter> open_writer(
     return std::make_unique<StackWriter>(path, format, info, options);
 }
 
-void write_mesh(const std::string& path, const std::string& extension, const MeshPointer& mesh, const std::string& name) {
+void write_mesh(const std::string& path, const std::string& extension, const MeshPointer& mesh,
+                const std::string& name) {
     const py::gil_scoped_release released;
     if (extension == ".ply")
         return write_ply(path, mesh->welded({}));
@@ -177,8 +180,8 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
 }
 
 /// same, agree, distance, where
-std::tuple<bool, bool, double, std::pair<double, double>> compared(const SharedLayer& first, const SharedLayer& second,
-                                                                   double tolerance) {
+std::tuple<bool, bool, double, std::pair<double, double>>
+compared(const SharedLayer& first, const SharedLayer& second, double tolerance) {
     const py::gil_scoped_release released;
     const LayerDifference found = compare(first.get(), second.get());
     return {found.same, found.within(tolerance), found.distance_mm, {found.where.x, found.where.y}};

@@ -20,7 +20,9 @@ constexpr std::chrono::milliseconds between_signals{50};
 
 void LayerQueue::put(Layer&& layer, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
-    const auto has_room = [&] { return waiting_.empty() || points_ + layer.points.size() <= most_points; };
+    const auto has_room = [&] {
+        return waiting_.empty() || points_ + layer.points.size() <= most_points;
+    };
     if (!room_.wait(lock, stop, has_room) || stop.stop_requested())
         throw Error(ErrorKind::cancelled, "cancelled");
     points_ += layer.points.size();
@@ -51,7 +53,8 @@ LayerQueue::Found LayerQueue::take(Layer& layer) {
     return Found::end;
 }
 
-LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads, py::object listener)
+LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads,
+                         py::object listener)
     : mesh_(std::move(mesh)), plan_(std::move(plan)), listener_(std::move(listener)) {
     Execution execution{.threads = threads};
     if (!listener_.is_none())

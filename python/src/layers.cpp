@@ -71,7 +71,8 @@ std::string hash_text(const SharedLayer& layer) {
 std::size_t place_in(py::ssize_t index, std::size_t size, const char* what) {
     const auto count = static_cast<py::ssize_t>(size);
     if (index < -count || index >= count)
-        throw py::index_error(what + std::string(" ") + std::to_string(index) + " of " + std::to_string(size));
+        throw py::index_error(what + std::string(" ") + std::to_string(index) + " of " +
+                              std::to_string(size));
     return static_cast<std::size_t>(index < 0 ? index + count : index);
 }
 
@@ -113,13 +114,14 @@ std::vector<std::uint64_t> offsets_of(const Numbers& numbers, std::size_t points
     std::vector<std::uint64_t> offsets(numbers.data(), numbers.data() + numbers.size());
     if (offsets.empty() || offsets.front() != 0 || offsets.back() != points ||
         std::adjacent_find(offsets.begin(), offsets.end(), std::greater_equal<>()) != offsets.end())
-        throw Error(ErrorKind::input, "offsets must begin with 0, ascend, and end with the number of points, " +
-                                          std::to_string(points));
+        throw Error(ErrorKind::input,
+                    "offsets must begin with 0, ascend, and end with the number of points, " +
+                        std::to_string(points));
     return offsets;
 }
 
-LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const Numbers& offsets, std::size_t rings,
-                             const Doubles& hatches) {
+LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const Numbers& offsets,
+                             std::size_t rings, const Doubles& hatches) {
     Layer layer{.index = head.index, .z = head.z, .bottom = head.bottom, .top = head.top};
     layer.points = points_of(points);
     layer.offsets = offsets_of(offsets, layer.points.size());
@@ -131,9 +133,9 @@ LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const
 }
 
 /// Contours in any order.
-LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, std::optional<double> given_bottom,
-                               std::optional<double> given_top, std::uint64_t index,
-                               const std::vector<Doubles>& chains) {
+LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z,
+                               std::optional<double> given_bottom, std::optional<double> given_top,
+                               std::uint64_t index, const std::vector<Doubles>& chains) {
     const double bottom = given_bottom.value_or(z);
     const double top = given_top.value_or(z);
     for (const double height : {z, bottom, top})
@@ -156,8 +158,8 @@ LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, std:
 bool same(const SharedLayer& first, const SharedLayer& second) {
     const Layer& a = first.get();
     const Layer& b = second.get();
-    return a.index == b.index && a.z == b.z && a.bottom == b.bottom && a.top == b.top && same_contours(a, b) &&
-           std::ranges::equal(a.hatches, b.hatches);
+    return a.index == b.index && a.z == b.z && a.bottom == b.bottom && a.top == b.top &&
+           same_contours(a, b) && std::ranges::equal(a.hatches, b.hatches);
 }
 
 std::string layer_text(const SharedLayer& layer) {
@@ -187,8 +189,8 @@ LayerPointer layer_of_state(const py::tuple& state) {
         throw Error(ErrorKind::input, "this is no pickled layer");
     const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
                          state[3].cast<double>()};
-    return layer_of_arrays(head, state[4].cast<Doubles>(), state[5].cast<Numbers>(), state[6].cast<std::size_t>(),
-                           state[7].cast<Doubles>());
+    return layer_of_arrays(head, state[4].cast<Doubles>(), state[5].cast<Numbers>(),
+                           state[6].cast<std::size_t>(), state[7].cast<Doubles>());
 }
 
 using StackPointer = std::shared_ptr<Stack>;
@@ -251,12 +253,13 @@ std::string stack_text(const Stack& stack) {
     std::string text = "<lamella.Stack of " + std::to_string(stack.layers.size()) + " layers";
     if (!stack.layers.empty()) {
         std::array<char, 80> range{};
-        std::snprintf(range.data(), range.size(), " from z = %.6g to %.6g mm", stack.layers.front()->get().bottom,
-                      stack.layers.back()->get().top);
+        std::snprintf(range.data(), range.size(), " from z = %.6g to %.6g mm",
+                      stack.layers.front()->get().bottom, stack.layers.back()->get().top);
         text += range.data();
     }
-    return text + ": " + std::to_string(sum_of(stack, [](const Layer& l) { return l.contours(); })) + " contours, " +
-           std::to_string(sum_of(stack, [](const Layer& l) { return l.points.size(); })) + " points>";
+    return text + ": " + std::to_string(sum_of(stack, [](const Layer& l) { return l.contours(); })) +
+           " contours, " + std::to_string(sum_of(stack, [](const Layer& l) { return l.points.size(); })) +
+           " points>";
 }
 
 bool same_stacks(const Stack& a, const Stack& b) {
@@ -268,8 +271,8 @@ bool same_stacks(const Stack& a, const Stack& b) {
 void require_ascending(const std::vector<LayerPointer>& layers) {
     for (std::size_t i = 0; i + 1 < layers.size(); ++i)
         if (!(layers[i]->get().z < layers[i + 1]->get().z))
-            throw Error(ErrorKind::usage, "layers of a stack must ascend in z: number " + std::to_string(i + 1) +
-                                              " is not above the one before it");
+            throw Error(ErrorKind::usage, "layers of a stack must ascend in z: number " +
+                                              std::to_string(i + 1) + " is not above the one before it");
 }
 
 StackPointer stack_of(std::vector<LayerPointer> layers, const std::string& label) {
@@ -282,8 +285,8 @@ StackPointer stack_of(std::vector<LayerPointer> layers, const std::string& label
 }
 
 py::tuple pickled(const Stack& stack) {
-    return py::make_tuple(stack.layers, stack.label, bounds_of(stack.box), matrix_of(stack.matrix), py::bytes(stack.path),
-                          stack.format, stack.resolution_mm, stack.parts);
+    return py::make_tuple(stack.layers, stack.label, bounds_of(stack.box), matrix_of(stack.matrix),
+                          py::bytes(stack.path), stack.format, stack.resolution_mm, stack.parts);
 }
 
 StackPointer unpickled(const py::tuple& state) {
@@ -307,11 +310,14 @@ py::object each_of(const py::object& sequence) {
 void bind_layer(py::module_& module) {
     py::class_<SharedLayer, LayerPointer>(
         module, "Layer",
-        "What one plane yields: closed rings, and open chains where the mesh has defects. It never changes.\n\n"
-        "Contours lie one after the other in `points`; contour i is points[offsets[i]:offsets[i + 1]], which is\n"
+        "What one plane yields: closed rings, and open chains where the mesh has defects. It never "
+        "changes.\n\n"
+        "Contours lie one after the other in `points`; contour i is points[offsets[i]:offsets[i + 1]], which "
+        "is\n"
         "what layer[i] gives. Rings come first. Material lies to the left of a contour: outer rings run\n"
         "counter-clockwise, holes clockwise. A ring does not repeat its first point at its end.\n\n"
-        "Slicing and reading make layers. Layer(rings, z, bottom=z, top=z, index=0, chains=()) makes one of arrays\n"
+        "Slicing and reading make layers. Layer(rings, z, bottom=z, top=z, index=0, chains=()) makes one of "
+        "arrays\n"
         "(n, 2) in millimetres, in any order.")
         .def(py::init(&layer_of_contours), py::arg("rings"), py::arg("z"), py::arg("bottom") = py::none(),
              py::arg("top") = py::none(), py::arg("index") = 0, py::arg("chains") = std::vector<Doubles>())
@@ -357,10 +363,12 @@ void bind_layer(py::module_& module) {
                 }
                 return view(parents->data(), {static_cast<py::ssize_t>(parents->size())}, self);
             },
-            "The number of the innermost ring around contour i, -1 for an outermost one and for an open chain:\n"
+            "The number of the innermost ring around contour i, -1 for an outermost one and for an open "
+            "chain:\n"
             "(contours,) int64, read-only.")
         .def_property_readonly(
-            "rings", [](const SharedLayer& self) { return self.get().rings; }, "How many contours are closed.")
+            "rings", [](const SharedLayer& self) { return self.get().rings; },
+            "How many contours are closed.")
         .def_property_readonly(
             "open_chains", [](const SharedLayer& self) { return self.get().open_chains(); },
             "How many contours are not.")
@@ -370,10 +378,10 @@ void bind_layer(py::module_& module) {
         .def_property_readonly(
             "perimeter", [](const SharedLayer& self) { return measure_of(self).perimeter_mm; },
             "The length of all contours in millimetres.")
-        .def_property_readonly(
-            "hash", &hash_text,
-            "A hash of the contours, 16 hexadecimal digits: the same for the same contours on every machine.\n"
-            "The program's statistics have the same.")
+        .def_property_readonly("hash", &hash_text,
+                               "A hash of the contours, 16 hexadecimal digits: the same for the same "
+                               "contours on every machine.\n"
+                               "The program's statistics have the same.")
         .def_property_readonly(
             "hatches",
             [](const py::object& self) {
@@ -383,15 +391,17 @@ void bind_layer(py::module_& module) {
             },
             "Fill lines that a slice file held beside the contours, from point to point: (n, 2, 2) float64,\n"
             "millimetres, read-only. Slicing makes none.")
-        .def("polygons", &polygons_of,
-             "Pieces of material: pairs (outer, holes) of the number of the ring around it and a list of the\n"
-             "numbers of its holes. Open chains, and rings that bound no material, are left out.")
+        .def(
+            "polygons", &polygons_of,
+            "Pieces of material: pairs (outer, holes) of the number of the ring around it and a list of the\n"
+            "numbers of its holes. Open chains, and rings that bound no material, are left out.")
         .def(
             "to_shapely",
             [](const py::object& self) {
                 return py::module_::import("lamella._shapely").attr("multi_polygon")(self);
             },
-            "The material as a shapely.geometry.MultiPolygon in millimetres, holes where they belong. Open chains\n"
+            "The material as a shapely.geometry.MultiPolygon in millimetres, holes where they belong. Open "
+            "chains\n"
             "are left out. Needs shapely.")
         .def(
             "filled",
@@ -403,7 +413,8 @@ void bind_layer(py::module_& module) {
                             "\"" + rule + "\" is no fill rule; there are nonzero, evenodd and positive");
             },
             py::arg("rule") = "nonzero",
-            "The layer with bodies that overlap united: material is where contours wind around `rule` times:\n"
+            "The layer with bodies that overlap united: material is where contours wind around `rule` "
+            "times:\n"
             "\"nonzero\", \"evenodd\" or \"positive\". Contours that do not overlap keep their points.")
         .def(
             "offset",
@@ -422,8 +433,9 @@ void bind_layer(py::module_& module) {
         .def("__len__", [](const SharedLayer& self) { return self.get().contours(); })
         .def("__getitem__", &contour_of, py::arg("contour"))
         .def("__iter__", &each_of)
-        .def("__eq__", [](const SharedLayer& self, const SharedLayer& other) { return same(self, other); },
-             py::is_operator())
+        .def(
+            "__eq__", [](const SharedLayer& self, const SharedLayer& other) { return same(self, other); },
+            py::is_operator())
         .def("__hash__", [](const SharedLayer& self) { return self.hash() >> 1; })
         .def("__repr__", &layer_text)
         .def(py::pickle(&state_of, &layer_of_state));
@@ -437,22 +449,23 @@ void bind_stack(py::module_& module) {
         .def(py::init(&stack_of), py::arg("layers"), py::arg("label") = "part")
         .def_property_readonly("z", numbers_of<double>([](const SharedLayer& l) { return l.get().z; }),
                                "Where the layers were cut, in millimetres: (layers,) float64.")
-        .def_property_readonly("bottom", numbers_of<double>([](const SharedLayer& l) { return l.get().bottom; }),
+        .def_property_readonly("bottom",
+                               numbers_of<double>([](const SharedLayer& l) { return l.get().bottom; }),
                                "Where their slabs of material begin, in millimetres: (layers,) float64.")
         .def_property_readonly("top", numbers_of<double>([](const SharedLayer& l) { return l.get().top; }),
                                "Where their slabs of material end, in millimetres: (layers,) float64.")
         .def_property_readonly("area", measures_of<double>([](const LayerMeasure& m) { return m.area_mm2; }),
                                "The areas of the layers in square millimetres: (layers,) float64.")
-        .def_property_readonly("perimeter", measures_of<double>([](const LayerMeasure& m) { return m.perimeter_mm; }),
+        .def_property_readonly("perimeter",
+                               measures_of<double>([](const LayerMeasure& m) { return m.perimeter_mm; }),
                                "The lengths of their contours in millimetres: (layers,) float64.")
         .def_property_readonly(
-            "contours",
-            numbers_of<std::int64_t>([](const SharedLayer& l) { return l.get().contours(); }),
+            "contours", numbers_of<std::int64_t>([](const SharedLayer& l) { return l.get().contours(); }),
             "How many contours each layer has: (layers,) int64.")
-        .def_property_readonly(
-            "open_chains",
-            numbers_of<std::int64_t>([](const SharedLayer& l) { return l.get().open_chains(); }),
-            "How many contours of each layer are not closed: (layers,) int64.")
+        .def_property_readonly("open_chains", numbers_of<std::int64_t>([](const SharedLayer& l) {
+                                   return l.get().open_chains();
+                               }),
+                               "How many contours of each layer are not closed: (layers,) int64.")
         .def_property_readonly(
             "hashes",
             [](const Stack& self) {
@@ -462,10 +475,10 @@ void bind_stack(py::module_& module) {
                 return hashes;
             },
             "The hash of each layer, see Layer.hash.")
-        .def_property_readonly("volume", &volume_of,
-                               "The sum of area times thickness, in cubic millimetres.")
+        .def_property_readonly("volume", &volume_of, "The sum of area times thickness, in cubic millimetres.")
         .def_property_readonly(
-            "points", [](const Stack& self) { return sum_of(self, [](const Layer& l) { return l.points.size(); }); },
+            "points",
+            [](const Stack& self) { return sum_of(self, [](const Layer& l) { return l.points.size(); }); },
             "How many points all contours have.")
         .def_property_readonly(
             "label", [](const Stack& self) { return path_text(self.label); },
@@ -476,7 +489,8 @@ void bind_stack(py::module_& module) {
             "sliced; of the layers where they come from a slice file.")
         .def_property_readonly(
             "matrix", [](const Stack& self) { return matrix_of(self.matrix); },
-            "From the coordinates of the mesh to those of the layers, as `direction` and `transform` asked for it:\n"
+            "From the coordinates of the mesh to those of the layers, as `direction` and `transform` asked "
+            "for it:\n"
             "a (4, 4) matrix.")
         .def_property_readonly(
             "parts",
@@ -500,8 +514,9 @@ void bind_stack(py::module_& module) {
              })
         .def("__getitem__", &part_of)
         .def("__iter__", &each_of)
-        .def("__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },
-             py::is_operator())
+        .def(
+            "__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },
+            py::is_operator())
         .def("__repr__", &stack_text)
         .def(py::pickle(&pickled, &unpickled));
 }

@@ -26,8 +26,9 @@ pybind11::array_t<double> matrix_of(const Transform& map) {
 
 Transform transform_of(const Matrix& rows) {
     if (rows[3] != std::array<double, 4>{0, 0, 0, 1})
-        throw Error(ErrorKind::usage, "the last row of a transform must be 0, 0, 0, 1: meshes are moved, turned and "
-                                      "scaled, but not projected");
+        throw Error(ErrorKind::usage,
+                    "the last row of a transform must be 0, 0, 0, 1: meshes are moved, turned and "
+                    "scaled, but not projected");
     Transform map;
     for (std::size_t r = 0; r < 3; ++r) {
         map.linear[r] = {rows[r][0], rows[r][1], rows[r][2]};

@@ -49,11 +49,13 @@ using Heights = std::vector<std::tuple<double, double, double>>;
 Plan plan_for(const MeshPointer& mesh, double layer_height, std::optional<double> first_layer_height,
               const std::string& at, const ZRange& z_range, const IndexRange& layers,
               const std::optional<std::vector<double>>& z, const Heights& heights,
-              const std::optional<std::array<double, 3>>& adaptive, unsigned threads, const py::object& progress) {
+              const std::optional<std::array<double, 3>>& adaptive, unsigned threads,
+              const py::object& progress) {
     FileJob job;
     job.layers = {layer_height, first_layer_height, slice_at(at), z_range, layers};
     if (z) {
-        static_cast<void>(plan_listed(*z, job.layers.slice_at)); // refuses an empty list, which to a job is none
+        static_cast<void>(
+            plan_listed(*z, job.layers.slice_at)); // refuses an empty list, which to a job is none
         job.z = *z;
     }
     for (const auto& [from, to, height] : heights)
@@ -78,13 +80,15 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const Plan& plan, co
 }
 
 void bind_stream(py::module_& module) {
-    py::class_<LayerStream>(module, "LayerStream",
-                            "Layers while they are being made, in ascending z: an iterator. Few of them are in memory at\n"
-                            "a time. It may be closed before its end, and closes itself when nobody holds it any more.")
+    py::class_<LayerStream>(
+        module, "LayerStream",
+        "Layers while they are being made, in ascending z: an iterator. Few of them are in memory at\n"
+        "a time. It may be closed before its end, and closes itself when nobody holds it any more.")
         .def_property_readonly(
             "z",
             [](const LayerStream& self) {
-                return array_of<double>(self.plan().layers, [](const PlannedLayer& layer) { return layer.z; });
+                return array_of<double>(self.plan().layers,
+                                        [](const PlannedLayer& layer) { return layer.z; });
             },
             "Where layers are cut, those already taken included, in millimetres: (layers,) float64.")
         .def_property_readonly(
@@ -95,8 +99,7 @@ void bind_stream(py::module_& module) {
             "What the part is called in slice files.")
         .def_property_readonly("_bottom",
                                [](const LayerStream& self) { return self.plan().layers.front().bottom; })
-        .def("close", &LayerStream::close,
-             "Stops slicing. To be called more than once does no harm.")
+        .def("close", &LayerStream::close, "Stops slicing. To be called more than once does no harm.")
         .def("__length_hint__", &LayerStream::left)
         .def("__iter__", [](const py::object& self) { return self; })
         .def("__next__", &LayerStream::next)
@@ -106,8 +109,8 @@ void bind_stream(py::module_& module) {
             return "<lamella.LayerStream: " + std::to_string(self.left()) + " of " +
                    std::to_string(self.plan().layers.size()) + " layers left>";
         });
-    module.def("stream", [](const MeshPointer& mesh, const Plan& plan, const std::string& with, unsigned threads,
-                            const py::object& progress) {
+    module.def("stream", [](const MeshPointer& mesh, const Plan& plan, const std::string& with,
+                            unsigned threads, const py::object& progress) {
         return std::make_unique<LayerStream>(mesh, plan, engine(with), threads, progress);
     });
 }

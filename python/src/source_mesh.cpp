@@ -118,8 +118,8 @@ const IndexedMesh& welded_of(const SourceMesh& source) {
 
 py::tuple state_of(const py::object& self) {
     const MeshOrigin& origin = self.cast<const SourceMesh&>().origin();
-    return py::make_tuple(self.attr("vertices"), self.attr("faces"), py::bytes(origin.path), origin.format, origin.name,
-                          origin.label, origin.unit_mm, origin.stored_triangles, origin.warnings,
+    return py::make_tuple(self.attr("vertices"), self.attr("faces"), py::bytes(origin.path), origin.format,
+                          origin.name, origin.label, origin.unit_mm, origin.stored_triangles, origin.warnings,
                           matrix_of(origin.matrix));
 }
 
@@ -185,7 +185,8 @@ void bind_meshes(py::module_& module) {
         module, "Mesh",
         "A triangle mesh in millimetres. It never changes.\n\n"
         "Made by lamella.read from a file, or from arrays: Mesh(vertices, faces) with vertices (n, 3), in\n"
-        "millimetres, and faces (m, 3), three numbers of vertices each, counter-clockwise seen from outside.\n"
+        "millimetres, and faces (m, 3), three numbers of vertices each, counter-clockwise seen from "
+        "outside.\n"
         "Wherever a function takes a mesh, arrays and paths will do, too.")
         .def(py::init([](const py::object& vertices, const py::object& faces) {
                  const py::object mesh_of = py::module_::import("lamella._meshes").attr("mesh_of_arrays");
@@ -208,8 +209,7 @@ void bind_meshes(py::module_& module) {
             "The triangles as rows of `vertices`, counter-clockwise seen from outside: (m, 3) uint32,\n"
             "read-only, without a copy.")
         .def_property_readonly(
-            "bounds",
-            [](const SourceMesh& self) { return bounds_of(self.box()); },
+            "bounds", [](const SourceMesh& self) { return bounds_of(self.box()); },
             "The smallest and the largest x, y and z in millimetres: (2, 3) float64.")
         .def_property_readonly(
             "volume",
@@ -217,7 +217,8 @@ void bind_meshes(py::module_& module) {
                 const py::gil_scoped_release released;
                 return volume(self.mesh());
             },
-            "The volume in cubic millimetres: meaningful for a closed mesh, negative for one turned inside out.")
+            "The volume in cubic millimetres: meaningful for a closed mesh, negative for one turned inside "
+            "out.")
         .def_property_readonly(
             "matrix", [](const SourceMesh& self) { return matrix_of(self.origin().matrix); },
             "How it was moved and turned since it was read or made: a (4, 4) matrix.")
@@ -237,18 +238,20 @@ void bind_meshes(py::module_& module) {
             "warnings", [](const SourceMesh& self) { return path_texts(self.origin().warnings); },
             "What was odd about the file, and what was made of it: a line each.")
         .def("_defects", &defects_of)
-        .def("_transformed", [](const SourceMesh& self, const Matrix& rows) { return transformed(self, transform_of(rows)); })
-        .def("_turned", [](const SourceMesh& self, const std::array<double, 3>& d) {
-            return transformed(self, upright({d[0], d[1], d[2]}));
-        })
+        .def("_transformed",
+             [](const SourceMesh& self, const Matrix& rows) { return transformed(self, transform_of(rows)); })
+        .def("_turned",
+             [](const SourceMesh& self, const std::array<double, 3>& d) {
+                 return transformed(self, upright({d[0], d[1], d[2]}));
+             })
         .def("__len__", [](const SourceMesh& self) { return self.mesh().size(); })
         .def("__repr__", &mesh_text)
         .def(py::pickle(&state_of, &mesh_of_state));
 
     module.def("mesh_of_arrays", &mesh_of_arrays);
-    module.def("read_mesh", [](const std::string& path, const std::string& label, std::optional<double> unit_mm, bool strict,
-                               std::uint64_t max_triangles, std::uint64_t max_memory, unsigned threads,
-                               const py::object& progress) {
+    module.def("read_mesh", [](const std::string& path, const std::string& label,
+                               std::optional<double> unit_mm, bool strict, std::uint64_t max_triangles,
+                               std::uint64_t max_memory, unsigned threads, const py::object& progress) {
         return read_source_mesh(path, label, unit_mm, {strict, max_triangles, max_memory}, threads, progress);
     });
 }

@@ -32,10 +32,11 @@ def test_every_example_is_run_here():
     assert len(names) >= 5 and all(name in tests for name in names)
 
 
-def test_a_layer_is_drawn(rook, tmp_path):
+def test_a_layer_is_drawn(bodies, tmp_path):
     picture = tmp_path / "layer.png"
-    text = run("plot_layer.py", rook, 50, picture)
-    layer = lamella.slice(rook, z=[50.05])[0]
+    path = bodies("calibration")
+    text = run("plot_layer.py", path, 3, picture)
+    layer = lamella.slice(path, z=[3.05])[0]
     assert f"{layer.area:.3f} mm2" in text and (layer.parent >= 0).any()
     # How much of the box around it is filled with the colour of material.
     image = np.round(imread(picture)[:, :, :3] * 255)
