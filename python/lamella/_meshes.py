@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Protocol, Sequence, Tuple, Union
@@ -90,6 +91,8 @@ def read_mesh(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Mesh:
+    if unit_mm is not None and not (0 < unit_mm < math.inf):
+        raise UsageError(f"unit_mm: {unit_mm} is not possible; a unit is a number of millimetres above 0")
     mesh = _lamella.read_mesh(
         os.fsencode(path), label, unit_mm, strict, max_triangles, max_memory, thread_count(threads), progress
     )
@@ -124,12 +127,14 @@ def _mesh_of_triangles(corners: npt.NDArray[Any]) -> Mesh:
     return mesh_of_arrays(corners.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3))
 
 
-def as_mesh(part: MeshLike, **reading: Any) -> Mesh:
+def as_mesh(part: MeshLike, unit_mm: Optional[float] = None, **reading: Any) -> Mesh:
     """A mesh from whatever the user has. `reading` is for paths."""
+    if isinstance(part, (str, bytes, os.PathLike)):
+        return read_mesh(part, unit_mm=unit_mm, **reading)
+    if unit_mm is not None:
+        raise UsageError("unit_mm goes with files: arrays and meshes are in millimetres; scale them by transform")
     if isinstance(part, Mesh):
         return part
-    if isinstance(part, (str, bytes, os.PathLike)):
-        return read_mesh(part, **reading)
     if isinstance(part, np.ndarray):
         return _mesh_of_triangles(part)
     if isinstance(part, (tuple, list)):

@@ -100,6 +100,8 @@ LayerPointer LayerStream::next() {
             }
         }
     } catch (...) {
+        if (closed_) // by another thread, meanwhile
+            throw py::stop_iteration();
         close();
         throw;
     }
@@ -108,10 +110,10 @@ LayerPointer LayerStream::next() {
 
 void LayerStream::close() {
     closed_ = true;
+    // Of several threads that close it, one gets the worker. Its end stops it and waits.
+    std::jthread worker = std::move(worker_);
     const py::gil_scoped_release released;
-    worker_.request_stop();
-    if (worker_.joinable())
-        worker_.join();
+    worker = {};
 }
 
 } // namespace lamella::python

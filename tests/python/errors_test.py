@@ -78,6 +78,8 @@ def test_bad_meshes_end_in_the_text_of_the_program(program, tmp_path, monkeypatc
         ({"z": [100, 200]}, None),
         ({"layer_height": -1}, None),
         ({"adaptive": (2, 1)}, None),
+        ({"unit_mm": 0}, None),
+        ({"unit_mm": np.nan}, None),
     ],
 )
 def test_impossible_plans_are_errors_of_usage(program, rook, keywords, options):
@@ -102,6 +104,7 @@ def test_impossible_plans_are_errors_of_usage(program, rook, keywords, options):
         ({"z": [[1, 2]]}, r"z: expected a list of numbers, found an array of the shape \(1, 2\)"),
         ({"direction": (0, 0, 0)}, "direction"),
         ({"direction": (0, 1)}, "direction: expected three numbers"),
+        ({"unit_mm": 25.4}, "unit_mm goes with files"),
         ({"transform": np.eye(3)}, "transform: expected a matrix"),
         ({"transform": np.ones((4, 4))}, "the last row of a transform"),
         ({"transform": np.full((4, 4), np.nan)}, "transform"),

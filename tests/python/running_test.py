@@ -201,6 +201,28 @@ def test_a_stream_that_is_left_stops(sheet):
     assert threads_of_this_process() == before and list(layers) == []
 
 
+def test_threads_may_share_a_stream(sheet):
+    stack = lamella.slice(sheet, 0.05)
+    stream = lamella.iter_layers(sheet, 0.05)
+    taken = [[] for _ in range(4)]
+    threads = [threading.Thread(target=mine.extend, args=(stream,)) for mine in taken]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted((layer for mine in taken for layer in mine), key=lambda layer: layer.index) == list(stack)
+
+    before = threads_of_this_process()
+    stream = lamella.iter_layers(sheet, 0.0001)
+    threads = [threading.Thread(target=lambda: [stream.close() for layer in stream if layer.index > 5])
+               for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert threads_of_this_process() == before
+
+
 def test_a_program_may_end_with_a_stream_open(sheet):
     code = "import sys, lamella; layers = lamella.iter_layers(sys.argv[1], 0.0001); print(next(layers).index)"
     assert run_python(code, sheet) == "0\n"
