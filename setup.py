@@ -1,6 +1,11 @@
-"""Builds the Python package by CMake, for `pip install .`; pyproject.toml says the rest."""
+"""Builds the Python package by CMake, for `pip install .`; pyproject.toml says the rest.
 
+The environment variable CMAKE_ARGS has further arguments for CMake.
+"""
+
+import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -25,7 +30,8 @@ class CMakeBuild(build_ext):
         subprocess.run(
             ["cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release",
              "-D", "LAMELLA_PYTHON=REQUIRED", "-D", f"Python3_EXECUTABLE={sys.executable}",
-             "-D", "LAMELLA_APP=OFF", "-D", "LAMELLA_TESTS=OFF", "-D", "LAMELLA_INSTALL=OFF"],
+             "-D", "LAMELLA_APP=OFF", "-D", "LAMELLA_TESTS=OFF", "-D", "LAMELLA_INSTALL=OFF",
+             *shlex.split(os.environ.get("CMAKE_ARGS", ""))],
             check=True,
         )
         subprocess.run(["cmake", "--build", build, "--target", "lamella_python"], check=True)
