@@ -85,6 +85,8 @@ def measure(part, chosen, folder, options):
             for stage in ("read", "slice"):
                 seconds = [one["seconds"][stage] for one in counted]
                 cell[stage] = {"least": min(seconds), "median": statistics.median(seconds), "most": max(seconds)}
+            if "processor_seconds" in counted[0]:
+                cell["processor_seconds"] = min(one["processor_seconds"] for one in counted)
             cell["peak_rss_bytes"] = max(one["peak_rss_bytes"] for one in counted)
             print(f"{part.title}: {title}: slice {cell['slice']['least']:.4f} s, read {cell['read']['least']:.4f} s, "
                   f"{'agrees' if cell['agrees'] else 'DIFFERS'}", flush=True)
@@ -143,9 +145,17 @@ def page_of(cells, chosen, here, options):
             table.add(title, *numbers(rows[name], rows["lamella"]))
         page.show(table)
         if rows["lamella"]["ended"] == rows.get("library", {}).get("ended") == "ok":
-            overhead = rows["lamella"]["slice"]["least"] / rows["library"]["slice"]["least"] - 1
-            page.say(f"The package against the library in C++, least time of each: {overhead:+.1%}.")
+            wall, processor = overheads(rows["lamella"], rows["library"])
+            page.say(f"The package against the library in C++, least of each: {wall:+.1%} of time, {processor:+.1%} of "
+                     "processor time, which other programs disturb less.")
+            print(f"{part.title}: the package adds {wall:+.1%} of time, {processor:+.1%} of processor time")
     return page
+
+
+def overheads(package, library):
+    """What the package takes beyond the library, as shares of time and of processor time."""
+    return (package["slice"]["least"] / library["slice"]["least"] - 1,
+            package["processor_seconds"] / library["processor_seconds"] - 1)
 
 
 def numbers(cell, ours):

@@ -22,10 +22,12 @@ def main(way, mesh, heights, result):
     started = time.perf_counter()
     part = lamella.read(mesh) if way == "file" else arrays
     was_read = time.perf_counter()
+    before = time.process_time()
     stack = lamella.slice(part, z=planes)
+    processor = time.process_time() - before
     sliced = time.perf_counter()
     with open(result, "w", encoding="utf-8") as file:
-        json.dump({"seconds": {"read": was_read - started, "slice": sliced - was_read},
+        json.dump({"seconds": {"read": was_read - started, "slice": sliced - was_read}, "processor_seconds": processor,
                    "layers": [{"z": layer.z, "contours": len(layer), "area_mm2": layer.area,
                                "perimeter_mm": layer.perimeter} for layer in stack]}, file)
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
+#include <ctime>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -36,11 +36,14 @@ void slice(const std::string& path, const std::string& heights, const std::strin
     const double read_seconds = seconds_since(start);
 
     start = Clock::now();
+    const std::clock_t before = std::clock();
     const lamella::LayerStack layers = lamella::slice(mesh, lamella::plan_listed(z));
+    const double processor_seconds = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
     const double slice_seconds = seconds_since(start);
 
-    std::string text = fmt::format("{{\"seconds\": {{\"read\": {}, \"slice\": {}}}, \"layers\": [",
-                                   read_seconds, slice_seconds);
+    std::string text = fmt::format(
+        "{{\"seconds\": {{\"read\": {}, \"slice\": {}}}, \"processor_seconds\": {}, \"layers\": [",
+        read_seconds, slice_seconds, processor_seconds);
     for (const lamella::Layer& layer : layers) {
         const lamella::LayerMeasure measured = lamella::measure(layer);
         text += fmt::format("{}\n{{\"z\": {}, \"contours\": {}, \"area_mm2\": {}, \"perimeter_mm\": {}}}",
