@@ -8,7 +8,7 @@ THREADED := core mesh contour read slicing polygon pipeline
 # Long tests in those rooms of what runs on one thread.
 UNTHREADED := Engines|Shapes|Head|Sole|Crossings
 blank := $(subst ,, )
-SOURCES = $(shell find app bench examples include src tests -name '*.[ch]pp' 2>/dev/null)
+SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
 # A compiler cache is used where there is one.
 ifneq ($(shell command -v ccache),)
@@ -21,9 +21,9 @@ help:  ## this list
 packages:  ## install the Debian packages that a build needs
 	@tools/install_packages.sh tools/packages.txt
 
-build: packages  ## build the program: build/lamella
+build: packages  ## build the program, build/lamella, and the Python package, build/python
 	cmake --preset release
-	cmake --build build --target lamella_app
+	cmake --build build --target lamella_app lamella_python_package
 
 demo: build  ## make, slice and verify two parts; pictures and slice files are left in out/
 	@python3 tools/demo.py build/lamella out
@@ -100,6 +100,11 @@ out-of-core: build  ## slice a lattice of 5 GB with 1 GB of memory: out/out_of_c
 	cmake --build build-bench --target lamella_stream_areas
 	python3 -B -m bench.out_of_core $(OPTIONS)
 
+python-bench: build packages-rivals  ## compare with other ways to slice in Python: out/python/ (bench/README.md)
+	cmake --preset bench
+	cmake --build build-bench --target lamella_library_slicer lamella_cgal_slicer
+	python3 -B -m bench.python $(OPTIONS)
+
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
 
@@ -124,5 +129,6 @@ clean:  ## remove what was built
 	rm -rf build build-* out
 
 .NOTPARALLEL:
-.PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
-        bench scaling soak packages-rivals rivals read-meshes out-of-core paper format format-check lint install clean
+.PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan test-fuzz \
+        test-shared bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench paper \
+        format format-check lint install clean

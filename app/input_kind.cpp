@@ -1,6 +1,7 @@
 #include "input_kind.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/read/file_kind.hpp"
 
 #include "text_file.hpp"
 
@@ -14,22 +15,6 @@
 namespace lamella::app {
 namespace {
 
-/// Common Layer Interface files begin with a $$ command (or a comment), SVG files with a tag, SLC files with
-/// a keyword, JSON with a bracket; NumPy arrays are entries of a zip archive. Of files of meshes only AMF
-/// begins with a tag.
-bool holds_layers(std::string_view head) {
-    if (head.starts_with("\xEF\xBB\xBF"))
-        head.remove_prefix(3);
-    const std::size_t first = head.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos)
-        return false;
-    head.remove_prefix(first);
-    if (head.starts_with("PK\3\4"))
-        return head.find(".npy") != std::string_view::npos;
-    return head.starts_with("-SLC") || head.starts_with("{") || head.starts_with("$$") ||
-           head.starts_with("//") || (head.starts_with("<") && head.find("<amf") == std::string_view::npos);
-}
-
 std::string head_of(const std::string& path) {
     struct Close {
         void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
@@ -39,11 +24,6 @@ std::string head_of(const std::string& path) {
     const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
     head.resize(file == nullptr ? 0 : std::fread(head.data(), 1, head.size(), file.get()));
     return head;
-}
-
-/// A 3MF file may hold meshes, slices, or both: then its meshes are mostly stand-ins.
-bool may_hold_slices(std::string_view head) {
-    return head.starts_with("PK\3\4");
 }
 
 /// What `layers` reads, or what `mesh` reads when there are no layers.
@@ -64,10 +44,14 @@ std::variant<MeshFile, LayerFile> read_either(const std::string& path, const Mes
                                               const Execution& execution) {
     const auto choose = [](std::string_view head, const auto& layers,
                            const auto& mesh) -> std::variant<MeshFile, LayerFile> {
-        if (holds_layers(head))
+        switch (file_kind(head)) {
+        case FileKind::layers:
             return layers();
-        if (may_hold_slices(head))
+        case FileKind::either:
             return layers_or_mesh(layers, mesh);
+        case FileKind::mesh:
+            break;
+        }
         return mesh();
     };
     if (path == "-") {

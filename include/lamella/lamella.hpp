@@ -48,6 +48,7 @@
 #include "lamella/polygon/selection.hpp"
 #include "lamella/polygon/simplify.hpp"
 #include "lamella/raster/picture.hpp"
+#include "lamella/read/file_kind.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/read/mesh_input.hpp"

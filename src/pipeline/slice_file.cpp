@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -70,20 +71,36 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
     return plan_uniform(box.min.z, box.max.z, job.layers);
 }
 
-} // namespace
-
-Plan plan_of(const FileJob& job, LayerSource& source, Plan listed, const Execution& execution) {
-    const Box3& box = source.plate().box;
+/// `adaptive` makes the plan of layers of varying height.
+Plan plan_within(const Box3& box, const FileJob& job, Plan listed,
+                 const std::function<Plan(const AdaptiveLayers&)>& adaptive) {
     if (!job.z.empty())
         return selected(job, std::move(listed), box);
     if (job.adaptive)
-        return selected(job, source.adaptive_plan(*job.adaptive, execution), box);
+        return selected(job, adaptive(*job.adaptive), box);
     if (!job.heights.empty())
         return selected(
             job,
             plan_by_ranges(box.min.z, box.max.z, job.heights, job.layers.layer_height, job.layers.slice_at),
             box);
     return uniform_plan(job, box);
+}
+
+} // namespace
+
+Plan plan_of(const FileJob& job, LayerSource& source, Plan listed, const Execution& execution) {
+    return plan_within(source.plate().box, job, std::move(listed),
+                       [&](const AdaptiveLayers& layers) { return source.adaptive_plan(layers, execution); });
+}
+
+Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
+    check_heights(plate);
+    Plan listed;
+    if (!job.z.empty())
+        listed = plan_listed(job.z, job.layers.slice_at);
+    return plan_within(plate.box, job, std::move(listed), [&](const AdaptiveLayers& layers) {
+        return plan_adaptive(joined(plate, execution), layers, execution);
+    });
 }
 
 namespace {

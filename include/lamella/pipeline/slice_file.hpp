@@ -164,6 +164,11 @@ struct FileResult {
     } seconds;
 };
 
+/// The planes that `slice_file` cuts a plate at: by `layers`, `z`, `heights` and `adaptive` of the job; its
+/// files are not read. Throws Error{input} for a part without height, Error{usage} for an impossible plan and
+/// for one that misses every part.
+[[nodiscard]] Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution = {});
+
 /// Slices files into a file. The layers of a single part are written while slicing goes on, so that memory
 /// holds a bounded number of them; of several parts, all layers are held (of a slab, where there are slabs).
 /// Nothing appears at the output path before all went well.

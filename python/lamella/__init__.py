@@ -1,0 +1,63 @@
+"""Lamella cuts triangle meshes into layers of closed contours.
+
+    import lamella
+
+    stack = lamella.slice("part.stl", layer_height=0.1)
+    print(len(stack), "layers,", stack.volume, "mm3")
+    for ring in stack[0]:          # (n, 2) arrays of x and y
+        print(ring.min(axis=0), ring.max(axis=0))
+    lamella.write("part.cli", stack)
+
+Lengths are millimetres, heights are absolute z, and a mesh is whatever holds one: a path, a pair of arrays
+(vertices, faces), a trimesh.Trimesh. Layers show their points as NumPy arrays without a copy. Failures are
+lamella.Error, with texts for a person; what is odd but no failure is a lamella.DefectWarning.
+"""
+
+from ._checks import Comparison, LayerDifference, Verification, compare, verify
+from ._errors import (
+    CancelledError,
+    DefectError,
+    DefectWarning,
+    Error,
+    InputError,
+    InternalError,
+    LimitError,
+    OutputError,
+    UsageError,
+)
+from ._files import convert, layer_formats, read, write
+from ._lamella import Layer, LayerStream, Mesh, Stack, __version__
+from ._meshes import Inspection, inspect
+from ._slicing import Engine, engines, iter_layers, slice
+
+__all__ = [
+    "CancelledError",
+    "Comparison",
+    "DefectError",
+    "DefectWarning",
+    "Engine",
+    "Error",
+    "InputError",
+    "Inspection",
+    "InternalError",
+    "Layer",
+    "LayerDifference",
+    "LayerStream",
+    "LimitError",
+    "Mesh",
+    "OutputError",
+    "Stack",
+    "UsageError",
+    "Verification",
+    "__version__",
+    "compare",
+    "convert",
+    "engines",
+    "inspect",
+    "iter_layers",
+    "layer_formats",
+    "read",
+    "slice",
+    "verify",
+    "write",
+]

@@ -1,0 +1,208 @@
+"""From a mesh to its layers."""
+
+from __future__ import annotations
+
+from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _lamella
+from ._errors import DefectError, UsageError
+from ._lamella import LayerStream, Mesh, Stack
+from ._meshes import MeshLike, Progress, as_mesh, inspect, placed, thread_count
+from ._warning import warn
+
+DEFAULT_LAYER_HEIGHT = 0.1
+DEFAULT_CUSP = 0.05
+
+
+class Engine(NamedTuple):
+    """An algorithm that makes layers of a mesh."""
+
+    name: str  #: what `engine=` takes
+    summary: str  #: one line
+    source: str  #: the publication it follows, or ""
+
+
+def engines() -> List[Engine]:
+    """The algorithms there are; the first is the default. All give the same layers."""
+    return [Engine(*row) for row in _lamella.engines()]
+
+
+def slice(
+    part: MeshLike,
+    layer_height: Optional[float] = None,
+    *,
+    z: Optional[npt.ArrayLike] = None,
+    offsets: Optional[npt.ArrayLike] = None,
+    heights: Optional[Sequence[Tuple[float, float, float]]] = None,
+    adaptive: Optional[Tuple[float, float]] = None,
+    cusp: Optional[float] = None,
+    first_layer_height: Optional[float] = None,
+    at: str = "middle",
+    z_range: Optional[Tuple[float, float]] = None,
+    layers: Optional[Tuple[int, int]] = None,
+    direction: Sequence[float] = (0, 0, 1),
+    transform: Optional[npt.ArrayLike] = None,
+    unit_mm: Optional[float] = None,
+    engine: str = "sweep",
+    strict: bool = False,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Stack:
+    """Cuts a mesh into layers of closed contours.
+
+    part: a path, a Mesh, a pair of arrays (vertices (n, 3) in millimetres, faces (m, 3)), an array of triangles
+        (m, 3, 3), or anything with .vertices and .faces, such as a trimesh.Trimesh.
+    layer_height: thickness of a layer in millimetres, stacked from the bottom of the part; 0.1 unless given.
+
+    Instead of one layer height:
+    z: ascending heights in millimetres, (layers,): cuts at exactly these.
+    offsets: the same, counted from the bottom of the part.
+    heights: ranges (from, to, layer_height) in millimetres above the bottom of the part; elsewhere layers are
+        `layer_height` high.
+    adaptive: the smallest and the largest layer height, for layers as high as the slopes of the surface allow:
+        their steps stand off by `cusp` millimetres at most, 0.05 unless given.
+
+    first_layer_height: thickness of the first layer in millimetres, where it differs.
+    at: where in its thickness a layer is cut: "bottom", "middle" or "top".
+    z_range: only layers cut from the first to the second of these heights, in millimetres.
+    layers: only layers from the first of these numbers to the one before the second.
+    direction: the way up, (x, y, z) of any length; the mesh is turned so that it points along z.
+    transform: a (4, 4) matrix that is applied to the mesh before that, in millimetres.
+    unit_mm: millimetres per unit of a file that does not say its unit; 1 unless given.
+    engine: the algorithm, one of `engines`.
+    strict: makes a DefectError of any defect of the file or its mesh.
+    threads: 0 takes one for each processor. The result is the same, to the last bit, for any number.
+    progress: called as progress(stage, done, total) now and then, from the thread that called this: `done` of
+        `total` bytes, triangles or layers of the stages "read", "weld", "link" and "slice". What it raises stops
+        slicing and reaches the caller.
+
+    Other Python threads run meanwhile. Ctrl-C stops within a second.
+
+    Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning where the file is odd, and where
+    contours do not close because the mesh has holes.
+    """
+    mesh, plan = _prepared(
+        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,
+        transform, unit_mm, strict, threads, progress,
+    )  # fmt: skip
+    stack = _lamella.slice_stack(mesh, plan, engine, threads, progress)
+    chains = stack.open_chains
+    if chains.any():
+        name = mesh.path or "the mesh"
+        lowest = f"{stack.z[np.flatnonzero(chains)[0]]:.6g}"
+        if strict:
+            raise DefectError(f"{name}: {chains.sum()} contours do not close, the lowest at z = {lowest} mm")
+        warn([
+            f"{name}: {chains.sum()} open chains in {np.count_nonzero(chains)} of {len(stack)} layers, first at "
+            f"z = {lowest} mm: contours do not close where the mesh has holes or flipped triangles"
+        ])  # fmt: skip
+    return stack
+
+
+def iter_layers(
+    part: MeshLike,
+    layer_height: Optional[float] = None,
+    *,
+    z: Optional[npt.ArrayLike] = None,
+    offsets: Optional[npt.ArrayLike] = None,
+    heights: Optional[Sequence[Tuple[float, float, float]]] = None,
+    adaptive: Optional[Tuple[float, float]] = None,
+    cusp: Optional[float] = None,
+    first_layer_height: Optional[float] = None,
+    at: str = "middle",
+    z_range: Optional[Tuple[float, float]] = None,
+    layers: Optional[Tuple[int, int]] = None,
+    direction: Sequence[float] = (0, 0, 1),
+    transform: Optional[npt.ArrayLike] = None,
+    unit_mm: Optional[float] = None,
+    engine: str = "sweep",
+    strict: bool = False,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> LayerStream:
+    """The layers of a mesh one by one, in ascending z, while the next ones are being made: for parts whose layers do
+    not fit into memory. A bounded number of layers is held; those that were taken belong to who took them.
+
+    Takes what `slice` takes and gives the same layers. The mesh is read before this returns; what goes wrong later
+    is raised by the iterator. Leaving the loop early, close(), or `with` stops the work.
+
+    strict: looks at the mesh first; without it open chains pass without a warning, see Layer.open_chains.
+    """
+    mesh, plan = _prepared(
+        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,
+        transform, unit_mm, strict, threads, progress,
+    )  # fmt: skip
+    return _lamella.stream(mesh, plan, engine, threads, progress)
+
+
+def _prepared(
+    part: MeshLike,
+    layer_height: Optional[float],
+    z: Optional[npt.ArrayLike],
+    offsets: Optional[npt.ArrayLike],
+    heights: Optional[Sequence[Tuple[float, float, float]]],
+    adaptive: Optional[Tuple[float, float]],
+    cusp: Optional[float],
+    first_layer_height: Optional[float],
+    at: str,
+    z_range: Optional[Tuple[float, float]],
+    layers: Optional[Tuple[int, int]],
+    direction: Sequence[float],
+    transform: Optional[npt.ArrayLike],
+    unit_mm: Optional[float],
+    strict: bool,
+    threads: int,
+    progress: Optional[Progress],
+) -> Tuple[Mesh, _lamella.Plan]:
+    """The mesh as it is to be sliced, and the planes to cut it at."""
+    _check_conflicts(layer_height, z, offsets, heights, adaptive, cusp, first_layer_height)
+    thread_count(threads)
+    mesh = as_mesh(part, unit_mm=unit_mm, strict=strict, threads=threads, progress=progress)
+    if strict:
+        found = inspect(mesh, threads=threads, progress=progress)
+        if not found.sound:
+            raise DefectError(f"{mesh.path or 'the mesh'}: the mesh has defects: {found.defects}")
+    mesh = placed(mesh, direction, transform)
+    cuts = None if z is None else _numbers("z", z)
+    if offsets is not None:
+        cuts = _numbers("offsets", offsets) + mesh.bounds[0][2]
+    varying = None if adaptive is None else (*adaptive, DEFAULT_CUSP if cusp is None else cusp)
+    plan = _lamella.plan(
+        mesh,
+        DEFAULT_LAYER_HEIGHT if layer_height is None else layer_height,
+        first_layer_height,
+        at,
+        z_range,
+        layers,
+        cuts,
+        [] if heights is None else list(heights),
+        varying,
+        threads,
+        progress,
+    )
+    return mesh, plan
+
+
+def _numbers(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    array = np.asarray(values, dtype=float)
+    if array.ndim != 1:
+        raise UsageError(f"{name}: expected a list of numbers, found an array of the shape {array.shape}")
+    return array
+
+
+def _check_conflicts(
+    layer_height: Any, z: Any, offsets: Any, heights: Any, adaptive: Any, cusp: Any, first_layer_height: Any
+) -> None:
+    ways = {"z": z, "offsets": offsets, "heights": heights, "adaptive": adaptive}
+    given = [name for name, value in ways.items() if value is not None]
+    if len(given) > 1:
+        raise UsageError(f"{given[0]} and {given[1]} contradict each other: each says where to cut")
+    if given and given[0] != "heights" and layer_height is not None:
+        raise UsageError(f"{given[0]} and layer_height contradict each other: each says where to cut")
+    if given and first_layer_height is not None:
+        raise UsageError(f"{given[0]} and first_layer_height contradict each other: each says where to cut")
+    if cusp is not None and adaptive is None:
+        raise UsageError("cusp goes with adaptive layers only")

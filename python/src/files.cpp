@@ -1,0 +1,222 @@
+#include "files.hpp"
+
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/verify.hpp"
+#include "lamella/polygon/compare.hpp"
+#include "lamella/read/file_kind.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/write/layer_writer.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+#include "layers.hpp"
+#include "placing.hpp"
+#include "run.hpp"
+#include "shared_layer.hpp"
+#include "source_mesh.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace lamella::python {
+namespace {
+
+using StackPointer = std::shared_ptr<Stack>;
+
+StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layers) {
+    auto stack = std::make_shared<Stack>();
+    stack->layers = shared(std::move(layers));
+    stack->label = std::move(label);
+    stack->box = box_of(stack->layers);
+    stack->path = file.path;
+    stack->format = file.format;
+    stack->resolution_mm = file.resolution_mm;
+    return stack;
+}
+
+/// The layers of the file, and its warnings.
+std::pair<StackPointer, py::list> read_stack(const std::string& path, unsigned threads,
+                                             const py::object& progress) {
+    std::vector<std::string> warnings;
+    const StackPointer read = result_of(threads, progress, [&](const Execution& execution) {
+        LayerFile file = read_layers(path, execution);
+        const bool several = file.parts.size() > 1;
+        StackPointer stack =
+            stack_of(file, several ? std::string() : file.parts.front().label, file.merged());
+        if (several)
+            for (LayerPart& part : file.parts)
+                stack->parts.push_back(stack_of(file, part.label, std::move(part.layers)));
+        warnings = std::move(file.warnings);
+        return stack;
+    });
+    return {read, path_texts(warnings)};
+}
+
+/// A slice file under construction. Dropped before `finish`, it leaves nothing behind.
+class StackWriter {
+  public:
+    StackWriter(const std::string& path, const std::string& format, const LayerFileInfo& info,
+                const LayerWriteOptions& options)
+        : writer_(open_layer_writer(path, layer_format(format, path), info, options)) {}
+
+    void write(const std::vector<LayerPointer>& parts) {
+        const py::gil_scoped_release released;
+        std::vector<Layer> layers;
+        layers.reserve(parts.size());
+        for (const LayerPointer& part : parts)
+            layers.push_back(part->get());
+        if (const std::function<void()> put = writer_->prepare(layers))
+            put();
+    }
+
+    py::list finish() {
+        {
+            const py::gil_scoped_release released;
+            writer_->finish();
+        }
+        return path_texts(writer_->warnings());
+    }
+
+  private:
+    std::unique_ptr<LayerWriter> writer_;
+};
+
+template <class T>
+std::optional<AlongXY<T>> along_xy(const std::optional<std::pair<T, T>>& pair) {
+    if (!pair)
+        return std::nullopt;
+    return AlongXY<T>{pair->first, pair->second};
+}
+
+using PartNames = std::vector<std::pair<std::string, Bounds>>;
+
+std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::string& format,
+                                         const PartNames& parts, std::uint64_t layers, double bottom,
+                                         std::optional<double> units_mm, bool short_form,
+                                         const std::optional<std::pair<double, double>>& pixel_mm,
+                                         const std::optional<std::pair<std::uint32_t, std::uint32_t>>& pixels,
+                                         const std::optional<std::pair<double, double>>& display_mm) {
+    LayerFileInfo info{.box = {}, .layers = layers, .bottom = bottom, .parts = {}};
+    for (const auto& [label, bounds] : parts) {
+        info.parts.push_back({label, box_of(bounds)});
+        info.box.add(info.parts.back().box);
+    }
+    LayerWriteOptions options;
+    options.units_mm = units_mm.value_or(options.units_mm);
+    options.short_form = short_form;
+    options.picture.pixel_mm = along_xy(pixel_mm);
+    options.picture.pixels = along_xy(pixels);
+    options.picture.display_mm = along_xy(display_mm);
+    return std::make_unique<StackWriter>(path, format, info, options);
+}
+
+void write_mesh(const std::string& path, const std::string& extension, const MeshPointer& mesh,
+                const std::string& name) {
+    const py::gil_scoped_release released;
+    if (extension == ".ply")
+        return write_ply(path, mesh->welded({}));
+    if (extension == ".obj")
+        return write_obj(path, mesh->welded({}), name);
+    if (const TriangleSoup* soup = mesh->mesh().soup())
+        return write_stl(path, *soup);
+    const IndexedMesh& indexed = *mesh->mesh().indexed();
+    std::vector<Triangle3f> triangles;
+    triangles.reserve(indexed.triangles.size());
+    for (const auto& corners : indexed.triangles) {
+        Triangle3f& triangle = triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Point3& p = indexed.vertices[corners[k]];
+            triangle[k] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        }
+    }
+    write_stl(path, TriangleSoup(std::move(triangles)));
+}
+
+py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, unsigned threads,
+                  const py::object& progress) {
+    const Verification found = result_of(threads, progress, [&](const Execution& execution) {
+        VerifyOptions options{.mesh = {}, .quantum_mm = stack.resolution_mm / 2};
+        Mesh sliced;
+        if (mesh) {
+            sliced = mesh->to_slice(execution);
+            options.mesh = sliced;
+        }
+        LayerStack layers = plain(stack);
+        if (at == "top")
+            options.rule = PlaneRule::section_below;
+        for (Layer& layer : layers) {
+            if (at == "bottom")
+                layer.z = layer.bottom;
+            else if (at == "top")
+                layer.z = layer.top;
+            else if (at == "middle")
+                layer.z = layer.bottom + (layer.top - layer.bottom) / 2;
+        }
+        return verify(layers, options, execution);
+    });
+    py::dict fields;
+    fields["ok"] = found.ok();
+    fields["layers"] = found.layers;
+    fields["contours"] = found.contours;
+    fields["points"] = found.points;
+    fields["open_chains"] = found.open_chains;
+    fields["crossings"] = found.crossings;
+    fields["misoriented"] = found.misoriented;
+    fields["overlapping"] = found.overlapping;
+    fields["volume"] = found.volume_mm3;
+    fields["max_area_error"] = found.max_area_error_mm2;
+    fields["areas_agree"] = found.areas_agree;
+    fields["findings"] = found.findings;
+    return fields;
+}
+
+/// same, agree, distance, where
+std::tuple<bool, bool, double, std::pair<double, double>>
+compared(const SharedLayer& first, const SharedLayer& second, double tolerance) {
+    const py::gil_scoped_release released;
+    const LayerDifference found = compare(first.get(), second.get());
+    return {found.same, found.within(tolerance), found.distance_mm, {found.where.x, found.where.y}};
+}
+
+const char* kind_name(const std::string& head) {
+    switch (file_kind(head)) {
+    case FileKind::layers:
+        return "layers";
+    case FileKind::either:
+        return "either";
+    case FileKind::mesh:
+        break;
+    }
+    return "mesh";
+}
+
+} // namespace
+
+void bind_files(py::module_& module) {
+    module.def("file_kind", &kind_name);
+    module.def("read_layers", &read_stack);
+    module.def("verify", &verified);
+    module.def("compare", &compared);
+    module.def("write_mesh", &write_mesh);
+    py::class_<StackWriter>(module, "StackWriter")
+        .def("write", &StackWriter::write)
+        .def("finish", &StackWriter::finish);
+    module.def("open_writer", &open_writer);
+    module.def("layer_formats", [] {
+        std::vector<std::tuple<std::string, std::string, std::string>> found;
+        for (const LayerFormat& format : layer_formats())
+            found.emplace_back(format.name, format.extension, format.summary);
+        return found;
+    });
+}
+
+} // namespace lamella::python

@@ -1,0 +1,119 @@
+#include "layer_stream.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <chrono>
+#include <memory>
+#include <utility>
+
+namespace py = pybind11;
+
+namespace lamella::python {
+namespace {
+
+// Enough for the threads not to wait for each other, little enough not to be felt: 16 MB.
+constexpr std::size_t most_points = (std::size_t{16} << 20) / sizeof(Point2);
+
+constexpr std::chrono::milliseconds between_signals{50};
+
+} // namespace
+
+void LayerQueue::put(Layer&& layer, const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    const auto has_room = [&] {
+        return waiting_.empty() || points_ + layer.points.size() <= most_points;
+    };
+    if (!room_.wait(lock, stop, has_room) || stop.stop_requested())
+        throw Error(ErrorKind::cancelled, "cancelled");
+    points_ += layer.points.size();
+    waiting_.push_back(std::move(layer));
+    news_.notify_one();
+}
+
+void LayerQueue::end(std::exception_ptr failure) {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    failure_ = std::move(failure);
+    news_.notify_all();
+}
+
+LayerQueue::Found LayerQueue::take(Layer& layer) {
+    std::unique_lock lock(mutex_);
+    if (!news_.wait_for(lock, between_signals, [&] { return !waiting_.empty() || ended_; }))
+        return Found::nothing_yet;
+    if (!waiting_.empty()) {
+        layer = std::move(waiting_.front());
+        waiting_.pop_front();
+        points_ -= layer.points.size();
+        room_.notify_one();
+        return Found::layer;
+    }
+    if (failure_)
+        std::rethrow_exception(std::exchange(failure_, nullptr));
+    return Found::end;
+}
+
+LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads,
+                         py::object listener)
+    : mesh_(std::move(mesh)), plan_(std::move(plan)), listener_(std::move(listener)) {
+    Execution execution{.threads = threads};
+    if (!listener_.is_none())
+        execution.progress = [this](const Progress& progress) {
+            progress_.put(progress);
+        };
+    worker_ = std::jthread([this, execution, &with](const std::stop_token& stop) mutable {
+        std::exception_ptr failure;
+        try {
+            execution.cancel = stop;
+            const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+                return [this, &stop, kept = std::move(layer)]() mutable {
+                    queue_.put(std::move(kept), stop);
+                };
+            };
+            slice_to(sink, mesh_->to_slice(execution), plan_, execution, nullptr, with);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        queue_.end(std::move(failure));
+    });
+}
+
+LayerStream::~LayerStream() {
+    close();
+}
+
+LayerPointer LayerStream::next() {
+    try {
+        for (Layer layer; !closed_;) {
+            LayerQueue::Found found = LayerQueue::Found::nothing_yet;
+            {
+                const py::gil_scoped_release released;
+                found = queue_.take(layer);
+            }
+            tell(progress_, listener_);
+            check_signals();
+            if (found == LayerQueue::Found::end)
+                closed_ = true;
+            else if (found == LayerQueue::Found::layer) {
+                ++taken_;
+                return std::make_shared<SharedLayer>(std::move(layer));
+            }
+        }
+    } catch (...) {
+        if (closed_) // by another thread, meanwhile
+            throw py::stop_iteration();
+        close();
+        throw;
+    }
+    throw py::stop_iteration();
+}
+
+void LayerStream::close() {
+    closed_ = true;
+    // Of several threads that close it, one gets the worker. Its end stops it and waits.
+    std::jthread worker = std::move(worker_);
+    const py::gil_scoped_release released;
+    worker = {};
+}
+
+} // namespace lamella::python

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "run.hpp"
+#include "shared_layer.hpp"
+#include "source_mesh.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+namespace lamella::python {
+
+/// Layers on their way from the threads that make them to the one that wants them: a bounded number of them.
+class LayerQueue {
+  public:
+    /// Waits for room. Throws Error{cancelled} when a stop is requested meanwhile.
+    void put(Layer&& layer, const std::stop_token& stop);
+    /// No more will come; `failure` says why, where it is no good reason.
+    void end(std::exception_ptr failure);
+
+    enum class Found { layer, nothing_yet, end };
+    /// Waits for a moment. At the end throws the failure, where there was one.
+    Found take(Layer& layer);
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable_any room_;
+    std::condition_variable_any news_;
+    std::deque<Layer> waiting_;
+    std::size_t points_ = 0; ///< in those that wait
+    bool ended_ = false;
+    std::exception_ptr failure_;
+};
+
+/// Slices while somebody takes the layers, one by one and in ascending z.
+class LayerStream {
+  public:
+    LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads, pybind11::object listener);
+    LayerStream(const LayerStream&) = delete;
+    LayerStream& operator=(const LayerStream&) = delete;
+    ~LayerStream();
+
+    /// Throws pybind11::stop_iteration after the last one and once the stream is closed.
+    LayerPointer next();
+    /// Stops slicing, and waits until it has stopped.
+    void close();
+
+    [[nodiscard]] const SourceMesh& mesh() const noexcept { return *mesh_; }
+    [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
+    [[nodiscard]] std::size_t left() const noexcept { return plan_.layers.size() - taken_; }
+
+  private:
+    MeshPointer mesh_;
+    Plan plan_;
+    pybind11::object listener_;
+    ProgressBox progress_;
+    LayerQueue queue_;
+    std::size_t taken_ = 0;
+    bool closed_ = false;
+    std::jthread worker_;
+};
+
+} // namespace lamella::python

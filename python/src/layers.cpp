@@ -1,0 +1,543 @@
+#include "layers.hpp"
+
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/polygon/compare.hpp"
+#include "lamella/polygon/fill.hpp"
+#include "lamella/polygon/layer_steps.hpp"
+
+#include "arrays.hpp"
+#include "placing.hpp"
+#include "shared_layer.hpp"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace lamella::python {
+namespace {
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+static_assert(sizeof(Point2) == 2 * sizeof(double));
+
+const Layer& layer_of(const py::object& self) {
+    return self.cast<const SharedLayer&>().get();
+}
+
+py::array_t<double> view_of(std::span<const Point2> points, const py::object& owner) {
+    const auto* first = reinterpret_cast<const double*>(points.data());
+    return view(first, {static_cast<py::ssize_t>(points.size()), 2}, owner);
+}
+
+py::array_t<std::int64_t> offsets_of(const py::object& self) {
+    // Signed, since NumPy makes floating point of sums of signed and unsigned numbers.
+    const std::vector<std::uint64_t>& offsets = layer_of(self).offsets;
+    const auto* first = reinterpret_cast<const std::int64_t*>(offsets.data());
+    return view(first, {static_cast<py::ssize_t>(offsets.size())}, self);
+}
+
+const LayerMeasure& measure_of(const SharedLayer& layer) {
+    const py::gil_scoped_release released;
+    return layer.measure();
+}
+
+std::string hash_text(const SharedLayer& layer) {
+    std::uint64_t hash = 0;
+    {
+        const py::gil_scoped_release released;
+        hash = layer.hash();
+    }
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash));
+    return text.data();
+}
+
+std::size_t place_in(py::ssize_t index, std::size_t size, const char* what) {
+    const auto count = static_cast<py::ssize_t>(size);
+    if (index < -count || index >= count)
+        throw py::index_error(what + std::string(" ") + std::to_string(index) + " of " +
+                              std::to_string(size));
+    return static_cast<std::size_t>(index < 0 ? index + count : index);
+}
+
+py::array_t<double> contour_of(const py::object& self, py::ssize_t index) {
+    const Layer& layer = layer_of(self);
+    return view_of(layer.contour(place_in(index, layer.contours(), "contour")), self);
+}
+
+/// Pairs of a ring and its holes, by number.
+std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(const SharedLayer& layer) {
+    const py::gil_scoped_release released;
+    std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> found;
+    for (Polygon& polygon : polygons(layer.nesting()))
+        found.emplace_back(polygon.outer, std::move(polygon.holes));
+    return found;
+}
+
+/// Everything but the arrays; what layers are made from and pickled as.
+struct LayerHead {
+    std::uint64_t index = 0;
+    double z = 0;
+    double bottom = 0;
+    double top = 0;
+};
+
+PointArray points_of(const Doubles& rows) {
+    std::vector<Point2> points(static_cast<std::size_t>(rows.size()) / 2);
+    const double* x = rows.data();
+    for (Point2& p : points) {
+        if (!(std::isfinite(x[0]) && std::isfinite(x[1])))
+            throw Error(ErrorKind::input, "a point of a layer is not finite");
+        p = {x[0] + 0.0, x[1] + 0.0}; // -0 would compare equal and hash differently
+        x += 2;
+    }
+    return PointArray(std::move(points));
+}
+
+std::vector<std::uint64_t> offsets_of(const Numbers& numbers, std::size_t points) {
+    std::vector<std::uint64_t> offsets(numbers.data(), numbers.data() + numbers.size());
+    if (offsets.empty() || offsets.front() != 0 || offsets.back() != points ||
+        std::adjacent_find(offsets.begin(), offsets.end(), std::greater_equal<>()) != offsets.end())
+        throw Error(ErrorKind::input,
+                    "offsets must begin with 0, ascend, and end with the number of points, " +
+                        std::to_string(points));
+    return offsets;
+}
+
+LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const Numbers& offsets,
+                             std::size_t rings, const Doubles& hatches) {
+    Layer layer{.index = head.index, .z = head.z, .bottom = head.bottom, .top = head.top};
+    layer.points = points_of(points);
+    layer.offsets = offsets_of(offsets, layer.points.size());
+    layer.hatches = points_of(hatches);
+    layer.rings = rings;
+    if (rings > layer.contours())
+        throw Error(ErrorKind::input, "there are more closed contours than contours");
+    return std::make_shared<SharedLayer>(normal_form(std::move(layer)));
+}
+
+/// Contours in any order.
+LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z,
+                               std::optional<double> given_bottom, std::optional<double> given_top,
+                               std::uint64_t index, const std::vector<Doubles>& chains) {
+    const double bottom = given_bottom.value_or(z);
+    const double top = given_top.value_or(z);
+    for (const double height : {z, bottom, top})
+        if (!std::isfinite(height))
+            throw Error(ErrorKind::usage, "the heights of a layer must be finite numbers");
+    if (!(bottom <= z && z <= top))
+        throw Error(ErrorKind::usage, "a layer is cut at z between its bottom and its top");
+    LayerBuilder builder;
+    for (const auto* contours : {&rings, &chains})
+        for (const Doubles& contour : *contours) {
+            if (contour.ndim() != 2 || contour.shape(1) != 2)
+                throw Error(ErrorKind::usage, "a contour is an array of the shape (n, 2)");
+            for (const Point2& p : points_of(contour))
+                builder.add_point(p);
+            builder.end_contour(contours == &rings);
+        }
+    return std::make_shared<SharedLayer>(builder.finish(index, z, bottom, top));
+}
+
+bool same(const SharedLayer& first, const SharedLayer& second) {
+    const Layer& a = first.get();
+    const Layer& b = second.get();
+    return a.index == b.index && a.z == b.z && a.bottom == b.bottom && a.top == b.top &&
+           same_contours(a, b) && std::ranges::equal(a.hatches, b.hatches);
+}
+
+std::string layer_text(const SharedLayer& layer) {
+    const Layer& it = layer.get();
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(), "<lamella.Layer %llu at z = %.6g mm: %zu contours, %zu points%s>",
+                  static_cast<unsigned long long>(it.index), it.z, it.contours(), it.points.size(),
+                  it.open_chains() > 0 ? ", not all closed" : "");
+    return text.data();
+}
+
+/// The layer after steps, each of which leaves it alone unless it is asked for.
+LayerPointer after(const SharedLayer& layer, const LayerSteps& steps) {
+    const py::gil_scoped_release released;
+    LayerChanges changes;
+    return std::make_shared<SharedLayer>(take_steps(steps, layer.get(), changes));
+}
+
+py::tuple state_of(const py::object& self) {
+    const Layer& layer = layer_of(self);
+    return py::make_tuple(layer.index, layer.z, layer.bottom, layer.top, view_of(layer.points.span(), self),
+                          offsets_of(self), layer.rings, view_of(layer.hatches.span(), self));
+}
+
+LayerPointer layer_of_state(const py::tuple& state) {
+    if (state.size() != 8)
+        throw Error(ErrorKind::input, "this is no pickled layer");
+    const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
+                         state[3].cast<double>()};
+    return layer_of_arrays(head, state[4].cast<Doubles>(), state[5].cast<Numbers>(),
+                           state[6].cast<std::size_t>(), state[7].cast<Doubles>());
+}
+
+using StackPointer = std::shared_ptr<Stack>;
+
+StackPointer part_of(const Stack& stack, const py::slice& range) {
+    py::ssize_t start = 0;
+    py::ssize_t stop = 0;
+    py::ssize_t step = 0;
+    py::ssize_t count = 0;
+    if (!range.compute(static_cast<py::ssize_t>(stack.layers.size()), &start, &stop, &step, &count))
+        throw py::error_already_set();
+    if (step < 0)
+        throw py::value_error("layers of a stack ascend: its slices cannot run backwards");
+    auto part = std::make_shared<Stack>(stack);
+    part->parts.clear();
+    part->layers.clear();
+    for (py::ssize_t i = 0; i < count; ++i)
+        part->layers.push_back(stack.layers[static_cast<std::size_t>(start + i * step)]);
+    return part;
+}
+
+/// One number for each layer.
+template <class T, class Value>
+auto numbers_of(const Value& value) {
+    return [value](const Stack& stack) {
+        return array_of<T>(stack.layers, [&](const LayerPointer& layer) { return value(*layer); });
+    };
+}
+
+/// The same where it takes work to know it.
+template <class T, class Value>
+auto measures_of(const Value& value) {
+    return [value](const Stack& stack) {
+        {
+            const py::gil_scoped_release released;
+            for (const LayerPointer& layer : stack.layers)
+                static_cast<void>(layer->measure());
+        }
+        return array_of<T>(stack.layers, [&](const LayerPointer& layer) { return value(layer->measure()); });
+    };
+}
+
+double volume_of(const Stack& stack) {
+    const py::gil_scoped_release released;
+    double volume = 0;
+    for (const LayerPointer& layer : stack.layers)
+        volume += layer->measure().area_mm2 * layer->get().thickness();
+    return volume;
+}
+
+template <class Count>
+std::uint64_t sum_of(const Stack& stack, const Count& count) {
+    std::uint64_t sum = 0;
+    for (const LayerPointer& layer : stack.layers)
+        sum += count(layer->get());
+    return sum;
+}
+
+std::string stack_text(const Stack& stack) {
+    std::string text = "<lamella.Stack of " + std::to_string(stack.layers.size()) + " layers";
+    if (!stack.layers.empty()) {
+        std::array<char, 80> range{};
+        std::snprintf(range.data(), range.size(), " from z = %.6g to %.6g mm",
+                      stack.layers.front()->get().bottom, stack.layers.back()->get().top);
+        text += range.data();
+    }
+    return text + ": " + std::to_string(sum_of(stack, [](const Layer& l) { return l.contours(); })) +
+           " contours, " + std::to_string(sum_of(stack, [](const Layer& l) { return l.points.size(); })) +
+           " points>";
+}
+
+bool same_stacks(const Stack& a, const Stack& b) {
+    return std::ranges::equal(a.layers, b.layers, [](const LayerPointer& first, const LayerPointer& second) {
+        return same(*first, *second);
+    });
+}
+
+void require_ascending(const std::vector<LayerPointer>& layers) {
+    for (std::size_t i = 0; i + 1 < layers.size(); ++i)
+        if (!(layers[i]->get().z < layers[i + 1]->get().z))
+            throw Error(ErrorKind::usage, "layers of a stack must ascend in z: number " +
+                                              std::to_string(i + 1) + " is not above the one before it");
+}
+
+StackPointer stack_of(std::vector<LayerPointer> layers, const std::string& label) {
+    require_ascending(layers);
+    auto stack = std::make_shared<Stack>();
+    stack->box = box_of(layers);
+    stack->layers = std::move(layers);
+    stack->label = label;
+    return stack;
+}
+
+py::tuple pickled(const Stack& stack) {
+    return py::make_tuple(stack.layers, stack.label, bounds_of(stack.box), matrix_of(stack.matrix),
+                          py::bytes(stack.path), stack.format, stack.resolution_mm, stack.parts);
+}
+
+StackPointer unpickled(const py::tuple& state) {
+    if (state.size() != 8)
+        throw Error(ErrorKind::input, "this is no pickled stack of layers");
+    StackPointer stack = stack_of(state[0].cast<std::vector<LayerPointer>>(), state[1].cast<std::string>());
+    stack->box = box_of(state[2].cast<Bounds>());
+    stack->matrix = transform_of(state[3].cast<Matrix>());
+    stack->path = state[4].cast<std::string>();
+    stack->format = state[5].cast<std::string>();
+    stack->resolution_mm = state[6].cast<double>();
+    stack->parts = state[7].cast<std::vector<StackPointer>>();
+    return stack;
+}
+
+/// Goes by __getitem__ and the error that ends it.
+py::object each_of(const py::object& sequence) {
+    return py::reinterpret_steal<py::object>(PySeqIter_New(sequence.ptr()));
+}
+
+void bind_layer(py::module_& module) {
+    py::class_<SharedLayer, LayerPointer>(
+        module, "Layer",
+        "What one plane yields: closed rings, and open chains where the mesh has defects. It never "
+        "changes.\n\n"
+        "Contours lie one after the other in `points`; contour i is points[offsets[i]:offsets[i + 1]], which "
+        "is\n"
+        "what layer[i] gives. Rings come first. Material lies to the left of a contour: outer rings run\n"
+        "counter-clockwise, holes clockwise. A ring does not repeat its first point at its end.\n\n"
+        "Slicing and reading make layers. Layer(rings, z, bottom=z, top=z, index=0, chains=()) makes one of "
+        "arrays\n"
+        "(n, 2) in millimetres, in any order.")
+        .def(py::init(&layer_of_contours), py::arg("rings"), py::arg("z"), py::arg("bottom") = py::none(),
+             py::arg("top") = py::none(), py::arg("index") = 0, py::arg("chains") = std::vector<Doubles>())
+        .def_property_readonly(
+            "index", [](const SharedLayer& self) { return self.get().index; },
+            "Its number in the whole plan, also when only a part of that was sliced.")
+        .def_property_readonly(
+            "z", [](const SharedLayer& self) { return self.get().z; }, "Where it was cut, in millimetres.")
+        .def_property_readonly(
+            "bottom", [](const SharedLayer& self) { return self.get().bottom; },
+            "Where the slab of material begins that the layer stands for, in millimetres.")
+        .def_property_readonly(
+            "top", [](const SharedLayer& self) { return self.get().top; },
+            "Where that slab ends, in millimetres.")
+        .def_property_readonly(
+            "thickness", [](const SharedLayer& self) { return self.get().thickness(); },
+            "top - bottom, in millimetres.")
+        .def_property_readonly(
+            "points", [](const py::object& self) { return view_of(layer_of(self).points.span(), self); },
+            "The points of all contours in millimetres: (n, 2) float64, read-only, without a copy.")
+        .def_property_readonly(
+            "offsets", [](const py::object& self) { return offsets_of(self); },
+            "Where contours begin, and where the last one ends: (contours + 1,) int64, read-only, without a\n"
+            "copy.")
+        .def_property_readonly(
+            "closed",
+            [](const SharedLayer& self) {
+                const Layer& layer = self.get();
+                py::array_t<bool> closed(static_cast<py::ssize_t>(layer.contours()));
+                for (std::size_t i = 0; i < layer.contours(); ++i)
+                    closed.mutable_at(i) = layer.closed(i);
+                return closed;
+            },
+            "Whether contour i is a ring: (contours,) bool. An open chain is the trace of a defect.")
+        .def_property_readonly(
+            "parent",
+            [](const py::object& self) {
+                const auto& layer = self.cast<const SharedLayer&>();
+                const std::vector<std::int64_t>* parents = nullptr;
+                {
+                    const py::gil_scoped_release released;
+                    parents = &layer.parents();
+                }
+                return view(parents->data(), {static_cast<py::ssize_t>(parents->size())}, self);
+            },
+            "The number of the innermost ring around contour i, -1 for an outermost one and for an open "
+            "chain:\n"
+            "(contours,) int64, read-only.")
+        .def_property_readonly(
+            "rings", [](const SharedLayer& self) { return self.get().rings; },
+            "How many contours are closed.")
+        .def_property_readonly(
+            "open_chains", [](const SharedLayer& self) { return self.get().open_chains(); },
+            "How many contours are not.")
+        .def_property_readonly(
+            "area", [](const SharedLayer& self) { return measure_of(self).area_mm2; },
+            "The area of the rings in square millimetres, holes taken off.")
+        .def_property_readonly(
+            "perimeter", [](const SharedLayer& self) { return measure_of(self).perimeter_mm; },
+            "The length of all contours in millimetres.")
+        .def_property_readonly("hash", &hash_text,
+                               "A hash of the contours, 16 hexadecimal digits: the same for the same "
+                               "contours on every machine.\n"
+                               "The program's statistics have the same.")
+        .def_property_readonly(
+            "hatches",
+            [](const py::object& self) {
+                const std::span<const Point2> points = layer_of(self).hatches.span();
+                const auto* first = reinterpret_cast<const double*>(points.data());
+                return view(first, {static_cast<py::ssize_t>(points.size() / 2), 2, 2}, self);
+            },
+            "Fill lines that a slice file held beside the contours, from point to point: (n, 2, 2) float64,\n"
+            "millimetres, read-only. Slicing makes none.")
+        .def(
+            "polygons", &polygons_of,
+            "Pieces of material: pairs (outer, holes) of the number of the ring around it and a list of the\n"
+            "numbers of its holes. Open chains, and rings that bound no material, are left out.")
+        .def(
+            "to_shapely",
+            [](const py::object& self) {
+                return py::module_::import("lamella._shapely").attr("multi_polygon")(self);
+            },
+            "The material as a shapely.geometry.MultiPolygon in millimetres, holes where they belong. Open "
+            "chains\n"
+            "are left out. Needs shapely.")
+        .def(
+            "filled",
+            [](const SharedLayer& self, const std::string& rule) {
+                for (const FillRule known : {FillRule::nonzero, FillRule::evenodd, FillRule::positive})
+                    if (fill_rule_name(known) == rule)
+                        return after(self, {.fill = known});
+                throw Error(ErrorKind::usage,
+                            "\"" + rule + "\" is no fill rule; there are nonzero, evenodd and positive");
+            },
+            py::arg("rule") = "nonzero",
+            "The layer with bodies that overlap united: material is where contours wind around `rule` "
+            "times:\n"
+            "\"nonzero\", \"evenodd\" or \"positive\". Contours that do not overlap keep their points.")
+        .def(
+            "offset",
+            [](const SharedLayer& self, double distance) {
+                if (!std::isfinite(distance))
+                    throw Error(ErrorKind::usage, "a distance must be a finite number");
+                return after(self, {.offset_mm = distance});
+            },
+            py::arg("distance"),
+            "The layer with its material grown by `distance` millimetres, or shrunk by a negative one.")
+        .def(
+            "simplified",
+            [](const SharedLayer& self, double tolerance) { return after(self, {.simplify_mm = tolerance}); },
+            py::arg("tolerance"),
+            "The layer with points left out, so that no contour moves by more than `tolerance` millimetres.")
+        .def("__len__", [](const SharedLayer& self) { return self.get().contours(); })
+        .def("__getitem__", &contour_of, py::arg("contour"))
+        .def("__iter__", &each_of)
+        .def(
+            "__eq__", [](const SharedLayer& self, const SharedLayer& other) { return same(self, other); },
+            py::is_operator())
+        .def("__hash__", [](const SharedLayer& self) { return self.hash() >> 1; })
+        .def("__repr__", &layer_text)
+        .def(py::pickle(&state_of, &layer_of_state));
+}
+
+void bind_stack(py::module_& module) {
+    py::class_<Stack, StackPointer>(
+        module, "Stack",
+        "Layers in ascending z, as lamella.slice and lamella.read give them. A sequence of Layer: stack[i],\n"
+        "stack[a:b], len(stack), and for layer in stack. It never changes.")
+        .def(py::init(&stack_of), py::arg("layers"), py::arg("label") = "part")
+        .def_property_readonly("z", numbers_of<double>([](const SharedLayer& l) { return l.get().z; }),
+                               "Where the layers were cut, in millimetres: (layers,) float64.")
+        .def_property_readonly("bottom",
+                               numbers_of<double>([](const SharedLayer& l) { return l.get().bottom; }),
+                               "Where their slabs of material begin, in millimetres: (layers,) float64.")
+        .def_property_readonly("top", numbers_of<double>([](const SharedLayer& l) { return l.get().top; }),
+                               "Where their slabs of material end, in millimetres: (layers,) float64.")
+        .def_property_readonly("area", measures_of<double>([](const LayerMeasure& m) { return m.area_mm2; }),
+                               "The areas of the layers in square millimetres: (layers,) float64.")
+        .def_property_readonly("perimeter",
+                               measures_of<double>([](const LayerMeasure& m) { return m.perimeter_mm; }),
+                               "The lengths of their contours in millimetres: (layers,) float64.")
+        .def_property_readonly(
+            "contours", numbers_of<std::int64_t>([](const SharedLayer& l) { return l.get().contours(); }),
+            "How many contours each layer has: (layers,) int64.")
+        .def_property_readonly("open_chains", numbers_of<std::int64_t>([](const SharedLayer& l) {
+                                   return l.get().open_chains();
+                               }),
+                               "How many contours of each layer are not closed: (layers,) int64.")
+        .def_property_readonly(
+            "hashes",
+            [](const Stack& self) {
+                std::vector<std::string> hashes;
+                for (const LayerPointer& layer : self.layers)
+                    hashes.push_back(hash_text(*layer));
+                return hashes;
+            },
+            "The hash of each layer, see Layer.hash.")
+        .def_property_readonly("volume", &volume_of, "The sum of area times thickness, in cubic millimetres.")
+        .def_property_readonly(
+            "points",
+            [](const Stack& self) { return sum_of(self, [](const Layer& l) { return l.points.size(); }); },
+            "How many points all contours have.")
+        .def_property_readonly(
+            "label", [](const Stack& self) { return path_text(self.label); },
+            "What the part is called in slice files.")
+        .def_property_readonly(
+            "bounds", [](const Stack& self) { return bounds_of(self.box); },
+            "The smallest and the largest x, y and z in millimetres: (2, 3) float64. Of the mesh that was\n"
+            "sliced; of the layers where they come from a slice file.")
+        .def_property_readonly(
+            "matrix", [](const Stack& self) { return matrix_of(self.matrix); },
+            "From the coordinates of the mesh to those of the layers, as `direction` and `transform` asked "
+            "for it:\n"
+            "a (4, 4) matrix.")
+        .def_property_readonly(
+            "parts",
+            [](const StackPointer& self) {
+                return self->parts.empty() ? std::vector<StackPointer>{self} : self->parts;
+            },
+            "The parts of a slice file that holds several, each a stack with a label; else the stack itself.")
+        .def_property_readonly(
+            "path", [](const Stack& self) { return path_text(self.path); },
+            "The slice file it was read from; empty where it was sliced.")
+        .def_property_readonly(
+            "format", [](const Stack& self) { return self.format; },
+            "The format of that file, such as \"cli\".")
+        .def_property_readonly(
+            "resolution", [](const Stack& self) { return self.resolution_mm; },
+            "The step to which that file rounds, in millimetres; 0 where it does not.")
+        .def("__len__", [](const Stack& self) { return self.layers.size(); })
+        .def("__getitem__",
+             [](const Stack& self, py::ssize_t index) {
+                 return self.layers[place_in(index, self.layers.size(), "layer")];
+             })
+        .def("__getitem__", &part_of)
+        .def("__iter__", &each_of)
+        .def(
+            "__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },
+            py::is_operator())
+        .def("__repr__", &stack_text)
+        .def(py::pickle(&pickled, &unpickled));
+}
+
+} // namespace
+
+py::str path_text(const std::string& path) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeFSDefaultAndSize(path.data(), static_cast<py::ssize_t>(path.size())));
+}
+
+py::list path_texts(const std::vector<std::string>& texts) {
+    py::list list;
+    for (const std::string& text : texts)
+        list.append(path_text(text));
+    return list;
+}
+
+void bind_layers(py::module_& module) {
+    bind_layer(module);
+    bind_stack(module);
+}
+
+} // namespace lamella::python

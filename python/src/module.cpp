@@ -1,0 +1,24 @@
+// The extension lamella._lamella. What users call is in the package around it; see __init__.py there.
+
+#include "errors.hpp"
+#include "files.hpp"
+#include "layers.hpp"
+#include "slicing.hpp"
+#include "source_mesh.hpp"
+
+#include <pybind11/pybind11.h>
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_lamella, module) {
+    // The stubs have the signatures, in the words of Python.
+    py::options options;
+    options.disable_function_signatures();
+
+    module.attr("__version__") = LAMELLA_VERSION;
+    lamella::python::register_errors();
+    lamella::python::bind_meshes(module);
+    lamella::python::bind_layers(module);
+    lamella::python::bind_slicing(module);
+    lamella::python::bind_files(module);
+}

@@ -1,0 +1,40 @@
+#include "placing.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <cstddef>
+
+namespace lamella::python {
+
+pybind11::array_t<double> bounds_of(const Box3& box) {
+    const std::array bounds{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
+    return pybind11::array_t<double>({2, 3}, bounds.data());
+}
+
+Box3 box_of(const Bounds& bounds) {
+    const auto& [min, max] = bounds;
+    return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
+}
+
+pybind11::array_t<double> matrix_of(const Transform& map) {
+    Matrix rows{};
+    for (std::size_t r = 0; r < 3; ++r)
+        rows[r] = {map.linear[r][0], map.linear[r][1], map.linear[r][2], map.offset[r]};
+    rows[3] = {0, 0, 0, 1};
+    return pybind11::array_t<double>({4, 4}, rows.front().data());
+}
+
+Transform transform_of(const Matrix& rows) {
+    if (rows[3] != std::array<double, 4>{0, 0, 0, 1})
+        throw Error(ErrorKind::usage,
+                    "the last row of a transform must be 0, 0, 0, 1: meshes are moved, turned and "
+                    "scaled, but not projected");
+    Transform map;
+    for (std::size_t r = 0; r < 3; ++r) {
+        map.linear[r] = {rows[r][0], rows[r][1], rows[r][2]};
+        map.offset[r] = rows[r][3];
+    }
+    return map;
+}
+
+} // namespace lamella::python

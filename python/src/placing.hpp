@@ -1,0 +1,24 @@
+#pragma once
+
+// Boxes and maps as Python sees them: arrays of numbers.
+
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/transform.hpp"
+
+#include <pybind11/numpy.h>
+
+#include <array>
+
+namespace lamella::python {
+
+using Bounds = std::array<std::array<double, 3>, 2>;
+using Matrix = std::array<std::array<double, 4>, 4>; ///< by rows; acts on columns (x, y, z, 1)
+
+[[nodiscard]] pybind11::array_t<double> bounds_of(const Box3& box);
+[[nodiscard]] Box3 box_of(const Bounds& bounds);
+
+[[nodiscard]] pybind11::array_t<double> matrix_of(const Transform& map);
+/// Throws Error{usage} where the last row is not 0, 0, 0, 1.
+[[nodiscard]] Transform transform_of(const Matrix& rows);
+
+} // namespace lamella::python

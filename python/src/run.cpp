@@ -1,0 +1,93 @@
+#include "run.hpp"
+
+#include <chrono>
+#include <exception>
+#include <stop_token>
+#include <thread>
+
+namespace py = pybind11;
+
+namespace lamella::python {
+namespace {
+
+constexpr std::chrono::milliseconds between_signals{50};
+
+/// Says when the work is done.
+class Bell {
+  public:
+    void ring() {
+        const std::lock_guard lock(mutex_);
+        rung_ = true;
+        changed_.notify_one();
+    }
+
+    /// Waits for a moment. True when the work is done.
+    bool wait() {
+        const py::gil_scoped_release released;
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, between_signals, [&] { return rung_; });
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool rung_ = false;
+};
+
+} // namespace
+
+void ProgressBox::put(const Progress& progress) {
+    const std::lock_guard lock(mutex_);
+    if (!waiting_.empty() && waiting_.back().stage == progress.stage)
+        waiting_.back() = progress;
+    else
+        waiting_.push_back(progress);
+}
+
+std::vector<Progress> ProgressBox::take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(waiting_, {});
+}
+
+void tell(ProgressBox& box, const py::object& listener) {
+    if (listener.is_none())
+        return;
+    for (const Progress& progress : box.take())
+        listener(stage_name(progress.stage), progress.done, progress.total);
+}
+
+void check_signals() {
+    if (PyErr_CheckSignals() != 0)
+        throw py::error_already_set();
+}
+
+void run(unsigned threads, const py::object& listener, const std::function<void(const Execution&)>& work) {
+    ProgressBox box;
+    Bell bell;
+    std::exception_ptr failure;
+    Execution execution{.threads = threads};
+    if (!listener.is_none())
+        execution.progress = [&box](const Progress& progress) {
+            box.put(progress);
+        };
+    // Its destructor asks the work to stop, and waits for that, when something below is thrown.
+    std::jthread worker([&](const std::stop_token& stop) {
+        try {
+            execution.cancel = stop;
+            work(execution);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        bell.ring();
+    });
+    for (bool done = false; !done;) {
+        done = bell.wait();
+        tell(box, listener);
+        check_signals();
+    }
+    worker.join();
+    if (failure)
+        std::rethrow_exception(failure);
+}
+
+} // namespace lamella::python

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/polygon/nesting.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella::python {
+
+/// A layer that never changes, and what is found out about it when somebody asks first. To be asked without
+/// the interpreter lock, since another thread may be finding out the same.
+class SharedLayer {
+  public:
+    explicit SharedLayer(Layer layer) : layer_(std::move(layer)) {}
+
+    [[nodiscard]] const Layer& get() const noexcept { return layer_; }
+    [[nodiscard]] const LayerMeasure& measure() const;
+    [[nodiscard]] const Nesting& nesting() const;
+    [[nodiscard]] std::uint64_t hash() const;
+    /// Ring by ring the ring around it, then a value for each chain; -1 is none.
+    [[nodiscard]] const std::vector<std::int64_t>& parents() const;
+
+  private:
+    Layer layer_;
+    mutable std::once_flag measured_;
+    mutable std::once_flag nested_;
+    mutable std::once_flag hashed_;
+    mutable LayerMeasure measure_;
+    mutable Nesting nesting_;
+    mutable std::vector<std::int64_t> parents_;
+    mutable std::uint64_t hash_ = 0;
+};
+
+using LayerPointer = std::shared_ptr<SharedLayer>;
+
+/// The layers of one part, or of all parts of a file together.
+struct Stack {
+    std::vector<LayerPointer> layers;
+    std::string label = {};
+    /// Of the mesh that was sliced, as it was sliced; of the layers themselves where there was none.
+    Box3 box = {};
+    /// From the coordinates of the mesh to those in which it was sliced.
+    Transform matrix = {};
+    /// The slice file it was read from; empty where it was sliced.
+    std::string path = {};
+    std::string format = {};
+    double resolution_mm = 0; ///< to which that file rounds
+    /// The parts of a file that holds several.
+    std::vector<std::shared_ptr<Stack>> parts = {};
+};
+
+/// Without an index where it has none: the box of the contours, from the bottom of the first layer to the top
+/// of the last. Never empty for a stack with layers.
+[[nodiscard]] Box3 box_of(const std::vector<LayerPointer>& layers);
+
+[[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers);
+/// The layers themselves: their points stay where they are.
+[[nodiscard]] LayerStack plain(const Stack& stack);
+
+} // namespace lamella::python

@@ -1,0 +1,133 @@
+#include "slicing.hpp"
+
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "arrays.hpp"
+#include "layer_stream.hpp"
+#include "layers.hpp"
+#include "placing.hpp"
+#include "run.hpp"
+#include "shared_layer.hpp"
+#include "source_mesh.hpp"
+
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace lamella::python {
+namespace {
+
+SliceAt slice_at(const std::string& name) {
+    if (name == "bottom")
+        return SliceAt::bottom;
+    if (name == "middle")
+        return SliceAt::middle;
+    if (name == "top")
+        return SliceAt::top;
+    throw Error(ErrorKind::usage, "at: \"" + name + "\" is none of \"bottom\", \"middle\" and \"top\"");
+}
+
+using ZRange = std::optional<std::pair<double, double>>;
+using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
+
+using Heights = std::vector<std::tuple<double, double, double>>;
+
+/// What slice_file would cut, by the wishes of a job.
+Plan plan_for(const MeshPointer& mesh, double layer_height, std::optional<double> first_layer_height,
+              const std::string& at, const ZRange& z_range, const IndexRange& layers,
+              const std::optional<std::vector<double>>& z, const Heights& heights,
+              const std::optional<std::array<double, 3>>& adaptive, unsigned threads,
+              const py::object& progress) {
+    FileJob job;
+    job.layers = {layer_height, first_layer_height, slice_at(at), z_range, layers};
+    if (z) {
+        static_cast<void>(
+            plan_listed(*z, job.layers.slice_at)); // refuses an empty list, which to a job is none
+        job.z = *z;
+    }
+    for (const auto& [from, to, height] : heights)
+        job.heights.push_back({from, to, height});
+    if (adaptive)
+        job.adaptive = {(*adaptive)[0], (*adaptive)[1], (*adaptive)[2], job.layers.slice_at};
+    return result_of(threads, progress,
+                     [&](const Execution& execution) { return plan_of(job, mesh->plate(), execution); });
+}
+
+std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const Plan& plan, const std::string& with,
+                                   unsigned threads, const py::object& progress) {
+    const Engine& chosen = engine(with);
+    auto stack = std::make_shared<Stack>();
+    run(threads, progress, [&](const Execution& execution) {
+        stack->layers = shared(slice(mesh->to_slice(execution), plan, execution, nullptr, chosen));
+    });
+    stack->label = mesh->origin().label;
+    stack->box = mesh->box();
+    stack->matrix = mesh->origin().matrix;
+    return stack;
+}
+
+void bind_stream(py::module_& module) {
+    py::class_<LayerStream>(
+        module, "LayerStream",
+        "Layers while they are being made, in ascending z: an iterator. Few of them are in memory at\n"
+        "a time. It may be closed before its end, and closes itself when nobody holds it any more.")
+        .def_property_readonly(
+            "z",
+            [](const LayerStream& self) {
+                return array_of<double>(self.plan().layers,
+                                        [](const PlannedLayer& layer) { return layer.z; });
+            },
+            "Where layers are cut, those already taken included, in millimetres: (layers,) float64.")
+        .def_property_readonly(
+            "bounds", [](const LayerStream& self) { return bounds_of(self.mesh().box()); },
+            "The smallest and the largest x, y and z of the mesh in millimetres: (2, 3) float64.")
+        .def_property_readonly(
+            "label", [](const LayerStream& self) { return path_text(self.mesh().origin().label); },
+            "What the part is called in slice files.")
+        .def_property_readonly("_bottom",
+                               [](const LayerStream& self) { return self.plan().layers.front().bottom; })
+        .def("close", &LayerStream::close, "Stops slicing. To be called more than once does no harm.")
+        .def("__length_hint__", &LayerStream::left)
+        .def("__iter__", [](const py::object& self) { return self; })
+        .def("__next__", &LayerStream::next)
+        .def("__enter__", [](const py::object& self) { return self; })
+        .def("__exit__", [](LayerStream& self, const py::args&) { self.close(); })
+        .def("__repr__", [](const LayerStream& self) {
+            return "<lamella.LayerStream: " + std::to_string(self.left()) + " of " +
+                   std::to_string(self.plan().layers.size()) + " layers left>";
+        });
+    module.def("stream", [](const MeshPointer& mesh, const Plan& plan, const std::string& with,
+                            unsigned threads, const py::object& progress) {
+        return std::make_unique<LayerStream>(mesh, plan, engine(with), threads, progress);
+    });
+}
+
+} // namespace
+
+void bind_slicing(py::module_& module) {
+    py::class_<Plan>(module, "Plan").def("__len__", [](const Plan& self) { return self.layers.size(); });
+    module.def("plan", &plan_for);
+    module.def("slice_stack", &slice_stack);
+    bind_stream(module);
+    module.def("engines", [] {
+        std::vector<std::tuple<std::string, std::string, std::string>> found;
+        for (const Engine& engine : engines())
+            found.emplace_back(engine.name, engine.summary, engine.source);
+        return found;
+    });
+}
+
+} // namespace lamella::python

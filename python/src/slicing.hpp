@@ -1,0 +1,10 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace lamella::python {
+
+/// Plans, slicing into a stack, the class LayerStream, and the engines.
+void bind_slicing(pybind11::module_& module);
+
+} // namespace lamella::python

@@ -1,0 +1,259 @@
+#include "source_mesh.hpp"
+
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/inspect.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "arrays.hpp"
+#include "layers.hpp"
+#include "placing.hpp"
+#include "run.hpp"
+
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace py = pybind11;
+
+namespace lamella::python {
+namespace {
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+std::vector<Point3> points_of(const Doubles& rows) {
+    std::vector<Point3> points(static_cast<std::size_t>(rows.shape(0)));
+    const double* x = rows.data();
+    for (Point3& p : points) {
+        p = {x[0] + 0.0, x[1] + 0.0, x[2] + 0.0};
+        x += 3;
+    }
+    return points;
+}
+
+std::vector<std::array<std::uint32_t, 3>> triangles_of(const Numbers& rows, std::size_t vertices) {
+    std::vector<std::array<std::uint32_t, 3>> triangles(static_cast<std::size_t>(rows.shape(0)));
+    const std::int64_t* number = rows.data();
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        for (std::uint32_t& corner : triangles[i]) {
+            if (*number < 0 || static_cast<std::uint64_t>(*number) >= vertices)
+                throw Error(ErrorKind::input, "faces: row " + std::to_string(i) + " names vertex " +
+                                                  std::to_string(*number) + ", and there are " +
+                                                  std::to_string(vertices) + ", counted from 0");
+            corner = static_cast<std::uint32_t>(*number++);
+        }
+    return triangles;
+}
+
+/// `vertices` (n, 3) and `faces` (m, 3), whose shapes the caller has checked.
+MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
+    if (static_cast<std::uint64_t>(vertices.shape(0)) > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorKind::limit, "vertices: a mesh has 2^32 - 1 at most");
+    const py::gil_scoped_release released;
+    IndexedMesh mesh;
+    mesh.vertices = points_of(vertices);
+    mesh.triangles = triangles_of(faces, mesh.vertices.size());
+    check(mesh);
+    if (mesh.triangles.empty())
+        throw Error(ErrorKind::input, "faces: holds no triangle");
+    MeshOrigin origin;
+    origin.stored_triangles = mesh.triangles.size();
+    return std::make_shared<SourceMesh>(Mesh(std::move(mesh)), std::move(origin), Execution{});
+}
+
+MeshPointer read_source_mesh(const std::string& path, const std::string& label, std::optional<double> unit_mm,
+                             const MeshReadOptions& options, unsigned threads, const py::object& progress) {
+    return result_of(threads, progress, [&](const Execution& execution) {
+        return source_mesh(read_mesh(path, options, execution), label, unit_mm, execution);
+    });
+}
+
+MeshPointer transformed(const SourceMesh& source, const Transform& map) {
+    MeshOrigin origin = source.origin();
+    origin.matrix = compose(map, origin.matrix);
+    return std::make_shared<SourceMesh>(source.mesh().transformed(map), std::move(origin), Execution{});
+}
+
+py::dict defects_of(const SourceMesh& source, unsigned threads, const py::object& progress) {
+    const Inspection found = result_of(threads, progress, [&](const Execution& execution) {
+        return inspect(source.welded(execution), execution);
+    });
+    py::dict fields;
+    fields["triangles"] = source.origin().stored_triangles;
+    fields["vertices"] = found.vertices;
+    fields["volume"] = found.volume_mm3;
+    fields["area"] = found.area_mm2;
+    fields["closed"] = found.closed();
+    fields["sound"] = found.sound();
+    fields["shells"] = found.shells;
+    fields["cavities"] = found.cavities;
+    fields["boundary_edges"] = found.boundary_edges;
+    fields["nonmanifold_edges"] = found.nonmanifold_edges;
+    fields["orientation_conflicts"] = found.orientation_conflicts;
+    fields["duplicate_triangles"] = found.duplicate_triangles;
+    fields["degenerate_triangles"] = found.degenerate_triangles;
+    fields["inverted_shells"] = found.inverted_shells;
+    return fields;
+}
+
+py::str mesh_text(const SourceMesh& source) {
+    const Box3& box = source.box();
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), "<lamella.Mesh of %zu triangles, %.6g x %.6g x %.6g mm",
+                  source.mesh().size(), box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z);
+    const std::string& path = source.origin().path;
+    return py::str("{}{}{}>").format(text.data(), path.empty() ? "" : ", from ", path_text(path));
+}
+
+const IndexedMesh& welded_of(const SourceMesh& source) {
+    const py::gil_scoped_release released;
+    return source.welded({});
+}
+
+py::tuple state_of(const py::object& self) {
+    const MeshOrigin& origin = self.cast<const SourceMesh&>().origin();
+    return py::make_tuple(self.attr("vertices"), self.attr("faces"), py::bytes(origin.path), origin.format,
+                          origin.name, origin.label, origin.unit_mm, origin.stored_triangles, origin.warnings,
+                          matrix_of(origin.matrix));
+}
+
+MeshPointer mesh_of_state(const py::tuple& state) {
+    if (state.size() != 10)
+        throw Error(ErrorKind::input, "this is no pickled mesh");
+    const MeshPointer mesh = mesh_of_arrays(state[0].cast<Doubles>(), state[1].cast<Numbers>());
+    MeshOrigin origin{.path = state[2].cast<std::string>(),
+                      .format = state[3].cast<std::string>(),
+                      .name = state[4].cast<std::string>(),
+                      .label = state[5].cast<std::string>(),
+                      .unit_mm = state[6].cast<double>(),
+                      .stored_triangles = state[7].cast<std::uint64_t>(),
+                      .warnings = state[8].cast<std::vector<std::string>>(),
+                      .matrix = transform_of(state[9].cast<Matrix>())};
+    return std::make_shared<SourceMesh>(mesh->mesh(), std::move(origin), Execution{});
+}
+
+} // namespace
+
+SourceMesh::SourceMesh(Mesh mesh, MeshOrigin origin, const Execution& execution)
+    : mesh_(std::move(mesh)), origin_(std::move(origin)), box_(bounding_box(mesh_, execution)) {}
+
+const IndexedMesh& SourceMesh::welded(const Execution& execution) const {
+    std::call_once(welded_once_, [&] { welded_ = Mesh(weld(mesh_, execution)); });
+    return *welded_.indexed();
+}
+
+Mesh SourceMesh::to_slice(const Execution& execution) const {
+    if (mesh_.soup() != nullptr)
+        return mesh_;
+    static_cast<void>(welded(execution));
+    return welded_;
+}
+
+Plate SourceMesh::plate() const {
+    Plate plate;
+    plate.files.emplace_back().path = origin_.path.empty() ? "the mesh" : origin_.path;
+    plate.shapes.push_back({mesh_});
+    plate.parts.push_back({.label = origin_.label, .box = box_});
+    plate.box = box_;
+    return plate;
+}
+
+MeshPointer source_mesh(MeshFile file, const std::string& label, std::optional<double> unit_mm,
+                        const Execution& execution) {
+    MeshOrigin origin;
+    origin.path = file.path;
+    origin.format = format_name(file.format);
+    origin.name = file.name;
+    origin.stored_triangles = file.stored_triangles;
+    const Plate plate =
+        load_plate({.path = file.path, .unit_mm = unit_mm, .label = label}, std::move(file), execution);
+    origin.warnings = plate.files.front().warnings;
+    origin.unit_mm = plate.files.front().unit_mm;
+    if (plate.parts.size() == 1)
+        origin.label = plate.parts.front().label;
+    return std::make_shared<SourceMesh>(joined(plate, execution), std::move(origin), execution);
+}
+
+void bind_meshes(py::module_& module) {
+    py::class_<SourceMesh, MeshPointer>(
+        module, "Mesh",
+        "A triangle mesh in millimetres. It never changes.\n\n"
+        "Made by lamella.read from a file, or from arrays: Mesh(vertices, faces) with vertices (n, 3), in\n"
+        "millimetres, and faces (m, 3), three numbers of vertices each, counter-clockwise seen from "
+        "outside.\n"
+        "Wherever a function takes a mesh, arrays and paths will do, too.")
+        .def(py::init([](const py::object& vertices, const py::object& faces) {
+                 const py::object mesh_of = py::module_::import("lamella._meshes").attr("mesh_of_arrays");
+                 return mesh_of(vertices, faces).cast<MeshPointer>();
+             }),
+             py::arg("vertices"), py::arg("faces"))
+        .def_property_readonly(
+            "vertices",
+            [](const py::object& self) {
+                const IndexedMesh& mesh = welded_of(self.cast<const SourceMesh&>());
+                return view(&mesh.vertices.data()->x, {py::ssize_t(mesh.vertices.size()), 3}, self);
+            },
+            "The vertices in millimetres, equal ones joined: (n, 3) float64, read-only, without a copy.")
+        .def_property_readonly(
+            "faces",
+            [](const py::object& self) {
+                const IndexedMesh& mesh = welded_of(self.cast<const SourceMesh&>());
+                return view(mesh.triangles.data()->data(), {py::ssize_t(mesh.triangles.size()), 3}, self);
+            },
+            "The triangles as rows of `vertices`, counter-clockwise seen from outside: (m, 3) uint32,\n"
+            "read-only, without a copy.")
+        .def_property_readonly(
+            "bounds", [](const SourceMesh& self) { return bounds_of(self.box()); },
+            "The smallest and the largest x, y and z in millimetres: (2, 3) float64.")
+        .def_property_readonly(
+            "volume",
+            [](const SourceMesh& self) {
+                const py::gil_scoped_release released;
+                return volume(self.mesh());
+            },
+            "The volume in cubic millimetres: meaningful for a closed mesh, negative for one turned inside "
+            "out.")
+        .def_property_readonly(
+            "matrix", [](const SourceMesh& self) { return matrix_of(self.origin().matrix); },
+            "How it was moved and turned since it was read or made: a (4, 4) matrix.")
+        .def_property_readonly(
+            "path", [](const SourceMesh& self) { return path_text(self.origin().path); },
+            "The file it was read from; empty for a mesh made of arrays.")
+        .def_property_readonly(
+            "format", [](const SourceMesh& self) { return self.origin().format; },
+            "The format of that file, such as \"stl-binary\"; empty for a mesh made of arrays.")
+        .def_property_readonly(
+            "name", [](const SourceMesh& self) { return self.origin().name; },
+            "What the file calls it; empty where it does not.")
+        .def_property_readonly(
+            "unit_mm", [](const SourceMesh& self) { return self.origin().unit_mm; },
+            "How many millimetres a unit of the file was taken for.")
+        .def_property_readonly(
+            "warnings", [](const SourceMesh& self) { return path_texts(self.origin().warnings); },
+            "What was odd about the file, and what was made of it: a line each.")
+        .def("_defects", &defects_of)
+        .def("_transformed",
+             [](const SourceMesh& self, const Matrix& rows) { return transformed(self, transform_of(rows)); })
+        .def("_turned",
+             [](const SourceMesh& self, const std::array<double, 3>& d) {
+                 return transformed(self, upright({d[0], d[1], d[2]}));
+             })
+        .def("__len__", [](const SourceMesh& self) { return self.mesh().size(); })
+        .def("__repr__", &mesh_text)
+        .def(py::pickle(&state_of, &mesh_of_state));
+
+    module.def("mesh_of_arrays", &mesh_of_arrays);
+    module.def("read_mesh", [](const std::string& path, const std::string& label,
+                               std::optional<double> unit_mm, bool strict, std::uint64_t max_triangles,
+                               std::uint64_t max_memory, unsigned threads, const py::object& progress) {
+        return read_source_mesh(path, label, unit_mm, {strict, max_triangles, max_memory}, threads, progress);
+    });
+}
+
+} // namespace lamella::python

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/mesh.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/read/mesh_file.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella::python {
+
+/// What there is to know of a mesh besides its triangles.
+struct MeshOrigin {
+    std::string path = {};   ///< empty for a mesh made of arrays
+    std::string format = {}; ///< likewise
+    std::string name = {};   ///< that the file gives
+    std::string label = "part";
+    double unit_mm = 1; ///< millimetres per unit of the file
+    std::uint64_t stored_triangles = 0;
+    std::vector<std::string> warnings = {};
+    Transform matrix = {}; ///< from the coordinates it came with to those it has
+};
+
+/// A mesh in millimetres that never changes, and where it came from.
+class SourceMesh {
+  public:
+    SourceMesh(Mesh mesh, MeshOrigin origin, const Execution& execution);
+
+    [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
+    [[nodiscard]] const MeshOrigin& origin() const noexcept { return origin_; }
+    [[nodiscard]] const Box3& box() const noexcept { return box_; }
+
+    /// Equal vertices joined; done when somebody asks first. To be asked without the interpreter lock.
+    [[nodiscard]] const IndexedMesh& welded(const Execution& execution) const;
+
+    /// What is sliced: a soup as it is, an indexed mesh welded, since its file or its arrays need not share
+    /// the vertices that are equal.
+    [[nodiscard]] Mesh to_slice(const Execution& execution) const;
+
+    /// A plate on which it stands alone.
+    [[nodiscard]] Plate plate() const;
+
+  private:
+    Mesh mesh_;
+    MeshOrigin origin_;
+    Box3 box_;
+    mutable std::once_flag welded_once_;
+    mutable Mesh welded_;
+};
+
+using MeshPointer = std::shared_ptr<SourceMesh>;
+
+/// All meshes of a file, placed, as one.
+[[nodiscard]] MeshPointer source_mesh(MeshFile file, const std::string& label, std::optional<double> unit_mm,
+                                      const Execution& execution);
+
+/// The class Mesh, and functions that read and make meshes.
+void bind_meshes(pybind11::module_& module);
+
+} // namespace lamella::python

@@ -1,0 +1,159 @@
+"""Failures are exceptions of the package, with the texts of the program."""
+
+import pickle
+
+import numpy as np
+import pytest
+from conftest import box_arrays
+
+import lamella
+
+KINDS = ["InternalError", "UsageError", "InputError", "DefectError", "LimitError", "OutputError", "CancelledError"]
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_every_kind_is_a_class_of_its_own(name):
+    kind = getattr(lamella, name)
+    assert issubclass(kind, lamella.Error) and kind is not lamella.Error
+    assert kind.__module__ == "lamella" and kind.__doc__
+    error = pickle.loads(pickle.dumps(kind("a text")))
+    assert type(error) is kind and str(error) == "a text"
+
+
+FLAT = """solid flat
+facet normal 0 0 1
+outer loop
+vertex 0 0 1
+vertex 1 0 1
+vertex 0 1 1
+endloop
+endfacet
+endsolid flat
+"""
+
+
+@pytest.mark.parametrize(
+    "name, content",
+    [
+        ("missing.stl", None),
+        ("empty.stl", b""),
+        ("zeros.stl", bytes(150)),
+        ("broken.stl", FLAT.replace("vertex 0 1 1", "vertex 0 one 1").encode()),
+        ("cut.stl", b"solid cut\nfacet normal 0 0 1\nouter loop\nvertex 0 0"),
+        ("flat.stl", FLAT.encode()),
+        ("broken.ply", b"ply\nformat ascii 1.0\nelement vertex three\nend_header\n"),
+        ("broken.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 9\n"),
+        ("broken.off", b"OFF\n3 1\n"),
+        ("text.stl", "nothing of the kind\n".encode()),
+        ("odd \udcff name.stl", None),
+    ],
+    ids=lambda value: value if isinstance(value, str) and value.isascii() else "",
+)
+@pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
+def test_bad_meshes_end_in_the_text_of_the_program(program, tmp_path, monkeypatch, name, content):
+    monkeypatch.chdir(tmp_path)
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(lamella.InputError) as caught:
+        lamella.slice(name)
+    text = program(*["slice", name, "-o", "out.cli"]).stderr.decode("utf-8", "surrogateescape")
+    # The program turns bytes that are no text into escapes; the name alone tells these two apart.
+    expected = text.splitlines()[-1].removeprefix("lamella: error: ")
+    if "\udcff" in name:
+        assert str(caught.value).startswith(name) and str(caught.value).split(": ")[1] == expected.split(": ")[1]
+    else:
+        assert str(caught.value) == expected
+
+
+@pytest.mark.parametrize(
+    "keywords, options",
+    [
+        ({"layer_height": 100}, ["--layer-height", "100"]),
+        ({"z_range": (100, 101)}, ["--z-range", "100:101"]),
+        ({"layers": (900, 905)}, ["--layers", "900:905"]),
+        ({"layer_height": 1e-12}, ["--layer-height", "1e-12"]),
+        ({"heights": [(3, 2, 0.1)]}, None),
+        ({"z": [2, 1]}, None),
+        ({"z": []}, None),
+        ({"z": [100, 200]}, None),
+        ({"layer_height": -1}, None),
+        ({"adaptive": (2, 1)}, None),
+        ({"unit_mm": 0}, None),
+        ({"unit_mm": np.nan}, None),
+    ],
+)
+def test_impossible_plans_are_errors_of_usage(program, rook, keywords, options):
+    with pytest.raises(lamella.UsageError) as caught:
+        lamella.slice(rook, **keywords)
+    if options:
+        assert str(caught.value) == program.error("slice", rook, "-o", "-", "--format", "cli", *options)
+    assert isinstance(caught.value, ValueError) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "keywords, text",
+    [
+        ({"layer_height": 1, "z": [1]}, "z and layer_height contradict each other"),
+        ({"offsets": [1], "z": [1]}, "z and offsets contradict each other"),
+        ({"adaptive": (0.1, 0.2), "heights": []}, "heights and adaptive contradict each other"),
+        ({"z": [1], "first_layer_height": 1}, "z and first_layer_height contradict each other"),
+        ({"cusp": 1}, "cusp goes with adaptive layers"),
+        ({"at": "side"}, '"side" is none of "bottom", "middle" and "top"'),
+        ({"engine": "zigzag"}, "sweep"),
+        ({"threads": -1}, "threads: -1 is not possible"),
+        ({"z": [[1, 2]]}, r"z: expected a list of numbers, found an array of the shape \(1, 2\)"),
+        ({"direction": (0, 0, 0)}, "direction"),
+        ({"direction": (0, 1)}, "direction: expected three numbers"),
+        ({"unit_mm": 25.4}, "unit_mm goes with files"),
+        ({"transform": np.eye(3)}, "transform: expected a matrix"),
+        ({"transform": np.ones((4, 4))}, "the last row of a transform"),
+        ({"transform": np.full((4, 4), np.nan)}, "transform"),
+    ],
+)
+def test_contradictions_are_named(keywords, text):
+    with pytest.raises(lamella.UsageError, match=text):
+        lamella.slice(box_arrays(), **keywords)
+
+
+@pytest.mark.parametrize(
+    "change, kind, text",
+    [
+        (lambda v, f: (v[:, :2], f), lamella.UsageError, r"vertices: expected .* \(n, 3\), found \(8, 2\) of float64"),
+        (lambda v, f: (v.astype(str), f), lamella.UsageError, "vertices: expected an array of numbers"),
+        (lambda v, f: (v, f.astype(float)), lamella.UsageError, "faces: expected an array of whole numbers"),
+        (lambda v, f: (v, f.reshape(-1, 4)), lamella.UsageError, "must be cut into triangles first"),
+        (lambda v, f: (v, f + 1), lamella.InputError, "faces: row .* names vertex 8, and there are 8, counted from 0"),
+        (lambda v, f: (v, f - 1), lamella.InputError, "names vertex -1"),
+        (lambda v, f: (v, f[:0]), lamella.InputError, "no triangle"),
+        (lambda v, f: (np.where(v > 9, np.nan, v), f), lamella.InputError, "vertex"),
+        (lambda v, f: (np.where(v > 9, np.inf, v), f), lamella.InputError, "vertex"),
+        (lambda v, f: np.zeros((3, 4)), lamella.UsageError, r"triangles: expected an array of the shape \(m, 3, 3\)"),
+    ],
+)
+def test_arrays_that_are_no_mesh_are_refused(change, kind, text):
+    with pytest.raises(kind, match=text):
+        lamella.slice(change(*box_arrays()))
+
+
+@pytest.mark.parametrize("thing", [None, 5, [1, 2, 3], object()])
+def test_what_is_no_mesh_at_all_is_an_error_of_type(thing):
+    with pytest.raises(TypeError, match="a mesh is a path"):
+        lamella.slice(thing)
+
+
+def test_limits_are_their_own_kind(rook):
+    with pytest.raises(lamella.LimitError):
+        lamella.read(rook, max_triangles=100)
+
+
+def test_output_errors_are_those_of_the_program(program, rook, tmp_path):
+    stack = lamella.slice(rook, 10)
+    target = tmp_path / "missing" / "out.cli"
+    with pytest.raises(lamella.OutputError) as caught:
+        lamella.write(target, stack)
+    assert str(caught.value) == program.error("slice", rook, "-o", target, "--layer-height", 10)
+    target = tmp_path / "out.strange"
+    with pytest.raises(lamella.UsageError) as caught:
+        lamella.write(target, stack)
+    assert str(caught.value) == program.error("slice", rook, "-o", target, "--layer-height", 10)
+    assert list(tmp_path.iterdir()) == []

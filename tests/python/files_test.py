@@ -1,0 +1,192 @@
+"""Files in and out: the bytes of the program, and what it finds."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import box_arrays, nested_boxes, open_box
+
+import lamella
+
+EXACT = ["layers.json", "layers.npz"]
+ROUNDED = ["layers.cli", "layers.svg", "layers.slc", "layers.3mf"]
+WRITTEN_ONLY = ["layers.dxf", "layers.geojson", "layers.csv"]
+
+
+@pytest.mark.parametrize("name", EXACT + ROUNDED + WRITTEN_ONLY)
+@pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
+def test_slice_files_have_the_bytes_of_the_program(program, rook, tmp_path, name):
+    program.succeed("slice", rook, "-o", tmp_path / ("program_" + name), "--layer-height", 0.5)
+    expected = (tmp_path / ("program_" + name)).read_bytes()
+    lamella.write(tmp_path / name, lamella.slice(rook, 0.5))
+    assert (tmp_path / name).read_bytes() == expected
+    with lamella.iter_layers(rook, 0.5) as layers:
+        lamella.write(tmp_path / name, layers)
+    assert (tmp_path / name).read_bytes() == expected
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "program_" + name])
+
+
+@pytest.mark.parametrize("name", EXACT + ROUNDED)
+def test_slice_files_read_back(rook, tmp_path, name):
+    stack = lamella.slice(rook, 0.5)
+    lamella.write(tmp_path / name, stack)
+    back = lamella.read(tmp_path / name)
+    assert isinstance(back, lamella.Stack)
+    assert Path(back.path) == tmp_path / name and back.format == name.partition(".")[2]
+    comparison = lamella.compare(stack, back, tolerance=0 if name in EXACT else 0.001)
+    assert comparison and comparison.layers == len(stack)
+    if name in EXACT:
+        assert back == stack and back.resolution == 0 and comparison.same == len(stack)
+    assert np.allclose(back.area, stack.area, rtol=1e-3)
+
+
+@pytest.mark.parametrize("extension", ["stl", "ply", "obj"])
+def test_meshes_are_written_and_read(tmp_path, extension):
+    path = tmp_path / f"mesh.{extension}"
+    lamella.write(path, lamella.Mesh(*nested_boxes()))
+    back = lamella.read(path)
+    assert isinstance(back, lamella.Mesh)
+    assert (len(back), back.vertices.shape) == (36, (24, 3))
+    assert np.isclose(back.volume, 1000 - 512 + 64)
+    assert lamella.slice(path, 1) == lamella.slice(nested_boxes(), 1)
+
+
+def test_parts_stay_apart_in_files(tmp_path):
+    z = np.arange(0.5, 10)
+    stacks = [lamella.slice(box_arrays(size, 5, 10, at=(20.0 * size, 0, 0)), z=z) for size in (1, 2)]
+    named = [lamella.Stack(list(stack), label=label) for stack, label in zip(stacks, ["left", "right"])]
+    path = tmp_path / "two.cli"
+    lamella.write(path, named)
+    back = lamella.read(path)
+    assert [part.label for part in back.parts] == ["left", "right"]
+    assert [part.area.tolist() for part in back.parts] == [[5.0] * 10, [10.0] * 10]
+    assert back.area.tolist() == [15.0] * 10
+    again = tmp_path / "again.cli"
+    lamella.write(again, back)
+    assert [part.label for part in lamella.read(again).parts] == ["left", "right"]
+    with pytest.raises(lamella.UsageError, match="the same planes"):
+        lamella.write(path, [named[0], named[1][:5]])
+
+
+def test_conversion_is_that_of_the_program(program, rook, tmp_path):
+    lamella.write(tmp_path / "rook.cli", lamella.slice(rook, 0.5))
+    program.succeed("convert", tmp_path / "rook.cli", tmp_path / "program.svg")
+    lamella.convert(tmp_path / "rook.cli", tmp_path / "rook.svg")
+    assert (tmp_path / "rook.svg").read_bytes() == (tmp_path / "program.svg").read_bytes()
+    program.succeed("convert", tmp_path / "rook.svg", tmp_path / "program.cli", "--units-mm", 0.01)
+    lamella.convert(tmp_path / "rook.svg", tmp_path / "rook.cli", units_mm=0.01)
+    assert (tmp_path / "rook.cli").read_bytes() == (tmp_path / "program.cli").read_bytes()
+    with pytest.raises(lamella.UsageError, match="would overwrite the input"):
+        lamella.convert(tmp_path / "rook.cli", tmp_path / "rook.cli")
+
+
+def test_pictures_are_those_of_the_program(program, rook, tmp_path):
+    program.succeed("slice", rook, "-o", tmp_path / "program.zip", "--format", "png-zip", "--layer-height", 5,
+                    "--pixel-size", "0.2")
+    lamella.write(tmp_path / "rook.zip", lamella.slice(rook, 5), format="png-zip", pixel_mm=0.2)
+    assert (tmp_path / "rook.zip").read_bytes() == (tmp_path / "program.zip").read_bytes()
+
+
+def test_inspection_is_that_of_the_program(program, rook):
+    expected = json.loads(program.succeed("info", rook, "--json"))
+    found = lamella.inspect(rook)
+    for name in ("path", "format", "triangles", "vertices", "closed", "shells"):
+        assert getattr(found, name) == expected[name], name
+    assert found.volume == expected["volume_mm3"] and found.area == expected["area_mm2"]
+    assert found.bounds.tolist() == expected["bbox"]
+    for name, count in expected["defects"].items():
+        if hasattr(found, name):
+            assert getattr(found, name) == count, name
+    assert found.sound and found.defects == ""
+
+
+def test_defects_are_told_in_words():
+    vertices, faces = open_box()
+    found = lamella.inspect((vertices, np.concatenate([faces, faces[:1], [(0, 0, 1)]])))
+    assert not found.closed and not found.sound
+    assert found.defects == (
+        "4 boundary edges, 3 edges with more than two triangles, 3 orientation conflicts, 1 duplicate triangle, "
+        "1 degenerate triangle"
+    )
+    assert lamella.inspect(box_arrays(inward=True)).inverted_shells == 1
+
+
+def test_verification_finds_what_is_wrong(program, rook, tmp_path):
+    stack = lamella.slice(rook, 0.5)
+    found = lamella.verify(stack, rook)
+    assert found.ok and found.layers == len(stack) and found.max_area_error < 1e-9
+    lamella.write(tmp_path / "rook.cli", stack)
+    expected = json.loads(program.succeed("verify", tmp_path / "rook.cli", "--mesh", rook, "--json"))
+    found = lamella.verify(tmp_path / "rook.cli", rook)
+    assert (found.ok, found.contours, found.crossings) == (True, expected["contours"], 0)
+    assert found.max_area_error == expected["max_area_error_mm2"]
+
+    moved = lamella.Stack([lamella.Layer([ring + (i % 2) for ring in layer], layer.z, layer.bottom, layer.top)
+                           for i, layer in enumerate(lamella.slice(box_arrays(), 1))])
+    assert lamella.verify(moved, box_arrays()).ok
+    grown = lamella.Stack([lamella.Layer([ring * 1.01 for ring in layer], layer.z, layer.bottom, layer.top)
+                           for layer in moved])
+    found = lamella.verify(grown, box_arrays())
+    assert not found.ok and not found.areas_agree and found.findings
+    bow_tie = lamella.Stack([lamella.Layer([[(0, 0), (1, 1), (1, 0), (0, 1)]], z=0)])
+    assert lamella.verify(bow_tie).crossings == 1
+
+
+def test_comparison_tells_where_layers_differ():
+    stack = lamella.slice(box_arrays(), 1)
+    assert lamella.compare(stack, stack).same == len(stack)
+    moved = lamella.Stack([
+        layer if i != 4 else lamella.Layer([layer[0] + (0.25, 0)], layer.z, layer.bottom, layer.top, layer.index)
+        for i, layer in enumerate(stack)
+    ])
+    found = lamella.compare(stack, moved)
+    assert not found and len(found.differences) == 1 and found.same == len(stack) - 1
+    difference = found.differences[0]
+    assert (difference.z, difference.distance) == (4.5, 0.25)
+    assert difference.first == stack[4] and difference.second == moved[4]
+    assert lamella.compare(stack, moved, tolerance=0.3)
+    shorter = lamella.compare(stack, stack[:6])
+    assert [difference.z for difference in shorter.differences] == [6.5, 7.5, 8.5, 9.5]
+    assert all(difference.second is None for difference in shorter.differences)
+
+
+def test_odd_files_are_warned_of(rook, tmp_path):
+    path = tmp_path / "long.stl"
+    path.write_bytes(Path(rook).read_bytes() + b"more")
+    with pytest.warns(lamella.DefectWarning) as caught:
+        mesh = lamella.read(path)
+    assert len(mesh.warnings) == 1 and "4 bytes" in mesh.warnings[0]
+    assert [str(warning.message) for warning in caught] == [f"{path}: {mesh.warnings[0]}"]
+    assert caught[0].filename == __file__
+    with pytest.raises(lamella.DefectError, match="long.stl"):
+        lamella.read(path, strict=True)
+
+
+def test_names_that_are_no_text_work(rook, tmp_path):
+    name = os.fsencode(tmp_path) + b"/odd \xff name"
+    os.link(rook, name + b".stl")
+    stack = lamella.slice(name + b".stl", 5)
+    assert lamella.slice(os.fsdecode(name + b".stl"), 5) == stack
+    lamella.write(name + b".json", stack)
+    assert os.fsencode(lamella.read(name + b".json").path) == name + b".json"
+
+
+def test_nothing_is_left_of_a_file_that_fails(tmp_path, rook):
+    class Stop(Exception):
+        pass
+
+    def progress(stage, done, total):
+        raise Stop
+
+    with pytest.raises(Stop):
+        lamella.write(tmp_path / "out.cli", lamella.slice(rook, 0.5), progress=progress)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_formats_are_those_of_the_program(program):
+    names = [name for name, _, _ in lamella.layer_formats()]
+    assert {"cli", "svg", "3mf", "npz", "png"} <= set(names)
+    text = program.succeed("help", "slice").decode()
+    assert all(name in text for name in names)

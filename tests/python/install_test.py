@@ -1,0 +1,23 @@
+"""pip installs the package from the source tree, without network."""
+
+import os
+import subprocess
+import sys
+
+from conftest import ROOT
+
+
+def test_it_installs_and_runs(rook, tmp_path):
+    subprocess.run([sys.executable, "-m", "pip", "install", str(ROOT), "--no-build-isolation", "--no-deps", "--no-index",
+                    "--target", str(tmp_path / "site")], check=True, timeout=1700,
+                   # Compiled as in the build that is tested, where a cache of the compiler may have it all.
+                   env={**os.environ, "CMAKE_ARGS": "-D LAMELLA_WERROR=ON"})
+    code = "import sys, lamella; print(lamella.__file__); print(len(lamella.slice(sys.argv[1])))"
+    run = subprocess.run([sys.executable, "-B", "-c", code, str(rook)], capture_output=True, text=True, check=True,
+                         cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path / "site")})
+    path, layers = run.stdout.split()
+    assert path == str(tmp_path / "site" / "lamella" / "__init__.py") and layers == "531"
+    installed = {path.name for path in (tmp_path / "site" / "lamella").iterdir()}
+    assert {path.name for path in (ROOT / "python" / "lamella").iterdir() if path.is_file()} <= installed
+    # Nothing is left in the tree but what is ignored there.
+    assert not (ROOT / "lamella.egg-info").exists()

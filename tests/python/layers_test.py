@@ -1,0 +1,206 @@
+"""Layers and stacks: their arrays, how long these live, and how they travel."""
+
+import copy
+import gc
+import multiprocessing
+import pickle
+
+import numpy as np
+import pytest
+from conftest import box_arrays, nested_boxes, open_box, shoelace
+
+import lamella
+
+
+@pytest.fixture
+def layer():
+    """Of three rings within one another."""
+    return lamella.slice(nested_boxes(), 1)[5]
+
+
+def test_shapes_and_types(layer):
+    assert layer.points.dtype == np.float64 and layer.points.shape == (layer.offsets[-1], 2)
+    assert layer.offsets.dtype == np.int64 and layer.offsets.shape == (len(layer) + 1,)
+    assert layer.closed.dtype == np.bool_ and layer.closed.shape == (len(layer),)
+    assert layer.parent.dtype == np.int64 and layer.parent.shape == (len(layer),)
+    assert layer.hatches.shape == (0, 2, 2)
+    assert layer.rings == len(layer) == 3
+
+
+def test_contours_are_pieces_of_the_points(layer):
+    for i, contour in enumerate(layer):
+        assert np.shares_memory(contour, layer.points)
+        assert (contour == layer.points[layer.offsets[i] : layer.offsets[i + 1]]).all()
+    assert (layer[-1] == layer[2]).all()
+    for index in (3, -4):
+        with pytest.raises(IndexError):
+            layer[index]
+
+
+def test_arrays_are_not_copies_and_cannot_be_written(layer):
+    for name in ("points", "offsets", "parent"):
+        array = getattr(layer, name)
+        assert np.shares_memory(array, getattr(layer, name))
+        assert not array.flags.owndata and not array.flags.writeable
+        with pytest.raises(ValueError):
+            array[0] = 0
+        with pytest.raises(ValueError):
+            array.setflags(write=True)
+
+
+def test_arrays_outlive_everything_else():
+    mesh = lamella.Mesh(*nested_boxes())
+    vertices, faces = mesh.vertices, mesh.faces
+    stack = lamella.slice(mesh, 1)
+    layer = stack[5]
+    arrays = {name: getattr(layer, name) for name in ("points", "offsets", "parent", "closed")}
+    arrays["ring"] = layer[1]
+    arrays["part"] = layer.points[3:7, 1]
+    kept = {name: array.copy() for name, array in arrays.items()}
+    kept_vertices, kept_faces = vertices.copy(), faces.copy()
+    del mesh, stack, layer
+    gc.collect()
+    # What was freed would be used again by these.
+    others = [lamella.slice(nested_boxes(), 0.01) for _ in range(3)]
+    for name, array in arrays.items():
+        assert (array == kept[name]).all(), name
+    assert (vertices == kept_vertices).all() and (faces == kept_faces).all()
+    del others
+
+
+def test_parents_are_the_rings_around(layer):
+    areas = [shoelace(ring) for ring in layer]
+    outer, hole, inner = (int(np.argmin(np.abs(np.array(areas) - area))) for area in (100, -64, 16))
+    assert layer.parent[outer] == -1
+    assert layer.parent[hole] == outer
+    assert layer.parent[inner] == hole
+    assert sorted(layer.polygons()) == sorted([(outer, [hole]), (inner, [])])
+
+
+@pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
+def test_chains_have_no_parent():
+    layer = lamella.slice(open_box(), 1)[0]
+    assert layer.parent.tolist() == [-1]
+    assert layer.closed.tolist() == [False]
+    assert (layer.rings, layer.open_chains, layer.area) == (0, 1, 0)
+
+
+def test_an_empty_layer_has_empty_arrays():
+    layer = lamella.Layer([], z=1.0)
+    assert layer.points.shape == (0, 2)
+    assert layer.offsets.tolist() == [0]
+    assert layer.parent.shape == layer.closed.shape == (0,)
+    assert list(layer) == []
+    assert pickle.loads(pickle.dumps(layer)) == layer
+
+
+def test_layers_are_made_of_arrays():
+    square = np.array([(0, 0), (4, 0), (4, 4), (0, 4)], float)
+    hole = np.array([(1, 1), (1, 2), (2, 2), (2, 1)])
+    chain = [(5, 5), (6, 6)]
+    layer = lamella.Layer([hole, np.roll(square, 1, axis=0)], z=2.0, bottom=1.5, top=2.5, index=7, chains=[chain])
+    assert (layer.index, layer.z, layer.bottom, layer.top, layer.thickness) == (7, 2.0, 1.5, 2.5, 1.0)
+    assert (layer[0] == square).all(), "in normal form the smallest point is the first"
+    assert layer.closed.tolist() == [True, True, False]
+    assert (layer.area, layer.perimeter) == (15.0, 20 + np.sqrt(2))
+    assert layer.parent.tolist() == [-1, 0, -1]
+    for wrong in ([[1, 2, 3]], [np.zeros((3, 3))], [np.full((3, 2), np.nan)]):
+        with pytest.raises(lamella.Error):
+            lamella.Layer(wrong, z=0)
+    for heights in ({"z": np.nan}, {"z": 1, "bottom": 2}, {"z": 1, "top": 0.5}):
+        with pytest.raises(lamella.UsageError):
+            lamella.Layer([square], **heights)
+
+
+def test_equality_and_hashes(layer):
+    again = lamella.slice(nested_boxes(), 1)
+    assert layer == again[5] and layer is not again[5]
+    assert layer != again[4] and layer != 5
+    assert len({layer, again[5], again[4]}) == 2
+    assert len(layer.hash) == 16 and int(layer.hash, 16) >= 0
+    lower, upper = (lamella.Layer([[(0, 0), (1, 0), (0, 1)]], z=z) for z in (1, 2))
+    assert lower.hash == upper.hash, "hashes are of contours"
+    assert lower != upper, "but layers at other heights are others"
+
+
+def test_what_can_be_made_of_a_layer():
+    overlapping = lamella.Layer([np.array([(0, 0), (4, 0), (4, 4), (0, 4.0)]) + shift for shift in (0, 2)], z=0)
+    assert overlapping.area == 32
+    assert np.isclose(overlapping.filled().area, 28)
+    assert np.isclose(overlapping.filled("evenodd").area, 24)
+    square = lamella.Layer([[(0, 0), (2, 0), (4, 0), (4, 4), (0, 4)]], z=0)
+    assert np.isclose(square.offset(1).area, 36)
+    assert np.isclose(square.offset(-1).area, 4)
+    assert len(square.simplified(0.01).points) == 4
+    with pytest.raises(lamella.UsageError, match="there are nonzero, evenodd and positive"):
+        square.filled("zigzag")
+
+
+def test_stacks_are_sequences():
+    stack = lamella.slice(box_arrays(), 1)
+    assert len(stack) == len(list(stack)) == 10
+    assert stack[0] == next(iter(stack)) and stack[-1] == stack[9]
+    assert stack[0] in stack
+    assert [layer.z for layer in reversed(stack)] == stack.z.tolist()[::-1]
+    assert stack[2:8:3].z.tolist() == [2.5, 5.5]
+    assert isinstance(stack[2:4], lamella.Stack) and len(stack[4:2]) == 0
+    with pytest.raises(IndexError):
+        stack[10]
+    with pytest.raises(ValueError):
+        stack[::-1]
+    assert lamella.Stack(list(stack)) == stack
+    with pytest.raises(lamella.UsageError, match="ascend"):
+        lamella.Stack([stack[1], stack[0]])
+
+
+def test_stacks_have_arrays_over_their_layers():
+    stack = lamella.slice(nested_boxes(), 1)
+    for name in ("z", "bottom", "top", "area", "perimeter", "open_chains"):
+        assert getattr(stack, name).tolist() == [getattr(layer, name) for layer in stack]
+    assert stack.contours.tolist() == [len(layer) for layer in stack]
+    assert stack.points == sum(len(layer.points) for layer in stack)
+    assert np.isclose(stack.volume, (stack.area * (stack.top - stack.bottom)).sum())
+
+
+@pytest.mark.parametrize("protocol", range(2, pickle.HIGHEST_PROTOCOL + 1))
+def test_pickled_layers_are_the_same(layer, protocol):
+    assert pickle.loads(pickle.dumps(layer, protocol)) == layer
+    stack = lamella.slice(nested_boxes(), 1, direction=(1, 0, 0))
+    travelled = pickle.loads(pickle.dumps(stack, protocol))
+    assert travelled == stack
+    assert (travelled.matrix == stack.matrix).all() and (travelled.bounds == stack.bounds).all()
+    assert travelled.label == stack.label
+    mesh = lamella.Mesh(*nested_boxes())
+    assert lamella.slice(pickle.loads(pickle.dumps(mesh, protocol)), 1) == lamella.slice(mesh, 1)
+
+
+def test_copies_are_the_same(layer):
+    assert copy.copy(layer) == copy.deepcopy(layer) == layer
+
+
+def test_pickles_of_something_else_are_refused(layer):
+    make, arguments, state = layer.__reduce_ex__(2)[:3]
+    for change in ({6: 4}, {5: np.array([0, 99])}, {5: np.array([0, 8, 4, 12])}, {4: np.full((12, 2), np.inf)}):
+        broken = list(state)
+        for place, value in change.items():
+            broken[place] = value
+        with pytest.raises(lamella.InputError):
+            make(*arguments).__setstate__(tuple(broken))
+
+
+def area_of(layer):
+    return layer.area
+
+
+def test_layers_travel_between_processes():
+    stack = lamella.slice(nested_boxes(), 1)
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        assert pool.map(area_of, stack) == stack.area.tolist()
+
+
+def test_they_say_what_they_are(rook):
+    stack = lamella.slice(rook, 10)
+    assert repr(stack) == "<lamella.Stack of 5 layers from z = 0 to 50 mm: 5 contours, " + str(stack.points) + " points>"
+    assert repr(stack[0]).startswith("<lamella.Layer 0 at z = 5 mm: 1 contours, ")
+    assert repr(lamella.read(rook)) == f"<lamella.Mesh of 94080 triangles, 31.75 x 31.75 x 53.15 mm, from {rook}>"
+    assert repr(lamella.iter_layers(rook, 10)) == "<lamella.LayerStream: 5 of 5 layers left>"

@@ -1,0 +1,151 @@
+"""Meshes of any kind in, layers out: the same as the program's."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import box_arrays, nested_boxes, open_box, shoelace
+
+import lamella
+
+
+def statistics(program, *arguments):
+    return json.loads(program.succeed("slice", *arguments, "--stats", "-"))["layers"]
+
+
+@pytest.mark.parametrize(
+    "options, keywords",
+    [
+        ([], {}),
+        (["--layer-height", "0.25"], {"layer_height": 0.25}),
+        (["--layer-height", "0.2", "--first-layer-height", "0.3"], {"layer_height": 0.2, "first_layer_height": 0.3}),
+        (["--slice-at", "top"], {"at": "top"}),
+        (["--slice-at", "bottom"], {"at": "bottom"}),
+        (["--z-range", "10:12"], {"z_range": (10, 12)}),
+        (["--layers", "3:9"], {"layers": (3, 9)}),
+        (["--heights", "0:5=0.2,5:10=0.05"], {"heights": [(0, 5, 0.2), (5, 10, 0.05)]}),
+        (["--adaptive", "0.05:0.4", "--cusp", "0.1"], {"adaptive": (0.05, 0.4), "cusp": 0.1}),
+        (["--direction", "1,1,2"], {"direction": (1, 1, 2)}),
+        (["--direction", "1,0,0"], {"direction": (1, 0, 0)}),
+        (["--scale", "2"], {"transform": np.diag([2, 2, 2, 1])}),
+        (["--unit", "inch"], {"unit_mm": 25.4, "layer_height": None}),
+        (["--engine", "eecc", "--layer-height", "2"], {"engine": "eecc", "layer_height": 2}),
+    ],
+)
+def test_layers_are_those_of_the_program(program, rook, options, keywords):
+    expected = statistics(program, rook, *options)
+    stack = lamella.slice(rook, **keywords)
+    assert stack.hashes == [layer["hash"] for layer in expected]
+    assert stack.z.tolist() == [layer["z"] for layer in expected]
+    assert [layer.index for layer in stack] == [layer["index"] for layer in expected]
+    assert stack.area.tolist() == [layer["area_mm2"] for layer in expected]
+    assert stack.perimeter.tolist() == [layer["perimeter_mm"] for layer in expected]
+
+
+def test_paths_may_be_text_bytes_or_path_objects(rook):
+    stack = lamella.slice(rook, 2)
+    assert lamella.slice(str(rook), 2) == stack
+    assert lamella.slice(bytes(rook), 2) == stack
+
+
+class LikeTrimesh:
+    def __init__(self, vertices, faces):
+        self.vertices = vertices
+        self.faces = faces
+
+
+def test_arrays_of_any_kind_are_meshes():
+    vertices, faces = box_arrays()
+    expected = lamella.slice((vertices, faces), 1)
+    assert len(expected) == 10
+    for part in [
+        [vertices, faces],
+        (vertices.tolist(), faces.tolist()),
+        (vertices.astype(np.float32), faces.astype(np.int32)),
+        (np.asfortranarray(vertices), faces.astype(np.uint64)),
+        (np.repeat(vertices, 2, axis=0)[::2], np.asfortranarray(faces)),
+        LikeTrimesh(vertices, faces),
+        vertices[faces],
+        lamella.Mesh(vertices, faces),
+    ]:
+        assert lamella.slice(part, 1) == expected
+
+
+def test_vertices_that_are_equal_need_not_be_shared():
+    vertices, faces = box_arrays()
+    apart = lamella.slice((vertices[faces].reshape(-1, 3), np.arange(36).reshape(-1, 3)), 1)
+    assert apart.open_chains.sum() == 0
+    assert apart == lamella.slice((vertices, faces), 1)
+
+
+def test_a_box_has_the_rings_of_a_box():
+    stack = lamella.slice(box_arrays(20, 30, 10), 1)
+    assert stack.area.tolist() == [600.0] * 10
+    assert stack.perimeter.tolist() == [100.0] * 10
+    assert stack.volume == 6000.0
+    # Where the plane cuts the diagonals of the walls there are points, too; the corners are among them.
+    corners = {(0.0, 0.0), (20.0, 0.0), (20.0, 30.0), (0.0, 30.0)}
+    assert all(corners <= set(map(tuple, layer[0])) for layer in stack)
+
+
+def test_heights_are_absolute_and_offsets_are_not():
+    part = box_arrays(z=10.0, at=(0, 0, 5.0))
+    assert lamella.slice(part, 1).z.tolist() == [5.5 + i for i in range(10)]
+    assert lamella.slice(part, z=[6.0, 7.25]).z.tolist() == [6.0, 7.25]
+    assert lamella.slice(part, offsets=np.array([1.0, 2.25])).z.tolist() == [6.0, 7.25]
+
+
+def test_directions_and_transforms_keep_their_matrix():
+    part = nested_boxes()
+    transform = np.array([[1, 0, 0, 5], [0, 2, 0, 0], [0, 0, 3, -1], [0, 0, 0, 1.0]])
+    stack = lamella.slice(part, 0.5, transform=transform, direction=(0, 1, 0))
+    corners = np.c_[part[0], np.ones(len(part[0]))] @ stack.matrix.T
+    assert np.allclose(corners.min(axis=0)[:3], stack.bounds[0])
+    assert np.allclose(corners.max(axis=0)[:3], stack.bounds[1])
+    assert np.isclose(stack.bounds[1][2] - stack.bounds[0][2], 20)
+    assert np.isclose(stack.volume, 6 * (1000 - 512 + 64))
+
+
+@pytest.mark.parametrize("engine", [engine.name for engine in lamella.engines()])
+def test_all_engines_give_the_same(bodies, engine):
+    path = bodies("sheet", "--holes", 4, "--segments", 24)
+    assert np.allclose(lamella.slice(path, engine=engine).area, lamella.slice(path).area, rtol=1e-9)
+
+
+def test_the_first_engine_is_the_default(program):
+    names = [engine.name for engine in lamella.engines()]
+    assert names[0] == "sweep"
+    assert len(set(names)) == len(names) > 1
+
+
+@pytest.mark.parametrize("threads", [1, 2, 7])
+def test_threads_leave_no_trace(rook, threads):
+    assert lamella.slice(rook, 0.5, threads=threads) == lamella.slice(rook, 0.5)
+
+
+def test_open_chains_are_kept_and_warned_of():
+    with pytest.warns(lamella.DefectWarning, match="the mesh: 10 open chains in 10 of 10 layers") as caught:
+        stack = lamella.slice(open_box(), 1)
+    assert caught[0].filename == __file__
+    assert stack.open_chains.tolist() == [1] * 10
+    assert not stack[0].closed.any()
+    with pytest.raises(lamella.DefectError, match="the mesh has defects: 4 boundary edges"):
+        lamella.slice(open_box(), 1, strict=True)
+
+
+def test_streamed_layers_are_the_same(rook):
+    stack = lamella.slice(rook, 0.5)
+    with lamella.iter_layers(rook, 0.5) as layers:
+        assert layers.z.tolist() == stack.z.tolist()
+        assert (layers.bounds == stack.bounds).all()
+        assert layers.__length_hint__() == len(stack)
+        assert list(layers) == list(stack)
+        assert layers.__length_hint__() == 0
+        assert list(layers) == []
+
+
+def test_areas_come_from_the_rings():
+    stack = lamella.slice(nested_boxes(), 1)
+    for layer in stack:
+        assert np.isclose(layer.area, sum(shoelace(ring) for ring in layer))
+    assert stack.area.tolist() == [100.0, 36.0, 36.0, 52.0, 52.0, 52.0, 52.0, 36.0, 36.0, 100.0]

@@ -1,0 +1,79 @@
+"""Types as users' tools see them: by mypy, and by its comparison of stubs with what there is at run time."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from conftest import PACKAGE
+
+HERE = Path(__file__).parent
+
+
+def run(*command, **keywords):
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300, cwd=PACKAGE,
+                            env={**os.environ, "PYTHONPATH": PACKAGE}, **keywords)
+    return result.returncode, result.stdout + result.stderr
+
+
+def mypy(tmp_path, *arguments):
+    return run(sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), *arguments)
+
+
+def test_the_package_is_typed_throughout(tmp_path):
+    code, text = mypy(tmp_path, "-p", "lamella")
+    assert code == 0, text
+
+
+def test_stubs_are_what_the_extension_is(tmp_path):
+    # It writes a cache beside the package otherwise.
+    code, text = run(sys.executable, "-m", "mypy.stubtest", "lamella._lamella", "--concise", "--allowlist",
+                     str(HERE / "stubtest_allowlist.txt"))
+    assert code == 0, text
+
+
+GOOD = """
+import numpy as np
+import numpy.typing as npt
+import lamella
+
+class Scan:
+    vertices: npt.NDArray[np.float64] = np.zeros((3, 3))
+    faces: npt.NDArray[np.int64] = np.array([(0, 1, 2)])
+
+def listen(stage: str, done: int, total: int) -> None: ...
+
+stack: lamella.Stack = lamella.slice("part.stl", 0.1, progress=listen)
+lamella.slice(Scan(), z=[1, 2, 3])
+lamella.slice((Scan.vertices, Scan.faces), offsets=np.arange(3))
+layer: lamella.Layer = stack[0]
+part: lamella.Stack = stack[1:2]
+points: npt.NDArray[np.float64] = layer.points
+area: float = max(layer.area for layer in stack)
+for streamed in lamella.iter_layers("part.stl"):
+    height: float = streamed.z
+"""
+
+BAD = {
+    "lamella.slice(5)": "arg-type",
+    "lamella.slice('part.stl', layer_hight=1)": "call-arg",
+    "lamella.slice('part.stl')[0].point": "attr-defined",
+    "lamella.slice('part.stl', progress=lambda: None)": "arg-type",
+    "text: str = lamella.slice('part.stl')[0].area": "assignment",
+}
+
+
+def test_users_get_types(tmp_path):
+    program = tmp_path / "good.py"
+    program.write_text(GOOD)
+    code, text = mypy(tmp_path, str(program))
+    assert code == 0, text
+
+
+def test_users_are_told_their_mistakes(tmp_path):
+    program = tmp_path / "bad.py"
+    program.write_text("import lamella\n" + "\n".join(BAD) + "\n")
+    code, text = mypy(tmp_path, str(program))
+    assert code == 1
+    for line, (mistake, kind) in enumerate(BAD.items(), start=2):
+        assert f"bad.py:{line}: error" in text and f"[{kind}]" in text, mistake + "\n" + text
