@@ -11,6 +11,7 @@ namespace lamella::app {
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command verify_command();
 [[nodiscard]] Command convert_command();
+[[nodiscard]] Command view_command();
 [[nodiscard]] Command make_command();
 [[nodiscard]] Command completion_command();
 [[nodiscard]] Command help_command();

@@ -4,6 +4,7 @@
 
 #include "names.hpp"
 #include "numbers.hpp"
+#include "viewer_page.hpp"
 
 #include <fmt/format.h>
 
@@ -234,6 +235,7 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) con
     options.units_mm = units_mm.value_or(options.units_mm);
     options.short_form = short_form;
     picture.apply(with, options);
+    options.page.viewer = viewer_page();
     return options;
 }
 

@@ -301,6 +301,11 @@ LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     return info;
 }
 
+/// Nothing to be done for a writer that is not there.
+std::function<void()> prepared(LayerWriter* writer, std::span<const Layer> parts) {
+    return writer == nullptr ? [] {} : writer->prepare(parts);
+}
+
 } // namespace
 
 FileResult slice_file(const FileJob& job, const Execution& execution) {
@@ -358,6 +363,9 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
         writer = open_layer_writer(job.output, *format, file_info(plate, plan), job.write);
         result.format = format->name;
     }
+    std::unique_ptr<LayerPageWriter> report;
+    if (!job.report.path.empty())
+        report = open_layer_page(job.report.path, file_info(plate, plan), job.report.page);
     Gatherer gatherer(plan, plate.parts.size(), job);
     if (job.steps.any())
         result.changes.emplace();
@@ -380,11 +388,12 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
             parts = made;
         }
         gatherer.add(parts, std::move(joins));
-        if (writer == nullptr)
+        if (writer == nullptr && report == nullptr)
             return {};
-        return [&result, write = writer->prepare(parts)] {
+        return [&result, write = prepared(writer.get(), parts), show = prepared(report.get(), parts)] {
             const Stopwatch writing;
             write();
+            show();
             result.seconds.write += writing.seconds();
         };
     };
@@ -404,6 +413,12 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;
     result.seconds.slice = result.report.slice_seconds;
+    if (report != nullptr) {
+        if (job.report.notes)
+            report->tell(job.report.notes(result));
+        report->finish();
+        result.report_warnings = report->warnings();
+    }
     result.seconds.total = total.seconds();
     return result;
 }

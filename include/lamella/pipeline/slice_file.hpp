@@ -12,14 +12,27 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/slicing/varying_plan.hpp"
+#include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace lamella {
+
+struct FileResult;
+
+/// A page to look at the layers, written beside the slice file.
+struct FileReport {
+    std::string path; ///< "" writes none
+    PageOptions page;
+    /// What the page tells of the run. Asked once all layers are written: of the result, only the total of
+    /// the seconds is still missing.
+    std::function<PageNotes(const FileResult&)> notes;
+};
 
 /// What is to be sliced, how, and where to.
 struct FileJob {
@@ -59,6 +72,7 @@ struct FileJob {
     std::string output; ///< "" writes nothing, "-" is standard output
     std::string format; ///< by name; "" goes by the extension of `output`
     LayerWriteOptions write;
+    FileReport report;
 };
 
 struct LayerStatistics {
@@ -123,6 +137,8 @@ struct FileResult {
     std::uint64_t bytes = 0;             ///< written
     /// What the format has no place for, one line each (LayerWriter::warnings).
     std::vector<std::string> warnings;
+    /// The same of the report.
+    std::vector<std::string> report_warnings;
 
     /// With FileJob::layer_statistics: in ascending z, and the sum of area times thickness.
     std::vector<LayerStatistics> layers;

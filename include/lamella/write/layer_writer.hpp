@@ -30,6 +30,16 @@ struct LayerFileInfo {
     std::vector<PartInfo> parts{{}}; ///< at least one
 };
 
+/// html: see lamella/write/layer_page.hpp.
+struct PageOptions {
+    /// The built viewer, an HTML page with a place for the data (viewer/). It must outlive the writer.
+    std::string_view viewer = {};
+    /// What the page calls itself.
+    std::string title = "Lamella";
+    /// The layers may take so many bytes of the page. Those beyond their share are thinned out.
+    std::uint64_t budget_bytes = std::uint64_t{16} << 20;
+};
+
 struct LayerWriteOptions {
     /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
     /// the ASCII and the short binary form; the long binary form keeps single precision.
@@ -42,6 +52,8 @@ struct LayerWriteOptions {
     PictureOptions picture = {};
     /// sl1, sl1s.
     ExposureOptions exposure = {};
+    /// html.
+    PageOptions page = {};
 };
 
 struct LayerFormat {
