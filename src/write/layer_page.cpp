@@ -43,8 +43,6 @@ struct Picture {
     std::string bytes; ///< compressed
     std::uint64_t shown = 0;
     double tolerance_mm = 0;
-
-    [[nodiscard]] std::uint64_t size() const noexcept { return base64_size(bytes.size()); }
 };
 
 /// Fills in what is wrong with the layers of a plane, and appends the places of the first crossings.
@@ -96,9 +94,57 @@ class Thinning {
     unsigned times_ = 0;
 };
 
-/// The same plane, all of it first, each as large as the one before or smaller, until one fits.
+/// What a page spends on its layers.
+struct Cost {
+    std::uint64_t bytes = 0;
+    std::uint64_t points = 0;
+
+    [[nodiscard]] bool within(const Cost& other) const noexcept {
+        return bytes <= other.bytes && points <= other.points;
+    }
+};
+
+Cost cost_of(const Picture& picture) {
+    return {base64_size(picture.bytes.size()), picture.shown};
+}
+
+/// Hands out the page's budget: an equal share for each layer, and from what layers below have left of theirs
+/// so much more that it makes four shares at most.
+class Budget {
+  public:
+    Budget(const PageOptions& options, std::uint64_t layers)
+        : share_{options.budget_bytes / std::max<std::uint64_t>(1, layers),
+                 options.budget_points / std::max<std::uint64_t>(1, layers)} {}
+
+    [[nodiscard]] const Cost& share() const noexcept { return share_; }
+
+    /// Of the pictures of the next layer, the finest first, the first that it can pay for; else the last.
+    const Picture& choose(const std::vector<Picture>& pictures) {
+        const Cost all{std::min(saved_.bytes + share_.bytes, most_shares * share_.bytes),
+                       std::min(saved_.points + share_.points, most_shares * share_.points)};
+        const auto fitting = std::ranges::find_if(
+            pictures, [&](const Picture& picture) { return cost_of(picture).within(all); });
+        const Picture& chosen = fitting == pictures.end() ? pictures.back() : *fitting;
+        const auto left = [](std::uint64_t saved, std::uint64_t share, std::uint64_t spent) {
+            return saved + share - std::min(saved + share, spent);
+        };
+        const Cost spent = cost_of(chosen);
+        saved_ = {left(saved_.bytes, share_.bytes, spent.bytes),
+                  left(saved_.points, share_.points, spent.points)};
+        return chosen;
+    }
+
+  private:
+    static constexpr std::uint64_t most_shares = 4;
+
+    Cost share_;
+    Cost saved_;
+};
+
+/// The same plane, all of it first, each with less detail than the one before, until one costs no more than
+/// the share.
 std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const Point2> places,
-                                 const PageGrid& grid, std::uint64_t share) {
+                                 const PageGrid& grid, const Cost& share) {
     const auto picture = [&](std::span<const Layer> layers, double tolerance) {
         Picture made{.bytes = {}, .shown = 0, .tolerance_mm = tolerance};
         made.bytes = deflated(layer_numbers(layers, places, grid, made.shown).view());
@@ -106,7 +152,7 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     };
     std::vector<Picture> pictures{picture(parts, 0)};
     Thinning thinning(parts, grid.step_mm);
-    while (pictures.back().size() > share && !thinning.at_end()) {
+    while (!cost_of(pictures.back()).within(share) && !thinning.at_end()) {
         thinning.go_on();
         pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
     }
@@ -156,8 +202,7 @@ class PageWriter final : public LayerPageWriter {
   public:
     PageWriter(const std::string& path, const LayerFileInfo& info, const PageOptions& options)
         : frame_(page_frame(options.viewer)), grid_(page_grid(info.box)), file_(path), order_(info),
-          budget_(options.budget_bytes),
-          share_(options.budget_bytes / std::max<std::uint64_t>(1, info.layers)), layers_left_(info.layers) {
+          budget_(options, info.layers) {
         file_.append(frame_.head);
         file_.append(json_element("head", head(info, options)));
     }
@@ -169,7 +214,7 @@ class PageWriter final : public LayerPageWriter {
             .index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top, .measure = {}};
         std::vector<Point2> places;
         find_faults(parts, facts, places);
-        return [this, facts, pictures = pictures_of(parts, places, grid_, share_)] {
+        return [this, facts, pictures = pictures_of(parts, places, grid_, budget_.share())] {
             order_.next(facts.z);
             write(facts, pictures);
         };
@@ -206,27 +251,20 @@ class PageWriter final : public LayerPageWriter {
                                  page_quoted(part.label), page_box(part.box));
         return fmt::format(
             R"({{"kind":"layers","version":1,"title":{},"layers":{},"step_mm":{},"origin":[{},{}],)"
-            R"("box":{},"bottom":{},"budget_bytes":{},"parts":[{}]}})",
+            R"("box":{},"bottom":{},"budget_bytes":{},"budget_points":{},"parts":[{}]}})",
             page_quoted(options.title), info.layers, page_number(grid_.step_mm), grid_.origin.x,
-            grid_.origin.y, page_box(info.box), page_number(info.bottom), options.budget_bytes, parts);
+            grid_.origin.y, page_box(info.box), page_number(info.bottom), options.budget_bytes,
+            options.budget_points, parts);
     }
 
-    /// The finest picture that fits into the layer's share and what the layers below it left of theirs; the
-    /// coarsest where none does.
     void write(const PlaneFacts& facts, const std::vector<Picture>& pictures) {
-        --layers_left_;
-        const std::uint64_t kept_back = share_ * layers_left_;
-        const std::uint64_t taken = std::min(budget_, taken_ + kept_back);
-        const auto fitting = std::ranges::find_if(
-            pictures, [&](const Picture& picture) { return picture.size() <= budget_ - taken; });
-        const Picture& picture = fitting == pictures.end() ? pictures.back() : *fitting;
+        const Picture& picture = budget_.choose(pictures);
         if (picture.tolerance_mm > 0) {
             ++thinned_;
             largest_tolerance_mm_ = std::max(largest_tolerance_mm_, picture.tolerance_mm);
         }
         std::string text;
         append_base64(picture.bytes, text);
-        taken_ += text.size();
         file_.append(data_element_head);
         file_.append(text);
         file_.append(data_element_tail);
@@ -237,10 +275,7 @@ class PageWriter final : public LayerPageWriter {
     PageGrid grid_;
     AtomicFile file_;
     LayerOrder order_;
-    std::uint64_t budget_;
-    std::uint64_t share_; ///< of each layer
-    std::uint64_t layers_left_;
-    std::uint64_t taken_ = 0;
+    Budget budget_;
     std::uint64_t thinned_ = 0;
     double largest_tolerance_mm_ = 0;
     PlaneTable table_;

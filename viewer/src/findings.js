@@ -93,6 +93,7 @@ function accuracy(head, table) {
 export function verdict(page) {
   const bad = page.table.z.filter((_, i) => faultsOf(page.table, i) > 0).length;
   if (bad > 0) return { tone: 'bad', text: `${counted(bad, 'layer')} with faults` };
+  if (page.notes.places.length > 0) return { tone: 'warning', text: 'Contours are sound, the mesh has defects' };
   return { tone: 'good', text: 'All contours are sound' };
 }
 
@@ -113,12 +114,13 @@ export function remarkableLayers(table) {
   const largest = (value) => layers.reduce((best, i) => (value(i) > value(best) ? i : best), 0);
   const step = (i) => (i === 0 ? 0 : Math.abs(table.area_mm2[i] - table.area_mm2[i - 1]));
   const [points, contours, area, change] = [(i) => table.points[i], (i) => table.contours[i], (i) => table.area_mm2[i], step].map(largest);
+  const uneven = (column) => column.some((value) => value !== column[0]);
   return [
-    { layer: area, text: `largest area, ${brief(table.area_mm2[area])} mm²` },
-    { layer: change, text: `area changes most, by ${brief(step(change))} mm²` },
-    { layer: contours, text: `most contours, ${count(table.contours[contours])}` },
-    { layer: points, text: `most points, ${count(table.points[points])}` },
-  ];
+    { layer: area, text: `largest area, ${brief(table.area_mm2[area])} mm²`, stands: uneven(table.area_mm2) },
+    { layer: change, text: `area changes most, by ${brief(step(change))} mm²`, stands: uneven(table.area_mm2) },
+    { layer: contours, text: `most contours, ${count(table.contours[contours])}`, stands: uneven(table.contours) },
+    { layer: points, text: `most points, ${count(table.points[points])}`, stands: uneven(table.points) },
+  ].filter(({ stands }) => stands);
 }
 
 /** Figures of the whole stack: [name, value] pairs. */

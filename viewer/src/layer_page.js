@@ -3,6 +3,7 @@ import { LayerShelf } from './data/page.js';
 import { faultText, faultsOf, verdict } from './findings.js';
 import { LayerView } from './layer/layer_view.js';
 import { layerPanels, middleOf } from './panels/panels.js';
+import { StackView } from './stack/stack_view.js';
 import { Player } from './player.js';
 import { Timeline } from './timeline/timeline.js';
 import { brief, count, mm } from './text.js';
@@ -33,12 +34,43 @@ function announce(page, store) {
   });
 }
 
-function keyTable(page, store, player, layerView, help) {
+/** Buttons for the layer, the stack, or both side by side. */
+function switchViews(store, layerView, stackView) {
+  const names = { layer: 'Layer', stack: 'Stack', both: 'Both' };
+  const group = document.getElementById('views');
+  const buttons = Object.entries(names).map(([view, name]) =>
+    element('button', { type: 'button', role: 'radio', onclick: () => store.set({ view }) }, name),
+  );
+  group.append(...buttons);
+  group.hidden = false;
+  store.on(['view'], ({ view }) => {
+    Object.keys(names).forEach((name, i) => {
+      buttons[i].setAttribute('aria-checked', name === view);
+      buttons[i].tabIndex = name === view ? 0 : -1;
+    });
+    layerView.node.hidden = view === 'stack';
+    stackView.node.hidden = view === 'layer';
+  });
+  group.addEventListener('keydown', (event) => {
+    const by = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (!by) return;
+    event.preventDefault();
+    const at = buttons.indexOf(event.target);
+    const next = buttons[(at + by + buttons.length) % buttons.length];
+    next.click();
+    next.focus();
+  });
+}
+
+function keyTable(page, store, player, layerView, stackView, help) {
   const faulty = page.table.z.flatMap((_, i) => (faultsOf(page.table, i) > 0 ? [i] : []));
   const nextFault = () => faulty.find((i) => i > store.state.layer) ?? faulty[0];
   const lastFault = () => faulty.findLast((i) => i < store.state.layer) ?? faulty.at(-1);
   const goTo = (layer) => layer !== undefined && player.go(layer);
-  const pan = 60;
+  /** Keys are for the drawing that has the focus, or the only one there is. */
+  const inStack = () => store.state.view === 'stack' || stackView.node.contains(document.activeElement);
+  const zoom = (factor) => (inStack() ? stackView : layerView).zoomBy(factor);
+  const move = (x, y) => (inStack() ? stackView.turnBy(-0.2 * x, 0.2 * y) : layerView.moveBy(-60 * x, 60 * y));
   return [
     { keys: ['ArrowRight', 'ArrowUp'], label: '→ ↑', help: 'layer above', act: () => player.step(1) },
     { keys: ['ArrowLeft', 'ArrowDown'], label: '← ↓', help: 'layer below', act: () => player.step(-1) },
@@ -49,15 +81,16 @@ function keyTable(page, store, player, layerView, help) {
     { keys: [' '], label: 'Space', help: 'play and pause', act: () => player.toggle() },
     { keys: ['n'], label: 'N', help: 'next layer with a fault', act: () => goTo(nextFault()) },
     { keys: ['p'], label: 'P', help: 'layer with a fault before', act: () => goTo(lastFault()) },
-    { keys: ['+', '='], label: '+', help: 'zoom in', act: () => layerView.zoomBy(1.5) },
-    { keys: ['-'], label: '−', help: 'zoom out', act: () => layerView.zoomBy(1 / 1.5) },
-    { keys: ['0'], label: '0', help: 'show all', act: () => layerView.fit() },
-    { keys: ['Shift+ArrowLeft'], label: 'Shift + arrows', help: 'move the drawing', act: () => layerView.moveBy(pan, 0) },
-    { keys: ['Shift+ArrowRight'], act: () => layerView.moveBy(-pan, 0) },
-    { keys: ['Shift+ArrowUp'], act: () => layerView.moveBy(0, pan) },
-    { keys: ['Shift+ArrowDown'], act: () => layerView.moveBy(0, -pan) },
+    { keys: ['+', '='], label: '+', help: 'zoom in', act: () => zoom(1.5) },
+    { keys: ['-'], label: '−', help: 'zoom out', act: () => zoom(1 / 1.5) },
+    { keys: ['0'], label: '0', help: 'show all', act: () => (inStack() ? stackView : layerView).fit() },
+    { keys: ['Shift+ArrowLeft'], label: 'Shift + arrows', help: 'move the layer, turn the stack', act: () => move(-1, 0) },
+    { keys: ['Shift+ArrowRight'], act: () => move(1, 0) },
+    { keys: ['Shift+ArrowUp'], act: () => move(0, 1) },
+    { keys: ['Shift+ArrowDown'], act: () => move(0, -1) },
     { keys: ['d'], label: 'D', help: 'directions of contours', act: () => store.set({ directions: !store.state.directions }) },
     { keys: ['f'], label: 'F', help: 'fill', act: () => store.set({ fill: !store.state.fill }) },
+    { keys: ['1', '2', '3'], label: '1 2 3', help: 'the layer, the stack, or both', act: ({ key }) => store.set({ view: ['layer', 'stack', 'both'][key - 1] }) },
     { keys: ['t'], label: 'T', help: 'dark or light', act: () => switchTheme(store) },
     { keys: ['?'], label: '?', help: 'this list', act: () => help().showModal() },
   ];
@@ -79,8 +112,11 @@ export function buildLayerPage(page, store, main, help) {
     const near = page.table.z.reduce((best, at, i) => (Math.abs(at - z) < Math.abs(page.table.z[best] - z) ? i : best), 0);
     player.go(near);
     layerView.lookAt(x, y);
+    stackView.lookAt([x, y, z]);
   };
-  const stage = element('div', { className: 'stage' }, layerView.node);
+  const stackView = new StackView(page, shelf, store);
+  const stage = element('div', { className: 'stage' }, layerView.node, stackView.node);
+  switchViews(store, layerView, stackView);
   main.append(stage, timeline.node, layerPanels(page, store, (layer) => player.go(layer), show));
   // Neighbours are ready before they are asked for.
   store.on(['layer'], ({ layer }) => {
@@ -91,5 +127,5 @@ export function buildLayerPage(page, store, main, help) {
   const node = document.getElementById('verdict');
   node.className = `verdict ${tone}`;
   node.textContent = text;
-  return keyTable(page, store, player, layerView, help);
+  return keyTable(page, store, player, layerView, stackView, help);
 }

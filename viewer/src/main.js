@@ -14,6 +14,8 @@ import { firstTheme, followTheme, switchTheme } from './theme.js';
  * @property {boolean} playing
  * @property {object} theme the colours in effect
  * @property {boolean} fill whether the material is filled; likewise contours, directions, hatches
+ * @property {boolean} ghosts whether the layers above are hinted at in the stack
+ * @property {'layer'|'stack'|'both'} view
  * @property {Set<number>} hidden parts that are not shown
  */
 function build() {
@@ -26,6 +28,8 @@ function build() {
     lines: true,
     directions: true,
     hatches: true,
+    ghosts: true,
+    view: matchMedia('(min-width: 1100px)').matches ? 'both' : 'layer',
     hidden: new Set(),
   });
   followTheme(store);

@@ -36,8 +36,10 @@ struct PageOptions {
     std::string_view viewer = {};
     /// What the page calls itself.
     std::string title = "Lamella";
-    /// The layers may take so many bytes of the page. Those beyond their share are thinned out.
+    /// The layers may take so many bytes of the page, and so many points. Those beyond their share are
+    /// thinned out.
     std::uint64_t budget_bytes = std::uint64_t{16} << 20;
+    std::uint64_t budget_points = 6'000'000;
 };
 
 struct LayerWriteOptions {

@@ -26,7 +26,7 @@ function trace(path, contours, i, camera) {
 }
 
 /** The contours from..to that chosen(i) says, as one path. */
-function pathOf(contours, from, to, camera, chosen = () => true) {
+export function pathOf(contours, from, to, camera, chosen = () => true) {
   const path = new Path2D();
   for (let i = from; i < to; ++i) if (camera.sees(contours.boxes, 4 * i) && chosen(i)) trace(path, contours, i, camera);
   return path;

@@ -205,6 +205,7 @@ export class LayerView {
       marks: marksAt(notes.places, z, half, this.origin),
     });
     this.#drawScale();
+    if (canvas.dataset.layer === undefined) performance.mark('first picture');
     canvas.dataset.layer = this.#shown;
   }
 

@@ -108,7 +108,7 @@ export function placesCard(page, show) {
       element(
         'li',
         {},
-        element('button', { type: 'button', className: 'pick bad', onclick: () => show(place) }, element('span', {}, place.text), element('small', {}, at(place))),
+        element('button', { type: 'button', className: 'pick place', onclick: () => show(place) }, element('span', {}, place.text), element('small', {}, at(place))),
       ),
     );
     if (rest > 0) items.push(element('li', { className: 'rest' }, `and ${count(rest)} more`));
