@@ -29,9 +29,6 @@
 namespace lamella::app {
 namespace {
 
-/// Places of each kind of defect that a page marks.
-constexpr std::size_t marked = 500;
-
 struct ViewArguments {
     std::string input;
     std::string output;
@@ -57,7 +54,7 @@ PlateInput input_of(const ViewArguments& arguments) {
 Diagnosis diagnosis_of(const ViewArguments& arguments, const Execution& execution) {
     const Plate plate = load_plate(input_of(arguments), read_mesh(arguments.input, {}, execution), execution);
     DiagnosisOptions options;
-    options.keep = marked;
+    options.keep = page_places;
     return diagnose(weld(joined(plate, execution), execution), options, execution);
 }
 

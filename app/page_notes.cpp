@@ -79,16 +79,16 @@ PageSection mesh_section(const Inspection& found) {
          {"Vertices", grouped(found.vertices)},
          {"Size", size_text(found.box)},
          {"Volume",
-          found.closed() ? fmt::format("{} mm3", brief(found.volume_mm3)) : "none: it is not closed"},
+          found.closed() ? fmt::format("{} mm3", brief(found.volume_mm3)) : "none: not closed"},
          {"Surface area", fmt::format("{} mm2", brief(found.area_mm2))},
          {"Shells", found.cavities == 0 ? grouped(found.shells)
                                         : fmt::format("{}, of them {} cavities", grouped(found.shells),
                                                       grouped(found.cavities))}}};
     section.facts.push_back(defect("Edges of holes", found.boundary_edges, Tone::bad));
     section.facts.push_back(
-        defect("Edges whose triangles face opposite ways", found.orientation_conflicts, Tone::bad));
+        defect("Edges facing opposite ways", found.orientation_conflicts, Tone::bad));
     section.facts.push_back(
-        defect("Edges of more than two triangles", found.nonmanifold_edges, Tone::warning));
+        defect("Crowded edges", found.nonmanifold_edges, Tone::warning));
     section.facts.push_back(defect("Shells inside out", found.inverted_shells, Tone::bad));
     section.facts.push_back(defect("Duplicate triangles", found.duplicate_triangles, Tone::warning));
     section.facts.push_back(defect("Triangles without area", found.degenerate_triangles, Tone::warning));
@@ -102,6 +102,22 @@ PageNotes run_notes(const FileResult& result) {
     notes.sections.push_back(input_section(result));
     notes.sections.push_back(run_section(result));
     return notes;
+}
+
+PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found) {
+    PageSection section{"File", {{"Name", title_of(file.path)}, {"Format", format_name(file.format)}}};
+    if (file.unit_mm)
+        section.facts.push_back({"Unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm))});
+    section.facts.push_back({"Triangles in it", grouped(file.stored_triangles)});
+    for (const std::string& warning : file.warnings)
+        section.facts.push_back({"Remark", warning, Tone::warning});
+    PageSection mesh = mesh_section(found.counts);
+    if (found.self_intersections) {
+        const SelfIntersections& meetings = *found.self_intersections;
+        mesh.facts.push_back(defect("Triangles that cross", meetings.crossing, Tone::warning));
+        mesh.facts.push_back(defect("Triangles upon one another", meetings.overlapping, Tone::warning));
+    }
+    return {.sections = {std::move(mesh), std::move(section)}, .places = places_of(found)};
 }
 
 PageNotes file_notes(const LayerFile& file) {

@@ -7,11 +7,16 @@
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/layer_file.hpp"
+#include "lamella/read/mesh_file.hpp"
 #include "lamella/write/layer_page.hpp"
 
+#include <cstddef>
 #include <string>
 
 namespace lamella::app {
+
+/// Places of each kind of defect that a page marks.
+inline constexpr std::size_t page_places = 500;
 
 /// The title of the page of a file: its name without its folder.
 [[nodiscard]] std::string title_of(const std::string& path);
@@ -21,6 +26,9 @@ namespace lamella::app {
 
 /// Where the layers came from and how long each stage took; the defects of the mesh where it was inspected.
 [[nodiscard]] PageNotes run_notes(const FileResult& result);
+
+/// Of a mesh that was looked at: its figures, the file, and the places of the defects.
+[[nodiscard]] PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found);
 
 /// Of layers that were read from a file.
 [[nodiscard]] PageNotes file_notes(const LayerFile& file);

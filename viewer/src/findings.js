@@ -107,6 +107,9 @@ export function worstLayers(table, most = 10) {
     .map((layer) => ({ layer, text: faultText(table, layer), bad: true }));
 }
 
+/** The layer with most faults; null where there are none. */
+export const firstFault = (table) => worstLayers(table, 1)[0]?.layer ?? null;
+
 /** Layers that stand out, faults or not. */
 export function remarkableLayers(table) {
   const layers = [...table.z.keys()];

@@ -1,6 +1,6 @@
 import { element } from './element.js';
 import { LayerShelf } from './data/page.js';
-import { faultText, faultsOf, verdict } from './findings.js';
+import { faultText, faultsOf, firstFault, verdict } from './findings.js';
 import { LayerView } from './layer/layer_view.js';
 import { layerPanels, middleOf } from './panels/panels.js';
 import { StackView } from './stack/stack_view.js';
@@ -10,11 +10,7 @@ import { brief, count, mm } from './text.js';
 import { switchTheme } from './theme.js';
 
 /** The middle layer, or the worst one where there are faults: something to see at once. */
-export function firstLayer(table) {
-  let worst = 0;
-  for (let i = 1; i < table.z.length; ++i) if (faultsOf(table, i) > faultsOf(table, worst)) worst = i;
-  return faultsOf(table, worst) > 0 ? worst : Math.floor(table.z.length / 2);
-}
+const firstLayer = (table) => firstFault(table) ?? Math.floor(table.z.length / 2);
 
 /** Tells screen readers where one is, once the layer stays. */
 function announce(page, store) {

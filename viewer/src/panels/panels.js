@@ -1,5 +1,5 @@
 import { element } from '../element.js';
-import { brief, count, mm } from '../text.js';
+import { brief, count, counted, mm } from '../text.js';
 import { faultText, findings, remarkableLayers, totals, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
@@ -89,7 +89,7 @@ function partsCard(page, store) {
 }
 
 /** What the program told beside the data. */
-export function noteCards(page) {
+function noteCards(page) {
   return page.notes.sections.map(({ title, facts: told }) =>
     card(title, facts(told.map(({ name, value, tone }) => [name, value, tone]))),
   );
@@ -99,7 +99,7 @@ export function noteCards(page) {
  * The places that the program found in the mesh, kind by kind.
  * @param {(place: object) => void} show
  */
-export function placesCard(page, show) {
+function placesCard(page, show) {
   const kinds = byKind(page.notes.places);
   const most = 50; // in the list; all of them are drawn
   const lists = [...kinds].map(([kind, places]) => {
@@ -130,7 +130,43 @@ export function middleOf({ points }) {
 
 const at = (place) => `(${middleOf(place).map(brief).join(', ')})`;
 
-/** @param {(layer: number) => void} go @param {(place: object) => void} show */
+/** The shells, each a button. @param {(shell: number|null, box?: number[][]) => void} show */
+function shellsCard({ head }, store, show) {
+  const button = (number, text, box) => {
+    const node = element('button', { type: 'button', className: 'pick', onclick: () => show(number, box) }, ...text);
+    store.on(['shell'], ({ shell }) => node.setAttribute('aria-pressed', shell === number));
+    return element('li', {}, node);
+  };
+  const items = head.shells.map(({ kind, triangles, volume_mm3, box, inside }, number) => {
+    const swatch = element('i', { className: 'swatch', style: `background: var(--wall-${number % 8})`, 'aria-hidden': true });
+    const what = inside === null ? kind : `${kind} in shell ${inside + 1}`;
+    const volume = kind === 'open' ? '' : `, ${brief(volume_mm3)} mm³`;
+    return button(number, [swatch, element('b', {}, count(number + 1)), element('span', {}, `${what}${volume}`), element('small', {}, counted(triangles, 'triangle'))], box);
+  });
+  items.unshift(button(null, [element('span', {}, 'All shells')]));
+  if (head.shell_count > head.shells.length)
+    items.push(element('li', { className: 'rest' }, `and ${count(head.shell_count - head.shells.length)} more`));
+  return card(counted(head.shell_count, 'shell'), element('ol', { className: 'picks' }, ...items));
+}
+
+function surfaceCard({ head }) {
+  const all = head.shown === head.triangles;
+  const text = all
+    ? `All ${count(head.triangles)} triangles are shown, their corners rounded to ${brief(head.step_mm)} mm.`
+    : `${count(head.shown)} of ${count(head.triangles)} triangles are shown: corners moved to the middles of cubes of ${brief(head.step_mm)} mm, and triangles left out that have two of them in one. Figures are of all.`;
+  return card('This picture', element('p', {}, text), element('p', { className: 'soft' }, 'Orange is the inner side of the surface: where it is seen from outside, there is a hole, or triangles face the wrong way.'));
+}
+
+/** Beside a mesh. @param {{place: (place: object) => void, shell: (shell: number|null, box?: number[][]) => void}} show */
+export function meshPanels(page, store, show) {
+  const [mesh, ...others] = noteCards(page);
+  const cards = [mesh];
+  if (page.notes.places.length > 0) cards.push(placesCard(page, show.place));
+  cards.push(shellsCard(page, store, show.shell), ...others, surfaceCard(page));
+  return element('aside', { className: 'panels', 'aria-label': 'Figures and findings' }, ...cards);
+}
+
+/** Beside layers. @param {(layer: number) => void} go @param {(place: object) => void} show */
 export function layerPanels(page, store, go, show) {
   const worst = worstLayers(page.table);
   const remarkable = remarkableLayers(page.table);

@@ -16,7 +16,7 @@ export function placeMarks(places, origin) {
   const group = new Group();
   group.add(
     new LineSegments(geometry(lines), new LineBasicMaterial({ ...above, opacity: 0.95 })),
-    new Points(geometry(points), new PointsMaterial({ ...above, size: 7, sizeAttenuation: false, opacity: 0.9 })),
+    new Points(geometry(points), new PointsMaterial({ ...above, size: 5, sizeAttenuation: false, opacity: 0.9 })),
   );
   group.renderOrder = 10;
   for (const child of group.children) child.renderOrder = 10;
