@@ -21,11 +21,14 @@ help:  ## this list
 packages:  ## install the Debian packages that a build needs
 	@tools/install_packages.sh tools/packages.txt
 
+packages-viewer: packages
+	@tools/install_packages.sh tools/packages-viewer.txt
+
 build: packages  ## build the program: build/lamella
 	cmake --preset release
 	cmake --build build --target lamella_app
 
-demo: build  ## make, slice and verify two parts; pictures and slice files are left in out/
+demo: packages-viewer build  ## make, slice and verify two parts; slice files, pictures and a page are left in out/
 	@python3 tools/demo.py build/lamella out
 
 test: packages  ## build everything and run the tests: a few minutes
@@ -36,7 +39,7 @@ test: packages  ## build everything and run the tests: a few minutes
 test-all: test-large test-asan test-tsan test-fuzz test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
 
 # Each of these is a part of test-all.
-packages-all: packages
+packages-all: packages packages-viewer
 	@tools/install_packages.sh tools/packages-all.txt
 
 test-large: packages-all
@@ -112,5 +115,5 @@ clean:  ## remove what was built
 	rm -rf build build-* out
 
 .NOTPARALLEL:
-.PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
+.PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
         bench packages-rivals rivals read-meshes paper format format-check lint install clean

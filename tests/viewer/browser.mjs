@@ -43,13 +43,23 @@ export async function open(name, { width = 1400, height = 900, colorScheme = 'li
   });
   await page.goto(pathToFileURL(file(name)).href);
   await page.waitForSelector('canvas[data-layer], canvas[data-ready], .trouble');
-  if (view && (await page.locator('#views').isVisible())) await page.getByRole('radio', { name: view, exact: false }).click();
+  if (view) {
+    const button = page.locator('#views').getByRole('button', { name: view });
+    await button.click();
+    await button.blur(); // keys are for the page again
+  }
   return { page, complaints, close: () => context.close() };
+}
+
+/** Waits until holds() is true in the page. (Playwright's own way takes eval, which the page forbids.) */
+export async function until(page, holds, seconds = 60) {
+  for (const end = Date.now() + 1000 * seconds; !(await page.evaluate(holds)); await page.waitForTimeout(30))
+    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${holds}`);
 }
 
 /** The layer that is drawn, counted from 1, once it is the one that is asked for. */
 export async function shown(page) {
-  await page.waitForFunction(() => document.querySelector('canvas[data-layer]').dataset.layer === document.getElementById('layer').value);
+  await until(page, () => document.querySelector('canvas[data-layer]').dataset.layer === document.getElementById('layer').value);
   return Number(await page.locator('canvas[data-layer]').getAttribute('data-layer')) + 1;
 }
 

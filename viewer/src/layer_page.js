@@ -35,26 +35,14 @@ function switchViews(store, layerView, stackView) {
   const names = { layer: 'Layer', stack: 'Stack', both: 'Both' };
   const group = document.getElementById('views');
   const buttons = Object.entries(names).map(([view, name]) =>
-    element('button', { type: 'button', role: 'radio', onclick: () => store.set({ view }) }, name),
+    element('button', { type: 'button', onclick: () => store.set({ view }) }, name),
   );
   group.append(...buttons);
   group.hidden = false;
   store.on(['view'], ({ view }) => {
-    Object.keys(names).forEach((name, i) => {
-      buttons[i].setAttribute('aria-checked', name === view);
-      buttons[i].tabIndex = name === view ? 0 : -1;
-    });
+    Object.keys(names).forEach((name, i) => buttons[i].setAttribute('aria-pressed', name === view));
     layerView.node.hidden = view === 'stack';
     stackView.node.hidden = view === 'layer';
-  });
-  group.addEventListener('keydown', (event) => {
-    const by = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-    if (!by) return;
-    event.preventDefault();
-    const at = buttons.indexOf(event.target);
-    const next = buttons[(at + by + buttons.length) % buttons.length];
-    next.click();
-    next.focus();
   });
 }
 
