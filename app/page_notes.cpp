@@ -14,7 +14,7 @@ namespace lamella::app {
 namespace {
 
 std::string size_text(const Box3& box) {
-    return fmt::format("{} x {} x {} mm", brief(box.max.x - box.min.x), brief(box.max.y - box.min.y),
+    return fmt::format("{} × {} × {} mm", brief(box.max.x - box.min.x), brief(box.max.y - box.min.y),
                        brief(box.max.z - box.min.z));
 }
 
@@ -78,17 +78,14 @@ PageSection mesh_section(const Inspection& found) {
          {"Triangles", grouped(found.triangles)},
          {"Vertices", grouped(found.vertices)},
          {"Size", size_text(found.box)},
-         {"Volume",
-          found.closed() ? fmt::format("{} mm3", brief(found.volume_mm3)) : "none: not closed"},
-         {"Surface area", fmt::format("{} mm2", brief(found.area_mm2))},
+         {"Volume", found.closed() ? fmt::format("{} mm³", brief(found.volume_mm3)) : "none: not closed"},
+         {"Surface area", fmt::format("{} mm²", brief(found.area_mm2))},
          {"Shells", found.cavities == 0 ? grouped(found.shells)
                                         : fmt::format("{}, of them {} cavities", grouped(found.shells),
                                                       grouped(found.cavities))}}};
     section.facts.push_back(defect("Edges of holes", found.boundary_edges, Tone::bad));
-    section.facts.push_back(
-        defect("Edges facing opposite ways", found.orientation_conflicts, Tone::bad));
-    section.facts.push_back(
-        defect("Crowded edges", found.nonmanifold_edges, Tone::warning));
+    section.facts.push_back(defect("Edges facing opposite ways", found.orientation_conflicts, Tone::bad));
+    section.facts.push_back(defect("Crowded edges", found.nonmanifold_edges, Tone::warning));
     section.facts.push_back(defect("Shells inside out", found.inverted_shells, Tone::bad));
     section.facts.push_back(defect("Duplicate triangles", found.duplicate_triangles, Tone::warning));
     section.facts.push_back(defect("Triangles without area", found.degenerate_triangles, Tone::warning));

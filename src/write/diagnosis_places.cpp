@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace lamella {
 
 namespace {
 
 std::string size_text(const Box3& box) {
-    return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", box.max.x - box.min.x, box.max.y - box.min.y,
+    return fmt::format("{:.4g} × {:.4g} × {:.4g} mm", box.max.x - box.min.x, box.max.y - box.min.y,
                        box.max.z - box.min.z);
 }
 
@@ -27,7 +30,12 @@ std::vector<Point3> outline(const Box3& box) {
             {x0, y1, z1}, {x0, y1, z0}, {x0, y1, z1}, {x0, y0, z1}};
 }
 
-std::string_view meeting_text(MeetingKind kind) {
+/// A kind of which the diagnosis lists only some says so.
+std::string kind_text(const char* name, std::size_t listed, std::uint64_t total) {
+    return listed < total ? fmt::format("{}, the first of {}", name, total) : name;
+}
+
+const char* meeting_text(MeetingKind kind) {
     return kind == MeetingKind::crossing ? "two triangles pass through each other"
                                          : "two triangles lie upon one another";
 }
@@ -35,19 +43,25 @@ std::string_view meeting_text(MeetingKind kind) {
 } // namespace
 
 std::vector<PagePlace> places_of(const Diagnosis& diagnosis) {
+    const Inspection& counts = diagnosis.counts;
     std::vector<PagePlace> places;
+    const auto edges = [&](const char* name, const char* text, const std::vector<EdgePlace>& of,
+                           std::uint64_t total) {
+        for (const EdgePlace& edge : of)
+            places.push_back({kind_text(name, of.size(), total), text, {edge.begin(), edge.end()}});
+    };
     for (const BoundaryLoop& loop : diagnosis.loops)
-        places.push_back({"boundary loop", loop_text(loop), loop.points, loop.closed});
-    for (const EdgePlace& edge : diagnosis.conflicting_edges)
-        places.push_back({"orientation conflict",
-                          "the triangles at this edge face opposite ways, and contours stay open",
-                          {edge.begin(), edge.end()}});
-    for (const EdgePlace& edge : diagnosis.nonmanifold_edges)
-        places.push_back({"crowded edge",
-                          "more than two triangles share this edge; contours part or touch here",
-                          {edge.begin(), edge.end()}});
+        places.push_back({kind_text("boundary loop", diagnosis.loops.size(), diagnosis.boundary_loops),
+                          loop_text(loop), loop.points, loop.closed});
+    edges("orientation conflict", "the triangles at this edge face opposite ways, and contours stay open",
+          diagnosis.conflicting_edges, counts.orientation_conflicts);
+    edges("crowded edge", "more than two triangles share this edge; contours part or touch here",
+          diagnosis.nonmanifold_edges, counts.nonmanifold_edges);
     for (const Point3& vertex : diagnosis.vertices)
-        places.push_back({"crowded vertex", "parts of the surface touch in this point", {vertex}});
+        places.push_back(
+            {kind_text("crowded vertex", diagnosis.vertices.size(), diagnosis.nonmanifold_vertices),
+             "parts of the surface touch in this point",
+             {vertex}});
     for (const Shell& shell : diagnosis.shells)
         if (shell.kind == ShellKind::inverted)
             places.push_back({"inverted shell",
@@ -57,8 +71,7 @@ std::vector<PagePlace> places_of(const Diagnosis& diagnosis) {
     if (diagnosis.self_intersections)
         for (const Meeting& meeting : diagnosis.self_intersections->first)
             if (meeting.kind != MeetingKind::touching)
-                places.push_back(
-                    {"self-intersection", std::string(meeting_text(meeting.kind)), {meeting.at}});
+                places.push_back({"self-intersection", meeting_text(meeting.kind), {meeting.at}});
     return places;
 }
 
