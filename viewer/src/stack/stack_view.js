@@ -19,8 +19,12 @@ const mostLines = 1.5e6; // in the whole stack
 const linesOfPiece = 6e4;
 const millisecondsAtWork = 14; // then the browser has its turn
 
-/** A rectangle to be put up for each line of a contour: position.x along it, position.y upwards. */
-const corners = new Float32BufferAttribute([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], 3);
+/**
+ * What is put up for each line of a contour: a wall, and on its top a ledge inwards. position.x goes along the line,
+ * position.y upwards, position.z inwards.
+ */
+const corners = new Float32BufferAttribute([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 1, 1, 0, 1, 1], 3);
+const ledges = new Float32BufferAttribute([0, 0, 0, 0, 1, 1, 1, 1], 1);
 
 const attributesOf = (walls) => ({
   ends: new InstancedBufferAttribute(new Float32Array(walls.ends), 4),
@@ -33,7 +37,8 @@ const attributesOf = (walls) => ({
 function geometryOf(attributes, instances) {
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute('position', corners);
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  geometry.setAttribute('ledge', ledges);
+  geometry.setIndex([0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7]);
   for (const [name, attribute] of Object.entries(attributes)) geometry.setAttribute(name, attribute);
   geometry.instanceCount = instances;
   return geometry;
