@@ -12,8 +12,8 @@ function(try what)
     endif()
     message(WARNING "${what} failed (${status}), so this build has no viewer and lamella view will say so. Delete "
                     "${PAGE} to try again.\n${out}")
-    file(WRITE ${PAGE} "#include \"viewer_page.hpp\"\n\nstd::string_view lamella::app::viewer_page() noexcept {\n"
-                       "    return {};\n}\n")
+    file(COPY_FILE ${SOURCE_DIR}/../app/no_viewer.cpp ${PAGE})
+    file(TOUCH ${PAGE})
     set(failed TRUE PARENT_SCOPE)
 endfunction()
 
