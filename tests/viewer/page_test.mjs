@@ -133,6 +133,37 @@ test('zoom and pan change the drawing, and 0 brings it back', async () => {
   await close();
 });
 
+test('parts have colours of their own and can be hidden', async () => {
+  lamella('slice', 'box.stl', '--copies', '2', '-o', 'plate.html');
+  const { page, close } = await open('plate.html');
+  await shown(page);
+  const canvas = page.locator('canvas[data-layer]');
+  const filled = async (part) => (await pixelsNear(canvas, await colourOf(page, `--fill-${part}`), 6)).near;
+  const before = [await filled(0), await filled(1)];
+  assert.ok(before[0] > 1000 && Math.abs(before[0] - before[1]) < 0.02 * before[0], before.join(' '));
+  await page.getByRole('checkbox', { name: 'box 2' }).uncheck();
+  await page.waitForTimeout(100);
+  assert.deepEqual([await filled(0), await filled(1)], [before[0], 0]);
+  await close();
+});
+
+test('hatches of a slice file are drawn and can be left away', async () => {
+  const rings = [[0, 0, 20, 0, 20, 20, 0, 20]];
+  const hatches = Array.from({ length: 9 }, (_, i) => [2, 2 + 2 * i, 18, 2 + 2 * i]).flat();
+  const layers = [0, 1].map((i) => ({ index: i, z: i + 0.5, bottom: i, top: i + 1, parts: [{ rings, hatches }] }));
+  writeFileSync(file('hatched.json'), JSON.stringify({ format: 'lamella layers', version: 1, units: 'mm', parts: [{ label: 'a' }], layers }));
+  lamella('view', 'hatched.json');
+  const { page, close } = await open('hatched.html');
+  await shown(page);
+  const canvas = page.locator('canvas[data-layer]');
+  const green = async () => (await pixelsNear(canvas, await colourOf(page, '--hatch'), 60)).near;
+  assert.ok((await green()) > 1000);
+  await page.getByRole('button', { name: 'Hatches' }).click();
+  await page.waitForTimeout(100);
+  assert.equal(await green(), 0);
+  await close();
+});
+
 test('an open contour is seen in red, counted, and listed', async () => {
   for (const colorScheme of ['light', 'dark']) {
     const { page, close } = await open('open.html', { colorScheme });

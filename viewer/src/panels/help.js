@@ -9,7 +9,7 @@ export function helpDialog(table) {
     element('h2', { id: 'help-title' }, 'Keys'),
     element('table', {}, ...rows),
     element('p', {}, 'The wheel or two fingers zoom, dragging moves. In the stack, dragging turns and the right button moves.'),
-    element('p', { className: 'small' }, 'Written by lamella view. The page is complete: it opens without a network, and nothing leaves it.'),
+    element('p', { className: 'small' }, 'Written by Lamella. The page is complete: it opens without a network, and nothing leaves it.'),
     element('form', { method: 'dialog' }, element('button', { className: 'main' }, 'Close')),
   );
   dialog.addEventListener('click', (event) => {
