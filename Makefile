@@ -21,11 +21,14 @@ help:  ## this list
 packages:  ## install the Debian packages that a build needs
 	@tools/install_packages.sh tools/packages.txt
 
+packages-viewer: packages
+	@tools/install_packages.sh tools/packages-viewer.txt
+
 build: packages  ## build the program, build/lamella, and the Python package, build/python
 	cmake --preset release
 	cmake --build build --target lamella_app lamella_python_package
 
-demo: build  ## make, slice and verify two parts; pictures and slice files are left in out/
+demo: packages-viewer build  ## make, slice and verify two parts; slice files, pictures and a page are left in out/
 	@python3 tools/demo.py build/lamella out
 
 test: packages  ## build everything and run the tests: a few minutes
@@ -36,7 +39,7 @@ test: packages  ## build everything and run the tests: a few minutes
 test-all: test-large test-asan test-tsan test-fuzz test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
 
 # Each of these is a part of test-all.
-packages-all: packages
+packages-all: packages packages-viewer
 	@tools/install_packages.sh tools/packages-all.txt
 
 test-large: packages-all

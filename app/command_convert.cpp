@@ -6,8 +6,10 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "layer_file_info.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "page_notes.hpp"
 
 #include <fmt/format.h>
 
@@ -28,27 +30,6 @@ struct ConvertArguments {
     RunOptions run;
 };
 
-Box3 box_of(const LayerStack& layers) {
-    Box3 box;
-    for (const Layer& layer : layers)
-        for (const Point2& p : layer.points)
-            box.add(Point3{p.x, p.y, layer.z});
-    return box;
-}
-
-/// Of the whole file: never empty, and from the bottom of its first layer to the top of its last.
-Box3 box_of(const LayerFile& file) {
-    Box3 box;
-    for (const LayerPart& part : file.parts)
-        box.add(box_of(part.layers));
-    const LayerStack& layers = file.parts.front().layers;
-    if (box.empty())
-        box.add(Point3{});
-    box.min.z = layers.front().bottom;
-    box.max.z = layers.back().top;
-    return box;
-}
-
 OptionGroup output_options(ConvertArguments& target) {
     OptionGroup group{"What is written", layer_output_options(target.writing)};
     group.options.push_back(
@@ -59,36 +40,31 @@ OptionGroup output_options(ConvertArguments& target) {
 int run_convert(const ConvertArguments& arguments, const Context& context) {
     check_distinct(arguments.input, arguments.output);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
-    const LayerWriteOptions options = arguments.writing.write_options(format);
+    LayerWriteOptions options = arguments.writing.write_options(format);
     const Execution execution = arguments.run.execution(context);
     LayerFile file = read_layers(arguments.input, execution);
+    options.page.title = title_of(arguments.input);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
     LayerChanges changes;
     for (LayerPart& part : file.parts)
         part.layers = take_steps(arguments.making.steps(), std::move(part.layers), changes, execution);
-    const LayerStack& layers = file.parts.front().layers;
-    if (layers.empty())
-        throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
-    if (!arguments.label.empty() && file.parts.size() > 1)
-        throw Error(ErrorKind::usage,
-                    fmt::format("--label names one part, and {} holds {}", file.path, file.parts.size()));
-    LayerFileInfo info{
-        .box = box_of(file), .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}};
-    std::vector<LayerStack> stacks;
-    for (const LayerPart& part : file.parts) {
-        std::string label = arguments.label.empty() ? part.label : arguments.label;
-        if (label.empty())
-            label = PartInfo{}.label;
-        info.parts.push_back({std::move(label), box_of(part.layers)});
-        stacks.push_back(part.layers);
+    LayerFileInfo info = info_of(file);
+    if (!arguments.label.empty()) {
+        if (file.parts.size() > 1)
+            throw Error(ErrorKind::usage,
+                        fmt::format("--label names one part, and {} holds {}", file.path, file.parts.size()));
+        info.parts.front().label = arguments.label;
     }
+    std::vector<LayerStack> stacks;
+    for (const LayerPart& part : file.parts)
+        stacks.push_back(part.layers);
     for (const std::string& warning : write_layers(arguments.output, format, stacks, info, options))
         context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
 
     const std::string text =
-        fmt::format("{}: {} from {} ({}) as {}\n", one_line(arguments.output),
-                    counted(layers.size(), "layer"), one_line(file.path), file.format, format.name);
+        fmt::format("{}: {} from {} ({}) as {}\n", one_line(arguments.output), counted(info.layers, "layer"),
+                    one_line(file.path), file.format, format.name);
     if (arguments.output == "-")
         context.messages.note(text);
     else

@@ -3,6 +3,7 @@
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/write/defect_picture.hpp"
+#include "lamella/write/layer_page.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -10,12 +11,15 @@
 #include "input_kind.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "page_notes.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
+#include "viewer_page.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -35,6 +39,7 @@ struct InfoArguments {
     bool strict = false;
     bool self_intersections = false;
     std::string picture;
+    std::string report;
     PlacementOptions placement; ///< the unit only
     RunOptions run;
 };
@@ -54,9 +59,14 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     options.self_intersections = arguments.self_intersections;
     if (!arguments.picture.empty())
         options.keep = picture_places;
+    if (!arguments.report.empty())
+        options.keep = std::max(options.keep, page_places);
     const Diagnosis found = diagnose(mesh, options, execution);
     if (!arguments.picture.empty())
         write_text_file(arguments.picture, defect_picture(mesh, found, execution));
+    if (!arguments.report.empty())
+        write_mesh_page(arguments.report, mesh, found, mesh_notes(file, found),
+                        {.viewer = viewer_page(), .title = title_of(file.path)}, execution);
     context.messages.result(arguments.json ? json_text(mesh_json(file, found, plate))
                                            : mesh_text(file, found, plate));
     if (arguments.strict && !found.counts.sound())
@@ -133,9 +143,12 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
     if (arguments.placement.given())
         throw Error(ErrorKind::usage,
                     fmt::format("{}: --unit is for meshes; a slice file knows its unit", file.path));
-    if (arguments.self_intersections || !arguments.picture.empty())
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: --self-intersections and --picture are for meshes", file.path));
+    if (arguments.self_intersections || !arguments.picture.empty() || !arguments.report.empty())
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{}: --self-intersections, --picture and --report are for meshes; lamella view "
+                        "writes a page of a slice file",
+                        file.path));
     const LayerTotals totals = totals_of(file);
     context.messages.result(arguments.json ? json_text(layers_json(file, totals))
                                            : layers_text(file, totals));
@@ -147,6 +160,7 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
 
 int run_info(const InfoArguments& arguments, const Context& context) {
     check_distinct(arguments.input, arguments.picture);
+    check_distinct(arguments.input, arguments.report);
     const Execution execution = arguments.run.execution(context);
     const auto file = read_either(arguments.input, {.strict = arguments.strict}, execution);
     if (const auto* mesh = std::get_if<MeshFile>(&file))
@@ -179,6 +193,8 @@ Command info_command() {
                           "look for triangles that cross, overlap or touch one another, too (takes longer)",
                           arguments->self_intersections),
                      file("picture", "draw the mesh with its defects marked, as SVG", arguments->picture),
+                     file("report", "write a page to look at the mesh, its shells and its defects (HTML)",
+                          arguments->report),
                      unit_option(arguments->placement.unit),
                      flag("strict", "exit with code 4 where there is any defect", arguments->strict)}},
                    run_options(arguments->run),

@@ -13,10 +13,12 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "page_notes.hpp"
 #include "repair_options.hpp"
 #include "shard_stamp.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
+#include "viewer_page.hpp"
 #include "z_list.hpp"
 
 #include <fmt/format.h>
@@ -71,6 +73,7 @@ struct SliceArguments {
     bool strict = false;
     LayerStepOptions making;
     std::string stats;
+    std::string report;
     std::optional<double> timeout;
     RunOptions run;
     BatchArguments batch;
@@ -85,6 +88,9 @@ OptionGroup output_options(SliceArguments& target) {
     group.options.push_back(std::move(output));
     for (Option& option : layer_output_options(target.writing))
         group.options.push_back(std::move(option));
+    group.options.push_back(file("report",
+                                 "write a page to look at the layers and the figures of the run (HTML), too",
+                                 target.report));
     group.options.push_back(file(
         "stats", "write figures of the run and of every layer as JSON; - is standard output", target.stats));
     return group;
@@ -210,7 +216,7 @@ void check_shard(const SliceArguments& arguments) {
 }
 
 FileJob make_job(const SliceArguments& arguments) {
-    if (arguments.output.empty() && arguments.stats.empty())
+    if (arguments.output.empty() && arguments.stats.empty() && arguments.report.empty())
         throw Error(ErrorKind::usage,
                     "where should the result go? Say -o part.cli (or --stats - for figures only)");
     check_conflict(arguments.output == "-", arguments.stats == "-", "--output - and --stats -",
@@ -233,11 +239,15 @@ FileJob make_job(const SliceArguments& arguments) {
     for (const PlateInput& input : arguments.inputs) {
         check_distinct(input.path, arguments.output);
         check_distinct(input.path, arguments.stats);
+        check_distinct(input.path, arguments.report);
     }
     check_conflict(std::ranges::count(arguments.inputs, std::string("-"), &PlateInput::path) > 1, true,
                    "- and -", "standard input holds one file only");
     check_conflict(!arguments.output.empty() && arguments.output != "-", arguments.output == arguments.stats,
                    "--output and --stats", "both would go to the same file");
+    check_conflict(!arguments.report.empty(),
+                   arguments.report == arguments.output || arguments.report == arguments.stats,
+                   "--report and --output or --stats", "both would go to the same file");
 
     check_shard(arguments);
 
@@ -270,6 +280,11 @@ FileJob make_job(const SliceArguments& arguments) {
     job.format = arguments.writing.format;
     if (!job.output.empty())
         job.write = arguments.writing.write_options(layer_format(job.format, job.output));
+    job.write.page.title = title_of(job.inputs.front().path);
+    if (!arguments.report.empty())
+        job.report = {.path = arguments.report,
+                      .page = {.viewer = viewer_page(), .title = job.write.page.title},
+                      .notes = run_notes};
     return job;
 }
 
@@ -323,6 +338,8 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text +=
             fmt::format("written  {}: {}, {}\n", job.output == "-" ? "standard output" : one_line(job.output),
                         result.format, byte_size(result.bytes));
+    if (!job.report.path.empty())
+        text += fmt::format("report   {}: open it with a browser\n", one_line(job.report.path));
     return text;
 }
 
@@ -346,6 +363,8 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
                         name, where(result.inside_out), name));
     for (const std::string& warning : result.warnings)
         warnings.push_back(fmt::format("{}: {}", one_line(job.output), warning));
+    for (const std::string& warning : result.report_warnings)
+        warnings.push_back(fmt::format("{}: {}", one_line(job.report.path), warning));
     return warnings;
 }
 
@@ -390,6 +409,7 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
                                 arguments.inputs.front().path));
     const bool to_stdout = arguments.output == "-" || arguments.stats == "-";
     check_conflict(true, to_stdout, "--batch and -", "standard output is where the results of the files go");
+    check_conflict(true, !arguments.report.empty(), "--batch and --report", "a page shows one part");
     const std::vector<BatchItem> items =
         batch_items(arguments.batch, arguments.output, batch_extension(arguments), arguments.stats);
     // All files have the options of the first one.
@@ -453,7 +473,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         else
             write_text_file(arguments.stats, text);
     }
-    if (arguments.output == "-" || arguments.stats == "-")
+    if (arguments.output == "-" || arguments.stats == "-" || arguments.report == "-")
         context.messages.note(summary(job, result));
     else
         context.messages.result(summary(job, result));

@@ -16,6 +16,7 @@ std::vector<Command> all_commands() {
                                   compare_command(),
                                   convert_command(),
                                   merge_command(),
+                                  view_command(),
                                   make_command(),
                                   completion_command(),
                                   help_command()};

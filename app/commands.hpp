@@ -28,6 +28,7 @@ struct Slicing {
 [[nodiscard]] Command verify_command();
 [[nodiscard]] Command convert_command();
 [[nodiscard]] Command merge_command();
+[[nodiscard]] Command view_command();
 [[nodiscard]] Command make_command();
 [[nodiscard]] Command completion_command();
 [[nodiscard]] Command help_command();

@@ -67,4 +67,19 @@ std::variant<MeshFile, LayerFile> read_either(const std::string& path, const Mes
         [&] { return read_mesh(path, options, execution); });
 }
 
+std::optional<LayerFile> read_if_layers(const std::string& path, const Execution& execution) {
+    const std::string head = head_of(path);
+    if (holds_layers(head))
+        return read_layers(path, execution);
+    if (!may_hold_slices(head))
+        return std::nullopt;
+    try {
+        return read_layers(path, execution);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input)
+            throw;
+        return std::nullopt;
+    }
+}
+
 } // namespace lamella::app

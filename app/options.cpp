@@ -4,6 +4,7 @@
 
 #include "names.hpp"
 #include "numbers.hpp"
+#include "viewer_page.hpp"
 
 #include <fmt/format.h>
 
@@ -241,6 +242,7 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) con
     options.short_form = short_form;
     options.most_bytes = max_output.value_or(0);
     picture.apply(with, options);
+    options.page.viewer = viewer_page();
     return options;
 }
 

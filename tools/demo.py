@@ -32,6 +32,9 @@ def main(program, folder):
         run("rsvg-convert", "--zoom", "2", "--output", picture.with_suffix(".png"), picture)
         picture = picture.with_suffix(".png")
     print(f"The slice files are in {folder}/; for a picture open {picture}.")
+    page = folder / "rook.html"
+    if view(program, folder / "rook.stl", page):
+        print(f"To look at all layers, open {page} with a browser.")
 
 
 def report(title, stats, *checks):
@@ -41,6 +44,17 @@ def report(title, stats, *checks):
     error = max(check["max_area_error_mm2"] for check in checks)
     print(f"    verified  every contour closed and oriented, none crossing; each layer's area within\n"
           f"              {error:.2g} mm2 of the section of the mesh; volume {checks[0]['volume_mm3']:,.1f} mm3\n")
+
+
+def view(program, mesh, page):
+    """Writes a page of the layers, unless the program was built without the viewer, and says so then."""
+    result = subprocess.run([program, "view", mesh, "-o", page], capture_output=True, text=True, check=False)
+    if result.returncode == 2 and "no viewer" in result.stderr:
+        print(result.stderr.strip())
+        return False
+    if result.returncode != 0:
+        sys.exit(f"demo: lamella view {mesh}\n{result.stdout}{result.stderr}exit code {result.returncode}")
+    return True
 
 
 def run(*command):

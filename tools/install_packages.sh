@@ -1,5 +1,6 @@
 #!/bin/sh
-# Installs the Debian packages of the given lists, skipping those that are there.
+# Installs the Debian packages of the given lists, skipping those that are there. An entry PACKAGE=COMMAND is skipped
+# where the command is there, too.
 # usage: tools/install_packages.sh LIST...
 set -eu
 
@@ -9,7 +10,11 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
 fi
 
 missing=
-for package in $(sed 's/#.*//' "$@"); do
+for entry in $(sed 's/#.*//' "$@"); do
+    package=${entry%%=*}
+    case $entry in
+    *=*) if command -v "${entry#*=}" >/dev/null 2>&1; then continue; fi ;;
+    esac
     status=$(dpkg-query --show --showformat '${db:Status-Status}' "$package" 2>/dev/null) || status=absent
     [ "$status" = installed ] || missing="$missing $package"
 done

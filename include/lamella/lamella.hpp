@@ -58,5 +58,6 @@
 #include "lamella/slicing/slice.hpp"
 #include "lamella/slicing/varying_plan.hpp"
 #include "lamella/write/defect_picture.hpp"
+#include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"

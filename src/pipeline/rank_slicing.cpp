@@ -151,6 +151,10 @@ FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& executi
     FileResult result;
     if (job.shard)
         throw Error(ErrorKind::usage, "ranks share out all layers among themselves, not those of a shard");
+    if (!job.report.path.empty())
+        throw Error(ErrorKind::usage,
+                    "no process has all layers for a page of the run; write a slice file, and "
+                    "let lamella view make a page of it");
     const Engine& with = job.engine.empty() ? engines().front() : engine(job.engine);
     const LayerFormat* format = job.output.empty() ? nullptr : &layer_format(job.format, job.output);
     Plan listed;
@@ -191,9 +195,11 @@ FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& executi
     double slice_seconds = 0; // without waiting for others
     in_agreement(ranks, [&] {
         const Stopwatch slicing;
+        std::vector<LayerWriter*> writers;
+        if (output)
+            writers.push_back(&output->writer());
         if (mine.size() > 0)
-            slice_layers(job, source, part_of(plan, mine), output ? &output->writer() : nullptr, result, with,
-                         execution);
+            slice_layers(job, source, part_of(plan, mine), writers, result, with, execution);
         slice_seconds = slicing.seconds();
     });
     RankFigures did = opened.shared ? opened.shared->figures() : RankFigures{};

@@ -246,8 +246,9 @@ void describe_parts(const FileJob& job, const LayerSource& source, FileResult& r
     }
 }
 
-void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan, LayerWriter* writer,
-                  FileResult& result, const Engine& with, const Execution& execution) {
+void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan,
+                  std::span<LayerWriter* const> writers, FileResult& result, const Engine& with,
+                  const Execution& execution) {
     Gatherer gatherer(plan, source.plate().parts.size(), job);
     if (job.steps.any())
         result.changes.emplace();
@@ -270,11 +271,15 @@ void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan, Lay
             parts = made;
         }
         gatherer.add(parts, std::move(joins));
-        if (writer == nullptr)
+        std::vector<std::function<void()>> writes;
+        for (LayerWriter* const writer : writers)
+            writes.push_back(writer->prepare(parts));
+        if (writes.empty())
             return {};
-        return [&result, write = writer->prepare(parts)] {
+        return [&result, writes = std::move(writes)] {
             const Stopwatch writing;
-            write();
+            for (const std::function<void()>& write : writes)
+                write();
             result.seconds.write += writing.seconds();
         };
     };
@@ -297,6 +302,13 @@ void finish(LayerWriter& writer, FileResult& result) {
     result.seconds.write += writing.seconds();
     result.bytes = writer.bytes();
     result.warnings = writer.warnings();
+}
+
+void finish(LayerPageWriter& page, const FileReport& report, FileResult& result) {
+    if (report.notes)
+        page.tell(report.notes(result));
+    page.finish();
+    result.report_warnings = page.warnings();
 }
 
 } // namespace
@@ -329,18 +341,27 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     result.top = plan.layers.back().top;
     source->prepare(job, with, result, execution);
 
+    std::vector<LayerWriter*> writers;
     std::unique_ptr<LayerWriter> writer;
     if (format != nullptr) {
         writer = open_layer_writer(job.output, *format, file_info(source->plate(), plan), job.write);
+        writers.push_back(writer.get());
         result.format = format->name;
     }
-    slice_layers(job, *source, plan, writer.get(), result, with, execution);
+    std::unique_ptr<LayerPageWriter> report;
+    if (!job.report.path.empty()) {
+        report = open_layer_page(job.report.path, file_info(source->plate(), plan), job.report.page);
+        writers.push_back(report.get());
+    }
+    slice_layers(job, *source, plan, writers, result, with, execution);
     check_closed(job, result);
     if (writer != nullptr)
         finish(*writer, result);
     result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;
     result.seconds.slice = result.report.slice_seconds;
+    if (report != nullptr)
+        finish(*report, job.report, result);
     result.seconds.total = total.seconds();
     return result;
 }

@@ -11,6 +11,8 @@
 
 #include "pipeline/layer_source.hpp"
 
+#include <span>
+
 namespace lamella {
 
 /// The planes of the job. `listed`: of the heights that it lists, if it does.
@@ -22,9 +24,10 @@ namespace lamella {
 /// What the result says of the parts before they are sliced. Throws where they cannot be.
 void describe_parts(const FileJob& job, const LayerSource& source, FileResult& result);
 
-/// All layers of the source on their way through the job's policies to the writer, if there is one.
-void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan, LayerWriter* writer,
-                  FileResult& result, const Engine& with, const Execution& execution);
+/// All layers of the source on their way through the job's policies to the writers.
+void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan,
+                  std::span<LayerWriter* const> writers, FileResult& result, const Engine& with,
+                  const Execution& execution);
 
 /// Throws Error{defect} for open chains where the job is strict.
 void check_closed(const FileJob& job, const FileResult& result);

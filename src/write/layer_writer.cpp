@@ -1,6 +1,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/write/layer_page.hpp"
 
 #include "write/common_layer.hpp"
 #include "write/dxf.hpp"
@@ -44,6 +45,7 @@ constexpr std::array formats{
                 true},
     LayerFormat{"json", ".json", "all that layers have as JSON; exact", false, true},
     LayerFormat{"npz", ".npz", "NumPy arrays; exact"},
+    LayerFormat{"html", ".html", "a page to look at the layers with any browser; see docs/viewer.md"},
     LayerFormat{"svg-layers", "", "a folder with one SVG picture per layer; coordinates to 0.001 mm", true},
     LayerFormat{"png", "", "a folder with one PNG picture per layer; as fine as its pixels", true},
     LayerFormat{"png-zip", ".zip", "the same pictures in a zip archive"},
@@ -101,6 +103,8 @@ std::unique_ptr<LayerWriter> open_unlimited(const std::string& path, const Layer
         return open_layers_json(path, info);
     if (format.name == "npz")
         return open_npz(path, info);
+    if (format.name == "html")
+        return open_layer_page(path, info, options.page);
     if (format.name == "svg-layers")
         return open_svg_layers(path, info);
     if (format.name == "png")

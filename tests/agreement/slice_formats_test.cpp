@@ -121,8 +121,10 @@ Layer kept(const Layer& layer, const Resolution& of) {
 std::string written(const char* format, const std::vector<LayerStack>& parts,
                     std::vector<std::string>* warnings = nullptr) {
     const TemporaryFolder folder;
+    LayerWriteOptions options;
+    options.page.viewer = "<!--lamella-data-->";
     std::vector<std::string> told =
-        write_layers(folder.file("out"), layer_format(format, ""), parts, info_of(parts));
+        write_layers(folder.file("out"), layer_format(format, ""), parts, info_of(parts), options);
     if (warnings != nullptr)
         *warnings = std::move(told);
     return file_bytes(folder.file("out"));
@@ -199,8 +201,8 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
         for (const std::string& warning : warnings)
             all += warning + '\n';
         const bool closed_only = format.name == "slc" || format.name == "3mf" || format.name == "png-zip";
-        const bool no_hatches =
-            format.name != "json" && format.name != "npz" && !format.name.starts_with("cli");
+        const bool no_hatches = format.name != "json" && format.name != "npz" && format.name != "html" &&
+                                !format.name.starts_with("cli");
         EXPECT_EQ(all.find(std::to_string(chains) + " open contours") != std::string::npos, closed_only)
             << all;
         EXPECT_EQ(all.find(std::to_string(hatches) + " hatch lines") != std::string::npos, no_hatches) << all;

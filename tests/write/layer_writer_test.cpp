@@ -57,9 +57,10 @@ TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
         if (format.directory || format.name.starts_with("sl1")) // whose layers must be of one height
             continue;
         const TemporaryFolder folder;
-        write_layers(folder.file("expected"), format, layers, info_of(layers));
+        write_layers(folder.file("expected"), format, layers, info_of(layers), options_for_any());
 
-        const auto writer = open_layer_writer(folder.file("parallel"), format, info_of(layers));
+        const auto writer =
+            open_layer_writer(folder.file("parallel"), format, info_of(layers), options_for_any());
         std::vector<std::function<void()>> writes(layers.size());
         std::vector<std::thread> threads;
         for (std::size_t t = 0; t < 3; ++t) {
@@ -86,7 +87,8 @@ TEST(LayerWriter, LeavesNothingWhenItIsNotFinished) {
     for (const LayerFormat& format : layer_formats()) {
         const TemporaryFolder folder;
         {
-            const auto writer = open_layer_writer(folder.file("out"), format, info_of(layers));
+            const auto writer =
+                open_layer_writer(folder.file("out"), format, info_of(layers), options_for_any());
             writer->prepare(layers[0])();
             EXPECT_FALSE(std::filesystem::exists(folder.file("out")));
         }
@@ -100,7 +102,7 @@ TEST(LayerWriter, RefusesLayersOutOfOrderAndOfAnotherNumberThanAnnounced) {
     for (const LayerFormat& format : layer_formats()) {
         const TemporaryFolder folder;
         const auto write = [&] {
-            write_layers(folder.file("out"), format, layers, info);
+            write_layers(folder.file("out"), format, layers, info, options_for_any());
         };
         std::swap(layers[0], layers[1]);
         EXPECT_NE(error_of(ErrorKind::usage, write).find("ascending"), std::string::npos);
@@ -117,7 +119,7 @@ TEST(LayerWriter, WritesStacksWithoutContoursAndWithoutLayers) {
     for (const LayerStack& layers : {LayerStack{}, LayerStack{builder.finish(0, 0.5, 0, 1)}}) {
         for (const LayerFormat& format : layer_formats()) {
             const TemporaryFolder folder;
-            write_layers(folder.file("out"), format, layers, info_of(layers));
+            write_layers(folder.file("out"), format, layers, info_of(layers), options_for_any());
             EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
         }
     }
@@ -128,13 +130,13 @@ TEST(LayerWriter, ReportsAFullDiskAndAMissingFolder) {
     for (const LayerFormat& format : layer_formats()) {
         if (!format.directory) {
             const auto fill = [&] {
-                write_layers("/dev/full", format, layers, info_of(layers));
+                write_layers("/dev/full", format, layers, info_of(layers), options_for_any());
             };
             EXPECT_NE(error_of(ErrorKind::output, fill).find("disk is full"), std::string::npos);
         }
         const TemporaryFolder folder;
         const auto lose = [&] {
-            write_layers(folder.file("no/out"), format, layers, info_of(layers));
+            write_layers(folder.file("no/out"), format, layers, info_of(layers), options_for_any());
         };
         EXPECT_NE(error_of(ErrorKind::output, lose).find("does not exist"), std::string::npos);
     }
@@ -146,7 +148,8 @@ TEST(LayerWriter, RefusesAPartWithoutABox) {
     info.box = {};
     for (const LayerFormat& format : layer_formats()) {
         const TemporaryFolder folder;
-        (void)error_of(ErrorKind::usage, [&] { write_layers(folder.file("out"), format, layers, info); });
+        (void)error_of(ErrorKind::usage,
+                       [&] { write_layers(folder.file("out"), format, layers, info, options_for_any()); });
     }
 }
 

@@ -9,8 +9,19 @@
 #include <initializer_list>
 #include <numbers>
 #include <random>
+#include <string_view>
 
 namespace lamella {
+
+/// In the place of the viewer that the program has.
+inline constexpr std::string_view test_viewer = "<title>before</title><!--lamella-data--><p>after</p>";
+
+/// Options with which any format can be written.
+inline LayerWriteOptions options_for_any() {
+    LayerWriteOptions options;
+    options.page.viewer = test_viewer;
+    return options;
+}
 
 inline void add_contour(LayerBuilder& builder, std::initializer_list<Point2> points, bool closed = true) {
     for (const Point2& p : points)

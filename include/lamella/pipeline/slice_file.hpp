@@ -13,9 +13,11 @@
 #include "lamella/slicing/slabs.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/slicing/varying_plan.hpp"
+#include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +30,17 @@ namespace lamella {
 struct Shard {
     std::uint32_t number = 1; ///< from 1
     std::uint32_t count = 1;
+};
+
+struct FileResult;
+
+/// A page to look at the layers, written beside the slice file.
+struct FileReport {
+    std::string path; ///< "" writes none
+    PageOptions page;
+    /// What the page tells of the run. Asked once all layers are written: of the result, only the total of
+    /// the seconds is still missing.
+    std::function<PageNotes(const FileResult&)> notes;
 };
 
 /// What is to be sliced, how, and where to.
@@ -77,6 +90,7 @@ struct FileJob {
     std::string output; ///< "" writes nothing, "-" is standard output
     std::string format; ///< by name; "" goes by the extension of `output`
     LayerWriteOptions write;
+    FileReport report;
 };
 
 struct LayerStatistics {
@@ -144,6 +158,8 @@ struct FileResult {
     std::uint64_t bytes = 0;             ///< written
     /// What the format has no place for, one line each (LayerWriter::warnings).
     std::vector<std::string> warnings;
+    /// The same of the report.
+    std::vector<std::string> report_warnings;
 
     /// With FileJob::layer_statistics: in ascending z, and the sum of area times thickness.
     std::vector<LayerStatistics> layers;

@@ -41,6 +41,18 @@ struct LayerFileInfo {
     const LayerFilePiece* piece = nullptr;
 };
 
+/// html: see lamella/write/layer_page.hpp.
+struct PageOptions {
+    /// The built viewer, an HTML page with a place for the data (viewer/). It must outlive the writer.
+    std::string_view viewer = {};
+    /// What the page calls itself.
+    std::string title = "Lamella";
+    /// The layers may take so many bytes of the page, and so many points. Those beyond their share are
+    /// thinned out.
+    std::uint64_t budget_bytes = std::uint64_t{16} << 20;
+    std::uint64_t budget_points = 6'000'000;
+};
+
 struct LayerWriteOptions {
     /// Error{limit} where the layers take more than so many bytes; 0 is no limit. What ends a file, such as
     /// the directory of an archive, does not count.
@@ -56,6 +68,8 @@ struct LayerWriteOptions {
     PictureOptions picture = {};
     /// sl1, sl1s.
     ExposureOptions exposure = {};
+    /// html.
+    PageOptions page = {};
 };
 
 struct LayerFormat {

@@ -1,0 +1,183 @@
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/diagnose.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/polygon/layer_steps.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/read/mesh_file.hpp"
+#include "lamella/write/layer_page.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "input_kind.hpp"
+#include "layer_file_info.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "page_notes.hpp"
+#include "viewer_page.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+struct ViewArguments {
+    std::string input;
+    std::string output;
+    std::optional<double> layer_height;
+    std::string slice_at = "middle";
+    PlacementOptions placement;
+    LayerStepOptions making;
+    RunOptions run;
+};
+
+struct Written {
+    std::uint64_t layers = 0;
+    std::vector<std::string> warnings;
+};
+
+PlateInput input_of(const ViewArguments& arguments) {
+    PlateInput input{.path = arguments.input};
+    input.unit_mm = arguments.placement.unit_mm();
+    input.placement = arguments.placement.pose();
+    return input;
+}
+
+Diagnosis diagnosis_of(const ViewArguments& arguments, const Execution& execution) {
+    const Plate plate = load_plate(input_of(arguments), read_mesh(arguments.input, {}, execution), execution);
+    DiagnosisOptions options;
+    options.keep = page_places;
+    return diagnose(weld(joined(plate, execution), execution), options, execution);
+}
+
+Written view_mesh(const ViewArguments& arguments, const std::string& output, const Execution& execution) {
+    const Diagnosis diagnosis = diagnosis_of(arguments, execution);
+    FileJob job;
+    job.inputs = {input_of(arguments)};
+    job.layers.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height);
+    job.layers.slice_at = slice_at_of(arguments.slice_at);
+    job.steps = arguments.making.steps();
+    job.report = {.path = output,
+                  .page = {.viewer = viewer_page(), .title = title_of(arguments.input)},
+                  .notes = [&](const FileResult& result) {
+                      PageNotes notes = run_notes(result);
+                      notes.sections.insert(notes.sections.begin(), mesh_section(diagnosis.counts));
+                      notes.places = places_of(diagnosis);
+                      return notes;
+                  }};
+    const FileResult result = slice_file(job, execution);
+    Written written{.layers = result.report.layers, .warnings = result.report_warnings};
+    for (const PlateFile& file : result.files)
+        written.warnings.insert(written.warnings.end(), file.warnings.begin(), file.warnings.end());
+    return written;
+}
+
+Written view_layers(const ViewArguments& arguments, LayerFile file, const std::string& output,
+                    const Execution& execution) {
+    if (arguments.placement.given() || arguments.layer_height)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: holds layers, and these stay where they are; options of "
+                                "where a part stands and how it is cut are for meshes",
+                                file.path));
+    LayerChanges changes;
+    for (LayerPart& part : file.parts)
+        part.layers = take_steps(arguments.making.steps(), std::move(part.layers), changes, execution);
+    const LayerFileInfo info = info_of(file);
+    const auto page =
+        open_layer_page(output, info, {.viewer = viewer_page(), .title = title_of(arguments.input)});
+    std::vector<Layer> plane(file.parts.size());
+    for (std::size_t i = 0; i < info.layers; ++i) {
+        if (execution.cancel.stop_requested())
+            throw Error(ErrorKind::cancelled, "cancelled");
+        for (std::size_t part = 0; part < plane.size(); ++part)
+            plane[part] = file.parts[part].layers[i];
+        page->prepare(plane)();
+    }
+    page->tell(file_notes(file));
+    page->finish();
+    return {.layers = info.layers, .warnings = page->warnings()};
+}
+
+/// Beside the reader, not beside the file: "parts/rook.stl" makes rook.html here.
+std::string output_of(const ViewArguments& arguments) {
+    if (!arguments.output.empty())
+        return arguments.output;
+    return std::filesystem::path(arguments.input).stem().string() + ".html";
+}
+
+int run_view(const ViewArguments& arguments, const Context& context) {
+    if (arguments.input == "-")
+        throw Error(ErrorKind::usage,
+                    "view reads its file twice, and standard input can be read once: save it "
+                    "to a file first");
+    const std::string output = output_of(arguments);
+    check_distinct(arguments.input, output);
+    const Execution execution = arguments.run.execution(context);
+    std::optional<LayerFile> layers = read_if_layers(arguments.input, execution);
+    const Written written = layers ? view_layers(arguments, std::move(*layers), output, execution)
+                                   : view_mesh(arguments, output, execution);
+    for (const std::string& warning : written.warnings)
+        context.messages.warn(warning);
+    const std::string text = fmt::format("{}: {} of {}; open it with a browser\n",
+                                         output == "-" ? "standard output" : one_line(output),
+                                         counted(written.layers, "layer"), one_line(arguments.input));
+    if (output == "-")
+        context.messages.note(text);
+    else
+        context.messages.result(text);
+    return 0;
+}
+
+OptionGroup cutting_options(ViewArguments& target) {
+    Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
+    layer_height.preset = exact(UniformLayers{}.layer_height);
+    return {"How a mesh is cut",
+            {std::move(layer_height), choice("slice-at", "WHERE", "where in its thickness a layer is cut",
+                                             slice_at_names(), target.slice_at)}};
+}
+
+} // namespace
+
+Command view_command() {
+    const auto arguments = std::make_shared<ViewArguments>();
+    Option output = file("output", "the page; without it, FILE's name with .html, here; - is standard output",
+                         arguments->output);
+    output.letter = 'o';
+    return {
+        .name = "view",
+        .summary = "write a page to look at the layers with a browser",
+        .description =
+            "Writes one HTML page with all layers of a mesh or a slice file: layer by layer and as a stack, "
+            "with "
+            "figures over the height, and with what is wrong and where. The page needs no network and no "
+            "other "
+            "file. For more ways to cut a mesh, lamella slice writes such a page, too: with -o page.html, or "
+            "beside a slice file with --report.",
+        .operands = {{.placeholder = "FILE",
+                      .help = "a mesh, or a slice file: CLI, SVG, SLC, 3MF, JSON or NPZ",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->input = text;
+                          }}},
+        .groups = {{"What is written", {std::move(output)}},
+                   cutting_options(*arguments),
+                   placement_options(arguments->placement),
+                   layer_step_options(arguments->making),
+                   run_options(arguments->run),
+                   common_options(true)},
+        .examples = {{"lamella view part.stl", "part.html, with layers of 0.1 mm"},
+                     {"lamella view part.cli -o look.html", "what is in a slice file"}},
+        .run = [arguments](const Context& context) {
+            return run_view(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

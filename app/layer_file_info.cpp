@@ -1,0 +1,43 @@
+#include "layer_file_info.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+namespace lamella::app {
+namespace {
+
+Box3 box_of(const LayerStack& layers) {
+    Box3 box;
+    for (const Layer& layer : layers)
+        for (const Point2& p : layer.points)
+            box.add(Point3{p.x, p.y, layer.z});
+    return box;
+}
+
+/// Never empty.
+Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
+    Box3 box;
+    for (const PartInfo& part : info.parts)
+        box.add(part.box);
+    if (box.empty())
+        box.add(Point3{});
+    box.min.z = layers.front().bottom;
+    box.max.z = layers.back().top;
+    return box;
+}
+
+} // namespace
+
+LayerFileInfo info_of(const LayerFile& file) {
+    const LayerStack& layers = file.parts.front().layers;
+    if (layers.empty())
+        throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
+    LayerFileInfo info{.box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}};
+    for (const LayerPart& part : file.parts)
+        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label, box_of(part.layers)});
+    info.box = box_of(info, layers);
+    return info;
+}
+
+} // namespace lamella::app

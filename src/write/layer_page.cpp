@@ -1,0 +1,292 @@
+#include "lamella/write/layer_page.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/polygon/crossings.hpp"
+#include "lamella/polygon/nesting.hpp"
+#include "lamella/polygon/selection.hpp"
+#include "lamella/polygon/simplify.hpp"
+
+#include "container/atomic_file.hpp"
+#include "container/base64.hpp"
+#include "write/page_bytes.hpp"
+#include "write/page_text.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+/// What is told of a plane whether or not all of it is shown.
+struct PlaneFacts {
+    std::uint64_t index = 0;
+    double z = 0;
+    double bottom = 0;
+    double top = 0;
+    LayerMeasure measure;
+    std::uint64_t crossings = 0;
+    std::uint64_t misoriented = 0;
+    std::uint64_t overlapping = 0;
+    std::uint64_t hatches = 0;
+};
+
+/// A plane as the page may hold it, all of it or thinned out.
+struct Picture {
+    std::string bytes; ///< compressed
+    std::uint64_t shown = 0;
+    double tolerance_mm = 0;
+};
+
+/// Fills in what is wrong with the layers of a plane, and appends the places of the first crossings.
+void find_faults(std::span<const Layer> parts, PlaneFacts& facts, std::vector<Point2>& places) {
+    for (const Layer& layer : parts) {
+        facts.measure.add(measure(layer));
+        facts.hatches += layer.hatches.size() / 2;
+        const Crossings crossings = find_crossings(layer);
+        facts.crossings += crossings.count;
+        for (const Crossing& crossing : crossings.first)
+            places.push_back(crossing.at);
+        const Nesting nested = nesting(layer);
+        facts.misoriented +=
+            static_cast<std::uint64_t>(std::ranges::count(nested.kind, RingKind::misoriented));
+        facts.overlapping +=
+            static_cast<std::uint64_t>(std::ranges::count(nested.kind, RingKind::overlapping));
+    }
+}
+
+/// Layers that lose detail step by step, no contour moving by more than `tolerance_mm` in all.
+class Thinning {
+  public:
+    Thinning(std::span<const Layer> parts, double step_mm)
+        : layers_(parts.begin(), parts.end()), step_mm_(step_mm) {}
+
+    /// Twice the tolerance; first without hatches, and from the fourth time on without specks.
+    void go_on() {
+        ++times_;
+        const double tolerance = step_mm_ * static_cast<double>(std::uint64_t{1} << (times_ - 1));
+        for (Layer& layer : layers_) {
+            layer.hatches = {};
+            layer = simplify(layer, tolerance - tolerance_mm_);
+            if (times_ >= first_without_specks)
+                layer = without_small_rings(layer, tolerance * tolerance);
+        }
+        tolerance_mm_ = tolerance;
+    }
+    [[nodiscard]] bool at_end() const noexcept { return times_ == most; }
+    [[nodiscard]] std::span<const Layer> layers() const noexcept { return layers_; }
+    [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
+
+  private:
+    static constexpr unsigned first_without_specks = 4;
+    static constexpr unsigned most = 10; // 512 steps: a hundredth of the part
+
+    std::vector<Layer> layers_;
+    double step_mm_;
+    double tolerance_mm_ = 0;
+    unsigned times_ = 0;
+};
+
+/// What a page spends on its layers.
+struct Cost {
+    std::uint64_t bytes = 0;
+    std::uint64_t points = 0;
+
+    [[nodiscard]] bool within(const Cost& other) const noexcept {
+        return bytes <= other.bytes && points <= other.points;
+    }
+};
+
+Cost cost_of(const Picture& picture) {
+    return {base64_size(picture.bytes.size()), picture.shown};
+}
+
+/// Hands out the page's budget: an equal share for each layer, and from what layers below have left of theirs
+/// so much more that it makes four shares at most.
+class Budget {
+  public:
+    Budget(const PageOptions& options, std::uint64_t layers)
+        : share_{options.budget_bytes / std::max<std::uint64_t>(1, layers),
+                 options.budget_points / std::max<std::uint64_t>(1, layers)} {}
+
+    [[nodiscard]] const Cost& share() const noexcept { return share_; }
+
+    /// Of the pictures of the next layer, the finest first, the first that it can pay for; else the last.
+    const Picture& choose(const std::vector<Picture>& pictures) {
+        const Cost all{std::min(saved_.bytes + share_.bytes, most_shares * share_.bytes),
+                       std::min(saved_.points + share_.points, most_shares * share_.points)};
+        const auto fitting = std::ranges::find_if(
+            pictures, [&](const Picture& picture) { return cost_of(picture).within(all); });
+        const Picture& chosen = fitting == pictures.end() ? pictures.back() : *fitting;
+        const auto left = [](std::uint64_t saved, std::uint64_t share, std::uint64_t spent) {
+            return saved + share - std::min(saved + share, spent);
+        };
+        const Cost spent = cost_of(chosen);
+        saved_ = {left(saved_.bytes, share_.bytes, spent.bytes),
+                  left(saved_.points, share_.points, spent.points)};
+        return chosen;
+    }
+
+  private:
+    static constexpr std::uint64_t most_shares = 4;
+
+    Cost share_;
+    Cost saved_;
+};
+
+/// The same plane, all of it first, each with less detail than the one before, until one costs no more than
+/// the share.
+std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const Point2> places,
+                                 const PageGrid& grid, const Cost& share) {
+    const auto picture = [&](std::span<const Layer> layers, double tolerance) {
+        Picture made{.bytes = {}, .shown = 0, .tolerance_mm = tolerance};
+        made.bytes = deflated(layer_numbers(layers, places, grid, made.shown).view());
+        return made;
+    };
+    std::vector<Picture> pictures{picture(parts, 0)};
+    Thinning thinning(parts, grid.step_mm);
+    while (!cost_of(pictures.back()).within(share) && !thinning.at_end()) {
+        thinning.go_on();
+        pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
+    }
+    return pictures;
+}
+
+/// Columns of numbers about the planes, as JSON grows row by row.
+class PlaneTable {
+  public:
+    void add(const PlaneFacts& facts, const Picture& picture) {
+        const std::array<std::string, columns.size()> values{std::to_string(facts.index),
+                                                             page_number(facts.z),
+                                                             page_number(facts.bottom),
+                                                             page_number(facts.top),
+                                                             page_number(facts.measure.area_mm2),
+                                                             page_number(facts.measure.perimeter_mm),
+                                                             std::to_string(facts.measure.contours),
+                                                             std::to_string(facts.measure.holes),
+                                                             std::to_string(facts.measure.points),
+                                                             std::to_string(facts.measure.open_chains),
+                                                             std::to_string(facts.crossings),
+                                                             std::to_string(facts.misoriented),
+                                                             std::to_string(facts.overlapping),
+                                                             std::to_string(facts.hatches),
+                                                             std::to_string(picture.shown),
+                                                             page_number(picture.tolerance_mm)};
+        for (std::size_t i = 0; i < columns.size(); ++i)
+            texts_[i].append(texts_[i].empty() ? "" : ",").append(values[i]);
+    }
+
+    [[nodiscard]] std::string json() const {
+        std::string text = "{";
+        for (std::size_t i = 0; i < columns.size(); ++i)
+            text += fmt::format("{}\"{}\":[{}]", i == 0 ? "" : ",\n", columns[i], texts_[i]);
+        return text + "}";
+    }
+
+  private:
+    static constexpr std::array<std::string_view, 16> columns{
+        "index",       "z",       "bottom", "top",         "area_mm2",  "perimeter_mm",
+        "contours",    "holes",   "points", "open_chains", "crossings", "misoriented",
+        "overlapping", "hatches", "shown",  "tolerance_mm"};
+    std::array<std::string, columns.size()> texts_;
+};
+
+class PageWriter final : public LayerPageWriter {
+  public:
+    PageWriter(const std::string& path, const LayerFileInfo& info, const PageOptions& options)
+        : frame_(page_frame(options.viewer)), grid_(page_grid(info.box)), file_(path), order_(info),
+          budget_(options, info.layers) {
+        file_.append(frame_.head);
+        file_.append(json_element("head", head(info, options)));
+    }
+
+    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
+        const Layer& first = parts.front();
+        PlaneFacts facts{
+            .index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top, .measure = {}};
+        std::vector<Point2> places;
+        find_faults(parts, facts, places);
+        return [this, facts, pictures = pictures_of(parts, places, grid_, budget_.share())] {
+            order_.next(facts.z);
+            write(facts, pictures);
+        };
+    }
+
+    void tell(PageNotes notes) override {
+        std::ranges::move(notes.sections, std::back_inserter(notes_.sections));
+        std::ranges::move(notes.places, std::back_inserter(notes_.places));
+    }
+
+    void finish() override {
+        order_.end();
+        file_.append(json_element("table", table_.json()));
+        file_.append(json_element("notes", notes_json(notes_)));
+        file_.append(frame_.tail);
+        file_.commit();
+    }
+
+    [[nodiscard]] std::uint64_t bytes() const noexcept override { return file_.bytes(); }
+
+    [[nodiscard]] std::vector<std::string> warnings() const override {
+        if (thinned_ == 0)
+            return {};
+        return {fmt::format("{} of {} layers are shown thinned out, so that the page stays small: contours "
+                            "are up to {:.6g} mm off, figures are of all of them",
+                            thinned_, order_.count(), largest_tolerance_mm_)};
+    }
+
+  private:
+    [[nodiscard]] std::string head(const LayerFileInfo& info, const PageOptions& options) const {
+        std::string parts;
+        for (const PartInfo& part : info.parts)
+            parts += fmt::format(R"({}{{"label":{},"box":{}}})", parts.empty() ? "" : ",",
+                                 page_quoted(part.label), page_box(part.box));
+        return fmt::format(
+            R"({{"kind":"layers","version":1,"title":{},"layers":{},"step_mm":{},"origin":[{},{}],)"
+            R"("box":{},"bottom":{},"budget_bytes":{},"budget_points":{},"parts":[{}]}})",
+            page_quoted(options.title), info.layers, page_number(grid_.step_mm), grid_.origin.x,
+            grid_.origin.y, page_box(info.box), page_number(info.bottom), options.budget_bytes,
+            options.budget_points, parts);
+    }
+
+    void write(const PlaneFacts& facts, const std::vector<Picture>& pictures) {
+        const Picture& picture = budget_.choose(pictures);
+        if (picture.tolerance_mm > 0) {
+            ++thinned_;
+            largest_tolerance_mm_ = std::max(largest_tolerance_mm_, picture.tolerance_mm);
+        }
+        std::string text;
+        append_base64(picture.bytes, text);
+        file_.append(data_element_head);
+        file_.append(text);
+        file_.append(data_element_tail);
+        table_.add(facts, picture);
+    }
+
+    PageFrame frame_;
+    PageGrid grid_;
+    AtomicFile file_;
+    LayerOrder order_;
+    Budget budget_;
+    std::uint64_t thinned_ = 0;
+    double largest_tolerance_mm_ = 0;
+    PlaneTable table_;
+    PageNotes notes_;
+};
+
+} // namespace
+
+std::unique_ptr<LayerPageWriter> open_layer_page(const std::string& path, const LayerFileInfo& info,
+                                                 const PageOptions& options) {
+    return std::make_unique<PageWriter>(path, info, options);
+}
+
+} // namespace lamella

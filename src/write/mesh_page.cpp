@@ -1,0 +1,189 @@
+#include "lamella/core/error.hpp"
+#include "lamella/write/layer_page.hpp"
+
+#include "container/atomic_file.hpp"
+#include "container/base64.hpp"
+#include "core/executor.hpp"
+#include "mesh/edge_survey.hpp"
+#include "mesh/shells.hpp"
+#include "write/page_bytes.hpp"
+#include "write/page_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+constexpr unsigned finest = 16; // halvings of the longest edge
+constexpr std::uint32_t unseen = 0xffffffff;
+
+/// The cube that a point lies in, in cubes from the corner of the box.
+using Cell = std::array<std::uint32_t, 3>;
+
+/// Cubes of 2^-halvings of the longest edge of a box.
+class Cubes {
+  public:
+    Cubes(const Box3& box, unsigned halvings) : corner_(box.min) {
+        const double longest =
+            std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
+        edge_ = longest > 0 ? std::ldexp(longest, -static_cast<int>(halvings)) : 1;
+        last_ = (std::uint32_t{1} << halvings) - 1;
+    }
+
+    [[nodiscard]] Cell operator()(const Point3& p) const noexcept {
+        const auto along = [&](double from, double to) {
+            return std::min(static_cast<std::uint32_t>((to - from) / edge_), last_);
+        };
+        return {along(corner_.x, p.x), along(corner_.y, p.y), along(corner_.z, p.z)};
+    }
+    [[nodiscard]] double edge_mm() const noexcept { return edge_; }
+
+  private:
+    Point3 corner_;
+    double edge_;
+    std::uint32_t last_;
+};
+
+/// The mesh on the cubes: vertices in the order in which the triangles meet them.
+struct CoarseMesh {
+    std::vector<Cell> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<std::uint32_t> shell; ///< of each triangle
+};
+
+std::vector<Cell> cells_of(const IndexedMesh& mesh, const Cubes& cubes) {
+    std::vector<Cell> cells(mesh.vertices.size());
+    std::ranges::transform(mesh.vertices, cells.begin(), cubes);
+    return cells;
+}
+
+bool keeps_its_corners(const std::array<std::uint32_t, 3>& triangle, const std::vector<Cell>& cells) {
+    const Cell& a = cells[triangle[0]];
+    const Cell& b = cells[triangle[1]];
+    const Cell& c = cells[triangle[2]];
+    return a != b && b != c && c != a;
+}
+
+/// For each vertex the first one, by number, in the same cube.
+std::vector<std::uint32_t> representatives(const std::vector<Cell>& cells) {
+    std::vector<std::uint32_t> order(cells.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(cells[i], i); });
+    std::vector<std::uint32_t> first(cells.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        first[order[i]] = i > 0 && cells[order[i]] == cells[order[i - 1]] ? first[order[i - 1]] : order[i];
+    return first;
+}
+
+CoarseMesh coarse(const IndexedMesh& mesh, const std::vector<Cell>& cells, const Shells& shells) {
+    const std::vector<std::uint32_t> first = representatives(cells);
+    std::vector<std::uint32_t> number(cells.size(), unseen);
+    CoarseMesh result;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (!keeps_its_corners(mesh.triangles[t], cells))
+            continue;
+        std::array<std::uint32_t, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::uint32_t& known = number[first[mesh.triangles[t][k]]];
+            if (known == unseen) {
+                known = static_cast<std::uint32_t>(result.vertices.size());
+                result.vertices.push_back(cells[mesh.triangles[t][k]]);
+            }
+            corners[k] = known;
+        }
+        result.triangles.push_back(corners);
+        result.shell.push_back(shells.of_triangle[t]);
+    }
+    return result;
+}
+
+/// The vertices and then, for each triangle, its shell and its corners; all as the difference from the one
+/// before.
+NumberBytes mesh_numbers(const CoarseMesh& mesh) {
+    NumberBytes out;
+    const auto way = [&](std::uint32_t from, std::uint32_t to) {
+        out.add_signed(static_cast<std::int64_t>(to) - from);
+    };
+    out.add(mesh.vertices.size());
+    out.add(mesh.triangles.size());
+    Cell at{};
+    for (const Cell& cell : mesh.vertices) {
+        for (std::size_t k = 0; k < 3; ++k)
+            way(at[k], cell[k]);
+        at = cell;
+    }
+    std::uint32_t shell = 0;
+    std::uint32_t corner = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        way(std::exchange(shell, mesh.shell[t]), mesh.shell[t]);
+        for (const std::uint32_t next : mesh.triangles[t])
+            way(std::exchange(corner, next), next);
+    }
+    return out;
+}
+
+std::string shells_json(const std::vector<Shell>& shells) {
+    std::string text;
+    for (const Shell& shell : shells)
+        text += fmt::format(R"({}{{"kind":"{}","triangles":{},"volume_mm3":{},"box":{},"inside":{}}})",
+                            text.empty() ? "" : ",", shell_kind_name(shell.kind), shell.triangles,
+                            page_number(shell.volume_mm3), page_box(shell.box),
+                            shell.inside ? std::to_string(*shell.inside) : "null");
+    return '[' + text + ']';
+}
+
+} // namespace
+
+void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Diagnosis& diagnosis,
+                     const PageNotes& notes, const PageOptions& options, const Execution& execution) {
+    const PageFrame frame = page_frame(options.viewer);
+    Executor executor(execution);
+    const Box3& box = diagnosis.counts.box;
+
+    unsigned halvings = finest;
+    std::vector<Cell> cells = cells_of(mesh, Cubes(box, halvings));
+    const auto shown = [&] {
+        return static_cast<std::size_t>(std::ranges::count_if(
+            mesh.triangles, [&](const auto& triangle) { return keeps_its_corners(triangle, cells); }));
+    };
+    while (shown() > page_triangles) {
+        executor.check_cancelled();
+        // Cubes of the next size are made of eight of these.
+        --halvings;
+        for (Cell& cell : cells)
+            for (std::uint32_t& along : cell)
+                along /= 2;
+    }
+    const CoarseMesh small =
+        coarse(mesh, cells, find_shells(executor, mesh, survey_edges(executor, mesh, false)));
+    executor.check_cancelled();
+
+    AtomicFile file(path);
+    file.append(frame.head);
+    file.append(json_element(
+        "head", fmt::format(R"({{"kind":"mesh","version":1,"title":{},"box":{},"step_mm":{},"triangles":{},)"
+                            R"("shown":{},"shells":{},"shell_count":{}}})",
+                            page_quoted(options.title), page_box(box),
+                            page_number(Cubes(box, halvings).edge_mm()), mesh.triangles.size(),
+                            small.triangles.size(), shells_json(diagnosis.shells), diagnosis.counts.shells)));
+    std::string text;
+    append_base64(deflated(mesh_numbers(small).view()), text);
+    file.append(data_element_head);
+    file.append(text);
+    file.append(data_element_tail);
+    file.append(json_element("notes", notes_json(notes)));
+    file.append(frame.tail);
+    file.commit();
+}
+
+} // namespace lamella

@@ -1,0 +1,58 @@
+#pragma once
+
+// What the scripts of a page decode: whole numbers of variable length, compressed, as text. docs/viewer.md
+// describes the format; viewer/src/data/ has its reader.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/point.hpp"
+
+#include "write/grid.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// Whole numbers, seven bits a byte, the lowest first; signed ones as 0, -1, 1, -2, ...
+class NumberBytes {
+  public:
+    void add(std::uint64_t value) {
+        for (; value >= 0x80; value >>= 7U)
+            bytes_ += static_cast<char>(0x80U | (value & 0x7FU));
+        bytes_ += static_cast<char>(value);
+    }
+    void add_signed(std::int64_t value) {
+        add((static_cast<std::uint64_t>(value) << 1U) ^ static_cast<std::uint64_t>(value >> 63U));
+    }
+
+    [[nodiscard]] std::string_view view() const noexcept { return bytes_; }
+
+  private:
+    std::string bytes_;
+};
+
+/// The step of a page's coordinates: the smallest of 1, 2 or 5 times a power of ten mm that is at least
+/// 1/50000 of the longer edge of the box, seen from above. 0.001 mm for a box without width.
+[[nodiscard]] double page_step_mm(const Box3& box);
+
+/// Where the numbers of a page count from, and how far apart they are.
+struct PageGrid {
+    double step_mm = 0.001;
+    GridPoint origin; ///< steps from zero
+};
+
+/// On the page's step, from the corner of the box. Throws Error{usage} for a box beyond 2^51 steps.
+[[nodiscard]] PageGrid page_grid(const Box3& box);
+
+/// What one plane yields, as numbers: for each part the counts of rings, chains and hatch lines and then
+/// those; a contour is the count of its points and the way from point to point, its first one counted from
+/// that of the contour before; at last the places. `shown` counts the points of the contours.
+[[nodiscard]] NumberBytes layer_numbers(std::span<const Layer> parts, std::span<const Point2> places,
+                                        const PageGrid& grid, std::uint64_t& shown);
+
+/// Compressed (raw Deflate).
+[[nodiscard]] std::string deflated(std::string_view bytes);
+
+} // namespace lamella

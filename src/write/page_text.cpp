@@ -1,0 +1,111 @@
+#include "write/page_text.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "write/decimal.hpp"
+#include "write/quoted.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::string_view place_of_data = "<!--lamella-data-->";
+
+std::string_view tone_name(Tone tone) {
+    switch (tone) {
+    case Tone::good:
+        return "good";
+    case Tone::warning:
+        return "warning";
+    case Tone::bad:
+        return "bad";
+    case Tone::plain:
+        break;
+    }
+    return "plain";
+}
+
+/// [a,b,c] of what `tell` makes of each.
+template <class Range, class Tell>
+std::string list(const Range& range, const Tell& tell) {
+    std::string text = "[";
+    for (const auto& item : range) {
+        if (text.size() > 1)
+            text += ',';
+        text += tell(item);
+    }
+    return text + ']';
+}
+
+std::string point_json(const Point3& p) {
+    return fmt::format("[{},{},{}]", page_number(p.x), page_number(p.y), page_number(p.z));
+}
+
+std::string fact_json(const PageFact& fact) {
+    return fmt::format(R"({{"name":{},"value":{},"tone":"{}"}})", page_quoted(fact.name),
+                       page_quoted(fact.value), tone_name(fact.tone));
+}
+
+std::string section_json(const PageSection& section) {
+    return fmt::format(R"({{"title":{},"facts":{}}})", page_quoted(section.title),
+                       list(section.facts, fact_json));
+}
+
+std::string place_json(const PagePlace& place) {
+    return fmt::format(R"({{"kind":{},"text":{},"closed":{},"points":{}}})", page_quoted(place.kind),
+                       page_quoted(place.text), place.closed, list(place.points, point_json));
+}
+
+} // namespace
+
+PageFrame page_frame(std::string_view viewer) {
+    if (viewer.empty())
+        throw Error(
+            ErrorKind::usage,
+            "this build of Lamella has no viewer, and pages need it; it is made where Node.js 18 or "
+            "later and npm are installed (Debian: apt-get install nodejs npm): install them and build "
+            "Lamella again");
+    const std::size_t place = viewer.find(place_of_data);
+    if (place == std::string_view::npos)
+        throw Error(ErrorKind::internal, fmt::format("the viewer has no {}", place_of_data));
+    return {viewer.substr(0, place), viewer.substr(place + place_of_data.size())};
+}
+
+std::string page_quoted(std::string_view text) {
+    std::string quoted;
+    for (const char c : json_quoted(text)) {
+        if (c == '<')
+            quoted += "\\u003c";
+        else
+            quoted += c;
+    }
+    return quoted;
+}
+
+std::string page_number(double value) {
+    if (!std::isfinite(value))
+        return "null";
+    std::array<char, most_double_digits> text{};
+    return {text.data(), put_shortest(text.data(), value + 0.0)};
+}
+
+std::string page_box(const Box3& box) {
+    return box.empty() ? "null" : fmt::format("[{},{}]", point_json(box.min), point_json(box.max));
+}
+
+std::string notes_json(const PageNotes& notes) {
+    return fmt::format(R"({{"sections":{},"places":{}}})", list(notes.sections, section_json),
+                       list(notes.places, place_json));
+}
+
+std::string json_element(std::string_view id, std::string_view json) {
+    return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json);
+}
+
+} // namespace lamella

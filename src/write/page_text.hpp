@@ -1,0 +1,36 @@
+#pragma once
+
+// The frame of a page: the viewer's text around the data, and text that may stand in both.
+
+#include "lamella/core/point.hpp"
+#include "lamella/write/layer_page.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// What of the viewer stands before the data, and what after them. Throws Error{usage} where there is no
+/// viewer, and Error{internal} where it has no place for data.
+struct PageFrame {
+    std::string_view head;
+    std::string_view tail;
+};
+[[nodiscard]] PageFrame page_frame(std::string_view viewer);
+
+/// A string of JSON that can stand in an element of a page: no tag begins in it.
+[[nodiscard]] std::string page_quoted(std::string_view text);
+/// The shortest text that reads back to the same number; null where it is not finite.
+[[nodiscard]] std::string page_number(double value);
+/// [[x,y,z],[x,y,z]], null for an empty box.
+[[nodiscard]] std::string page_box(const Box3& box);
+/// {"sections":[...],"places":[...]}
+[[nodiscard]] std::string notes_json(const PageNotes& notes);
+
+/// An element that holds JSON.
+[[nodiscard]] std::string json_element(std::string_view id, std::string_view json);
+/// What stands around data in Base64.
+inline constexpr std::string_view data_element_head = "<script type=\"text/plain\" class=\"data\">";
+inline constexpr std::string_view data_element_tail = "</script>\n";
+
+} // namespace lamella

@@ -1,0 +1,125 @@
+"""lamella view and the reports of slice and info: what they write, and what a build without the viewer says."""
+
+import json
+import re
+
+from program import ProgramTest, binary_stl, main, open_box
+
+
+def element(page, name):
+    return json.loads(re.search(rf'<script type="application/json" id="{name}">(.*?)</script>', page, re.DOTALL).group(1))
+
+
+class View(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.box()
+        self.viewer = self.run_program("view", "box.stl").code == 0
+        self.path("box.html").unlink(missing_ok=True)
+
+    def need_viewer(self):
+        if not self.viewer:
+            self.skipTest("this program was built without the viewer")
+
+    def page(self, name):
+        return self.path(name).read_text(encoding="utf-8")
+
+    def test_a_build_without_the_viewer_says_how_to_get_it(self):
+        if self.viewer:
+            self.skipTest("this program has the viewer")
+        for command in (["view", "box.stl"], ["slice", "box.stl", "-o", "box.html"], ["info", "box.stl", "--report", "r.html"],
+                        ["slice", "box.stl", "-o", "box.cli", "--report", "r.html"]):
+            self.fail_with(2, "no viewer.*apt-get install nodejs npm", *command)
+
+    def test_a_mesh_becomes_a_page_of_its_name_here(self):
+        self.need_viewer()
+        result = self.succeed("view", "box.stl", "--layer-height", "0.5")
+        self.assertRegex(result.text, "^box.html: 20 layers of box.stl")
+        page = self.page("box.html")
+        table = element(page, "table")
+        self.assertEqual(table["area_mm2"], [600] * 20)
+        self.assertEqual(table["z"][:2], [0.25, 0.75])
+        self.assertEqual(element(page, "head")["title"], "box.stl")
+        self.assertEqual(page.count('class="data"'), 20)
+        self.assertEqual([section["title"] for section in element(page, "notes")["sections"]], ["Mesh", "Input", "The run"])
+
+    def test_a_page_refers_to_nothing_outside(self):
+        self.need_viewer()
+        self.succeed("view", "box.stl")
+        page = re.sub(r"<script.*?</script>", "", self.page("box.html"), flags=re.DOTALL)
+        self.assertEqual(re.findall(r'(?:src|href)="(?!data:)([^"]*)"', page), [])
+        self.assertEqual(re.findall(r"url\((?!data:)", page), [])
+        self.assertIn("default-src 'none'", page)
+
+    def test_every_way_to_the_same_layers_gives_the_same_data(self):
+        self.need_viewer()
+        self.succeed("slice", "box.stl", "-o", "box.cli", "--units-mm", "0.001")
+        self.succeed("slice", "box.stl", "-o", "sliced.html")
+        self.succeed("convert", "box.cli", "converted.html")
+        self.succeed("view", "box.cli", "-o", "viewed.html")
+        self.succeed("slice", "box.stl", "--report", "reported.html")
+        def data(name):
+            return re.findall(r'class="data">(.*?)<', self.page(name))
+
+        expected = data("sliced.html")
+        self.assertEqual(len(expected), 100)
+        for name in ("converted.html", "viewed.html", "reported.html"):
+            self.assertEqual(data(name), expected, name)
+
+    def test_threads_do_not_change_a_page(self):
+        self.need_viewer()
+        self.succeed("make", "rook", "-o", "rook.stl")
+        for threads in ("1", "3"):
+            self.succeed("slice", "rook.stl", "-o", threads + ".html", "--threads", threads)
+        self.assertEqual(self.bytes_of("1.html"), self.bytes_of("3.html"))
+
+    def test_a_report_beside_a_slice_file_tells_the_run(self):
+        self.need_viewer()
+        self.succeed("slice", "box.stl", "-o", "box.cli", "--report", "report.html", "--inspect")
+        sections = {s["title"]: {f["name"]: f["value"] for f in s["facts"]} for s in element(self.page("report.html"), "notes")["sections"]}
+        self.assertEqual(sections["Input"]["Triangles"], "12")
+        self.assertEqual(sections["Mesh"]["Surface"], "closed, without defects")
+        self.assertRegex(sections["The run"]["Slicing"], r"^\d+\.\d{3} s$")
+        self.succeed("verify", "box.cli", "--mesh", "box.stl")
+
+    def test_defects_have_their_places(self):
+        self.need_viewer()
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        self.succeed("view", "open.stl")
+        self.succeed("info", "open.stl", "--report", "mesh.html")
+        for name in ("open.html", "mesh.html"):
+            places = element(self.page(name), "notes")["places"]
+            self.assertEqual([place["kind"] for place in places], ["boundary loop"])
+            self.assertEqual(sorted(places[0]["points"]), [[20, y, z] for y in (0, 30) for z in (0, 10)])
+        self.assertEqual(element(self.page("open.html"), "table")["open_chains"], [1] * 100)
+        head = element(self.page("mesh.html"), "head")
+        self.assertEqual((head["triangles"], head["shown"], head["shells"][0]["kind"]), (10, 10, "open"))
+
+    def test_names_of_files_cannot_break_out_of_a_page(self):
+        self.need_viewer()
+        name = "<script>alert(1)<script>.stl"
+        self.box(name)
+        self.succeed("view", name, "-o", "page.html")
+        page = self.page("page.html")
+        self.assertNotIn("<script>alert", page)
+        self.assertEqual(element(page, "head")["title"], name)
+
+    def test_standard_output(self):
+        self.need_viewer()
+        result = self.succeed("view", "box.stl", "-o", "-")
+        self.assertTrue(result.text.startswith("<!doctype html>"))
+        self.assertTrue(result.text.rstrip().endswith("</html>"))
+        self.assertIn("100 layers", result.err)
+
+    def test_what_cannot_be_done(self):
+        self.fail_with(2, "standard input can be read once", "view", "-")
+        self.fail_with(2, "overwrite|same file", "view", "box.stl", "-o", "box.stl")
+        self.fail_with(3, "missing.stl", "view", "missing.stl")
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        self.fail_with(2, "are for meshes", "view", "box.cli", "--layer-height", "0.2")
+        self.fail_with(2, "are for meshes", "info", "box.cli", "--report", "r.html")
+        self.fail_with(2, "--report and --output", "slice", "box.stl", "-o", "a.html", "--report", "a.html")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,95 @@
+// What the tests in the browser share: pages made by the program, opened from disk without a network.
+
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { chromium } from 'playwright-core';
+
+const program = process.env.LAMELLA_PROGRAM;
+const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
+
+export const folder = mkdtempSync(join(tmpdir(), 'lamella-viewer-'));
+export const file = (name) => join(folder, name);
+export const lamella = (...args) => execFileSync(program, args, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+
+let browser;
+export async function startBrowser() {
+  if (!browserPath) throw new Error('no browser: install Debian\'s chromium');
+  // Drawing in space must not depend on a graphics card; root needs --no-sandbox.
+  browser = await chromium.launch({ executablePath: browserPath, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-lcd-text'] });
+}
+export async function stopBrowser() {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+}
+
+/**
+ * Opens a page of the folder. Everything that it says on the console, all its errors, and all that it asks a network
+ * for is gathered in `complaints`.
+ */
+export async function open(name, { width = 1400, height = 900, colorScheme = 'light', view = 'layer' } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme, offline: true, reducedMotion: 'reduce' });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on('console', (message) => {
+    // What the driver of the software renderer says of itself.
+    if (!message.text().includes('GL Driver Message')) complaints.push(`${message.type()}: ${message.text()}`);
+  });
+  page.on('pageerror', (error) => complaints.push(error.stack));
+  page.on('request', (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) complaints.push(`asks for ${request.url()}`);
+  });
+  await page.goto(pathToFileURL(file(name)).href);
+  await page.waitForSelector('canvas[data-layer], canvas[data-ready], .trouble');
+  if (view) {
+    const button = page.locator('#views').getByRole('button', { name: view });
+    await button.click();
+    await button.blur(); // keys are for the page again
+  }
+  return { page, complaints, close: () => context.close() };
+}
+
+/** Waits until holds() is true in the page. (Playwright's own way takes eval, which the page forbids.) */
+export async function until(page, holds, seconds = 60) {
+  for (const end = Date.now() + 1000 * seconds; !(await page.evaluate(holds)); await page.waitForTimeout(30))
+    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${holds}`);
+}
+
+/** The layer that is drawn, counted from 1, once it is the one that is asked for. */
+export async function shown(page) {
+  await until(page, () => document.querySelector('canvas[data-layer]').dataset.layer === document.getElementById('layer').value);
+  return Number(await page.locator('canvas[data-layer]').getAttribute('data-layer')) + 1;
+}
+
+/**
+ * Counts the pixels of a canvas that are near a colour.
+ * @param {number[]} colour 0 to 255
+ */
+export async function pixelsNear(canvas, colour, within = 40) {
+  return canvas.evaluate(
+    (node, [colour, within]) => {
+      const copy = document.createElement('canvas');
+      [copy.width, copy.height] = [node.width, node.height];
+      const ctx = copy.getContext('2d');
+      ctx.drawImage(node, 0, 0);
+      const { data } = ctx.getImageData(0, 0, copy.width, copy.height);
+      let near = 0;
+      for (let i = 0; i < data.length; i += 4)
+        if (Math.abs(data[i] - colour[0]) + Math.abs(data[i + 1] - colour[1]) + Math.abs(data[i + 2] - colour[2]) <= within) ++near;
+      return { near, all: copy.width * copy.height };
+    },
+    [colour, within],
+  );
+}
+
+/** A colour of the style sheet as numbers. */
+export async function colourOf(page, name) {
+  return page.evaluate((name) => {
+    const ctx = document.createElement('canvas').getContext('2d');
+    ctx.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name);
+    ctx.fillRect(0, 0, 1, 1);
+    return [...ctx.getImageData(0, 0, 1, 1).data.slice(0, 3)];
+  }, name);
+}

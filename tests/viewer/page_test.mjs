@@ -1,0 +1,341 @@
+// Pages of lamella view, slice --report and info --report in a browser.
+
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { colourOf, file, lamella, open, pixelsNear, shown, startBrowser, stopBrowser, until } from './browser.mjs';
+
+/** A binary STL file of triangles given by their corners. */
+function stl(triangles) {
+  const bytes = Buffer.alloc(84 + 50 * triangles.length);
+  bytes.writeUInt32LE(triangles.length, 80);
+  triangles.forEach((corners, t) => corners.flat().forEach((c, i) => bytes.writeFloatLE(c, 84 + 50 * t + 12 + 4 * i)));
+  return bytes;
+}
+
+/** A box of 20 x 30 x 10 mm; without its last wall it is open. */
+function boxTriangles() {
+  const p = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [20 * (i & 1), 30 * ((i >> 1) & 1), 10 * ((i >> 2) & 1)]);
+  const faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  return faces.flatMap(([a, b, c, d]) => [[p[a], p[b], p[c]], [p[a], p[c], p[d]]]);
+}
+
+before(async () => {
+  lamella('make', 'rook', '-o', 'rook.stl');
+  lamella('make', 'box', '--size', '20,30,10', '-o', 'box.stl');
+  writeFileSync(file('open.stl'), stl(boxTriangles().slice(0, -2)));
+  lamella('view', 'rook.stl');
+  lamella('view', 'box.stl');
+  lamella('view', 'open.stl');
+  lamella('info', 'open.stl', '--report', 'open_mesh.html');
+  lamella('slice', 'rook.stl', '-o', 'rook.cli', '--report', 'report.html');
+  await startBrowser();
+});
+after(stopBrowser);
+
+test('a page opens from disk, asks no network for anything and complains of nothing', async () => {
+  for (const name of ['rook.html', 'box.html', 'open.html', 'open_mesh.html', 'report.html']) {
+    const { page, complaints, close } = await open(name, { view: name.includes('mesh') ? null : 'both' });
+    await page.waitForSelector('canvas[data-ready]');
+    await page.waitForTimeout(300);
+    assert.deepEqual(complaints, [], name);
+    await close();
+  }
+});
+
+test('the slider, the buttons, the keys, the number and the plots go from layer to layer', async () => {
+  const { page, close } = await open('rook.html');
+  const slider = page.locator('#layer');
+  const count = Number(await slider.getAttribute('max')) + 1;
+  assert.equal(await shown(page), Math.floor(count / 2) + 1);
+  const heightOf = async () => (await page.locator('.height').textContent()).replace(/[^\d.]/g, '');
+
+  await page.keyboard.press('Home');
+  assert.equal(await shown(page), 1);
+  assert.equal(await heightOf(), '0.05');
+  for (const [key, layer] of [['ArrowUp', 2], ['ArrowRight', 3], ['ArrowDown', 2], ['PageUp', 12], ['PageDown', 2], ['End', count], ['ArrowRight', count]]) {
+    await page.keyboard.press(key);
+    assert.equal(await shown(page), layer, key);
+  }
+  await slider.fill('99');
+  assert.equal(await shown(page), 100);
+  assert.match(await slider.getAttribute('aria-valuetext'), /^100 of \d+, z = 9\.95 mm$/);
+  await page.getByRole('button', { name: 'Layer above' }).click();
+  assert.equal(await shown(page), 101);
+  await page.getByRole('spinbutton', { name: 'Number of the layer' }).fill('7');
+  await page.keyboard.press('Enter');
+  assert.equal(await shown(page), 7);
+  const plot = page.locator('canvas.plot').first();
+  const { width } = await plot.boundingBox();
+  await plot.click({ position: { x: width - 8, y: 10 } });
+  assert.equal(await shown(page), count);
+  await plot.click({ position: { x: 8, y: 10 } });
+  assert.equal(await shown(page), 1);
+  await until(page, () => /^Layer 1 of/.test(document.getElementById('live').textContent));
+  await close();
+});
+
+test('play goes through the layers and stops at the last', async () => {
+  const { page, close } = await open('box.html');
+  await page.keyboard.press('Home');
+  assert.equal(await shown(page), 1);
+  await page.keyboard.press(' ');
+  assert.equal(await page.getByRole('button', { name: 'Pause' }).count(), 1);
+  await until(page, () => document.getElementById('layer').value === '99');
+  await page.getByRole('button', { name: 'Play', exact: true }).waitFor();
+  await close();
+});
+
+test('the fill covers as many pixels as the layer has area', async () => {
+  const { page, close } = await open('box.html');
+  await shown(page);
+  for (const name of ['Contours', 'Direction']) await page.getByRole('button', { name, exact: true }).click();
+  await page.waitForTimeout(100);
+  const canvas = page.locator('canvas[data-layer]');
+  const { near } = await pixelsNear(canvas, await colourOf(page, '--fill-0'), 6);
+  const mm = Number((await page.locator('.scale span').textContent()).split(' ')[0]);
+  const pixels = (await page.locator('.scale i').boundingBox()).width;
+  const area = near * (mm / pixels) ** 2;
+  assert.ok(Math.abs(area - 600) < 6, `${area} mm2 instead of 600`);
+  await close();
+});
+
+test('zoom and pan change the drawing, and 0 brings it back', async () => {
+  const { page, close } = await open('box.html');
+  await shown(page);
+  const canvas = page.locator('canvas[data-layer]');
+  const settle = () => page.waitForTimeout(80);
+  const fill = await colourOf(page, '--fill-0');
+  const filled = async () => (await pixelsNear(canvas, fill, 6)).near;
+  const scale = () => page.locator('.scale').evaluate((node) => parseFloat(node.textContent) / node.lastChild.getBoundingClientRect().width);
+  const [first, firstScale] = [await filled(), await scale()];
+  await page.keyboard.press('+');
+  await settle();
+  assert.ok((await scale()) < firstScale * 0.7);
+  await page.keyboard.press('0');
+  await settle();
+  assert.equal(await filled(), first);
+  const box = await canvas.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.wheel(0, -600);
+  await settle();
+  assert.ok((await scale()) < firstScale * 0.5);
+  await page.keyboard.press('0');
+  await page.keyboard.press('-');
+  await page.keyboard.press('-');
+  await settle();
+  assert.ok((await filled()) < first / 3);
+  await page.mouse.down();
+  await page.mouse.move(box.x - 500, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  await settle();
+  assert.equal(await filled(), 0);
+  await close();
+});
+
+test('parts have colours of their own and can be hidden', async () => {
+  lamella('slice', 'box.stl', '--copies', '2', '-o', 'plate.html');
+  const { page, close } = await open('plate.html');
+  await shown(page);
+  const canvas = page.locator('canvas[data-layer]');
+  const filled = async (part) => (await pixelsNear(canvas, await colourOf(page, `--fill-${part}`), 6)).near;
+  const before = [await filled(0), await filled(1)];
+  assert.ok(before[0] > 1000 && Math.abs(before[0] - before[1]) < 0.02 * before[0], before.join(' '));
+  await page.getByRole('checkbox', { name: 'box 2' }).uncheck();
+  await page.waitForTimeout(100);
+  assert.deepEqual([await filled(0), await filled(1)], [before[0], 0]);
+  await close();
+});
+
+test('hatches of a slice file are drawn and can be left away', async () => {
+  const rings = [[0, 0, 20, 0, 20, 20, 0, 20]];
+  const hatches = Array.from({ length: 9 }, (_, i) => [2, 2 + 2 * i, 18, 2 + 2 * i]).flat();
+  const layers = [0, 1].map((i) => ({ index: i, z: i + 0.5, bottom: i, top: i + 1, parts: [{ rings, hatches }] }));
+  writeFileSync(file('hatched.json'), JSON.stringify({ format: 'lamella layers', version: 1, units: 'mm', parts: [{ label: 'a' }], layers }));
+  lamella('view', 'hatched.json');
+  const { page, close } = await open('hatched.html');
+  await shown(page);
+  const canvas = page.locator('canvas[data-layer]');
+  const green = async () => (await pixelsNear(canvas, await colourOf(page, '--hatch'), 60)).near;
+  assert.ok((await green()) > 1000);
+  await page.getByRole('button', { name: 'Hatches' }).click();
+  await page.waitForTimeout(100);
+  assert.equal(await green(), 0);
+  await close();
+});
+
+test('an open contour is seen in red, counted, and listed', async () => {
+  for (const colorScheme of ['light', 'dark']) {
+    const { page, close } = await open('open.html', { colorScheme });
+    await shown(page);
+    const red = await pixelsNear(page.locator('canvas[data-layer]'), await colourOf(page, '--open'), 12);
+    assert.ok(red.near > 500, `${red.near} red pixels`);
+    assert.match(await page.locator('#verdict').textContent(), /100 layers with faults/);
+    const aside = page.getByRole('complementary');
+    assert.match(await aside.textContent(), /100 open contours in every layer, the lowest at z = 0\.05 mm/);
+    const worst = aside.locator('section', { hasText: 'Worst layers' }).getByRole('button');
+    await worst.nth(3).click();
+    assert.equal(String(await shown(page)), await worst.nth(3).locator('b').textContent());
+    assert.match(await page.locator('canvas[data-layer]').getAttribute('aria-label'), /1 of the contours open/);
+    await close();
+  }
+});
+
+test('the defects of a mesh are listed and can be gone to', async () => {
+  const { page, close } = await open('open_mesh.html', { view: null });
+  await page.waitForSelector('canvas[data-ready]');
+  assert.match(await page.locator('#verdict').textContent(), /has defects/);
+  const canvas = page.locator('canvas[data-ready]');
+  const before = await canvas.screenshot();
+  await page.getByRole('button', { name: /rim of 4 edges/ }).click();
+  await page.waitForTimeout(300);
+  assert.notDeepEqual(await canvas.screenshot(), before);
+  await page.keyboard.press('ArrowLeft');
+  await close();
+});
+
+test('the stack shows the layers up to the one that is chosen', async () => {
+  const { page, complaints, close } = await open('box.html', { view: 'stack' });
+  await page.waitForSelector('canvas[data-built]');
+  await page.getByRole('button', { name: 'Layers above' }).click();
+  await page.getByRole('button', { name: 'Front' }).click();
+  /** Pixels of the colour of the walls, counted in what is on the screen. */
+  const blue = async () => {
+    await page.waitForTimeout(400);
+    const picture = (await page.locator('canvas[data-built]').screenshot()).toString('base64');
+    return page.evaluate(async (picture) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${picture}`;
+      await image.decode();
+      const ctx = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      ctx.drawImage(image, 0, 0);
+      const { data } = ctx.getImageData(0, 0, image.width, image.height);
+      let n = 0;
+      for (let i = 0; i < data.length; i += 4) if (data[i + 2] > data[i] + 30) ++n;
+      return n;
+    }, picture);
+  };
+  const heights = [];
+  // The eye is at half the height: from there up nothing of the flat top is seen.
+  for (const layer of [49, 74, 99]) {
+    await page.locator('#layer').fill(String(layer));
+    heights.push(await blue());
+  }
+  assert.ok(heights[0] > 1000, heights.join(' '));
+  assert.ok(Math.abs(heights[1] / heights[0] - 1.5) < 0.1 && Math.abs(heights[2] / heights[0] - 2) < 0.1, heights.join(' '));
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('dark and light follow the system, and the button switches', async () => {
+  for (const colorScheme of ['light', 'dark']) {
+    const { page, close } = await open('box.html', { colorScheme });
+    const brightness = () =>
+      page.evaluate(() => {
+        const [r, g, b] = getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number);
+        return (r + g + b) / 3;
+      });
+    const isDark = async () => (await brightness()) < 100;
+    assert.equal(await isDark(), colorScheme === 'dark');
+    await page.getByRole('button', { name: 'Dark or light' }).click();
+    assert.equal(await isDark(), colorScheme !== 'dark');
+    await page.keyboard.press('t');
+    assert.equal(await isDark(), colorScheme === 'dark');
+    await close();
+  }
+});
+
+test('text has contrast enough in both themes', async () => {
+  for (const colorScheme of ['light', 'dark']) {
+    const { page, close } = await open('open.html', { colorScheme });
+    const weak = await page.evaluate(() => {
+      const numbers = (css) => css.match(/[\d.]+/g).map(Number);
+      const luminance = ([r, g, b]) => {
+        const [x, y, z] = [r, g, b].map((c) => (c / 255 <= 0.03928 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+        return 0.2126 * x + 0.7152 * y + 0.0722 * z;
+      };
+      const behind = (node) => {
+        for (; node; node = node.parentElement) {
+          const colour = numbers(getComputedStyle(node).backgroundColor);
+          if (colour.length < 4 || colour[3] > 0.99) return colour;
+        }
+        return [255, 255, 255];
+      };
+      const found = [];
+      for (const node of document.querySelectorAll('body *')) {
+        const own = [...node.childNodes].some((child) => child.nodeType === 3 && child.textContent.trim() !== '');
+        if (!own || !node.checkVisibility() || node.closest('script')) continue;
+        const [a, b] = [numbers(getComputedStyle(node).color), behind(node)].map(luminance);
+        const contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+        if (contrast < 4.5) found.push(`${node.tagName} ${node.className} "${node.textContent.slice(0, 30)}": ${contrast.toFixed(2)}`);
+      }
+      return found;
+    });
+    assert.deepEqual(weak, [], colorScheme);
+    await close();
+  }
+});
+
+test('every control has a name, and tab reaches them in order', async () => {
+  const { page, close } = await open('rook.html', { view: 'both' });
+  await page.waitForSelector('canvas[data-ready]');
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll('button, input, canvas')]
+      .filter((node) => !(node.getAttribute('aria-label') || node.textContent.trim() || node.labels?.length))
+      .map((node) => node.outerHTML),
+  );
+  assert.deepEqual(nameless, []);
+  const reached = [];
+  await page.evaluate(() => document.body.focus());
+  for (let i = 0; i < 30; ++i) {
+    await page.keyboard.press('Tab');
+    reached.push(await page.evaluate(() => document.activeElement.id || document.activeElement.getAttribute('aria-label') || document.activeElement.textContent));
+  }
+  const place = (name) => reached.findIndex((each) => each.startsWith(name));
+  for (const name of ['theme', 'Layer ', 'Fill', 'Play', 'layer', 'Number of the layer']) assert.ok(place(name) >= 0, `${name}: ${reached}`);
+  assert.ok(place('theme') < place('Fill') && place('Fill') < place('layer'));
+  await page.keyboard.press('?');
+  await page.getByRole('dialog').waitFor();
+  await page.keyboard.press('Escape');
+  assert.equal(await page.getByRole('dialog').count(), 0);
+  await close();
+});
+
+test('nothing moves while the page fills itself', async () => {
+  const { page, close } = await open('rook.html', { view: 'both' });
+  const places = () => page.evaluate(() => [...document.querySelectorAll('.pane, .timeline, .row, .card')].map((node) => JSON.stringify(node.getBoundingClientRect())));
+  const before = await places();
+  await page.waitForSelector('canvas[data-built]', { timeout: 120000 });
+  await page.keyboard.press('End');
+  await shown(page);
+  assert.deepEqual(await places(), before);
+  await close();
+});
+
+test('a narrow page has everything below one another and no sideways scrolling', async () => {
+  const { page, complaints, close } = await open('open.html', { width: 390, height: 800, view: null });
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a report tells how the run went', async () => {
+  const { page, close } = await open('report.html');
+  const text = await page.getByRole('complementary').textContent();
+  for (const words of [/The run/, /Engine\s*sweep/, /Slicing\s*\d+\.\d+ s/, /Triangles\s*94,080/, /Written\s*cli, /]) assert.match(text, words);
+  await close();
+});
+
+test('a thousand layers and the sheet with 1225 holes stay usable', async () => {
+  lamella('view', 'rook.stl', '--layer-height', '0.05', '-o', 'thousand.html');
+  lamella('make', 'sheet', '--holes', '1225', '-o', 'sheet.stl');
+  lamella('view', 'sheet.stl');
+  for (const [name, layers] of [['thousand.html', 1063], ['sheet.html', 30]]) {
+    const { page, complaints, close } = await open(name);
+    assert.equal(Number(await page.locator('#layer').getAttribute('max')) + 1, layers);
+    for (const key of ['Home', 'PageUp', 'ArrowUp', 'End', '+', '0']) await page.keyboard.press(key);
+    assert.equal(await shown(page), layers);
+    assert.deepEqual(complaints, []);
+    await close();
+  }
+});

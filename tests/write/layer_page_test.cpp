@@ -1,0 +1,397 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/diagnose.hpp"
+#include "lamella/mesh/shapes.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/write/layer_page.hpp"
+
+#include "container/json_text.hpp"
+#include "page_reader.hpp"
+#include "sample_layers.hpp"
+#include "temporary_folder.hpp"
+#include "write/page_bytes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+/// What the pages of these tests are written with: a frame that is easy to read back.
+PageOptions options_with(std::uint64_t bytes = 1U << 24U, std::uint64_t points = 6'000'000) {
+    return {.viewer = test_viewer, .title = "a page", .budget_bytes = bytes, .budget_points = points};
+}
+
+struct WrittenPage {
+    std::string html;
+    ReadPage page;
+    std::vector<std::string> warnings;
+};
+
+WrittenPage write_page(const std::vector<LayerStack>& parts, const LayerFileInfo& info,
+                       const PageOptions& options, const PageNotes& notes = {}) {
+    const TemporaryFolder folder;
+    const auto writer = open_layer_page(folder.file("page.html"), info, options);
+    for (std::size_t i = 0; i < info.layers; ++i) {
+        std::vector<Layer> plane;
+        for (const LayerStack& part : parts)
+            plane.push_back(part[i]);
+        writer->prepare(plane)();
+    }
+    writer->tell(notes);
+    writer->finish();
+    const std::string html = file_bytes(folder.file("page.html"));
+    EXPECT_EQ(writer->bytes(), html.size());
+    return {html, read_page(html), writer->warnings()};
+}
+
+WrittenPage write_page(const LayerStack& layers, const PageOptions& options = options_with()) {
+    return write_page({layers}, info_of(layers), options);
+}
+
+/// Members of a JSON object that are arrays of numbers; the others are passed over.
+std::map<std::string, std::vector<double>> numbers_of(const std::string& json) {
+    std::map<std::string, std::vector<double>> found;
+    JsonText text(json, "json");
+    text.object([&](const std::string& key) {
+        const std::string next = text.here();
+        if (next.starts_with("'[") && !next.starts_with("'[[") && !next.starts_with("'[{"))
+            text.array([&] { found[key].push_back(text.number()); });
+        else
+            text.skip();
+    });
+    text.end();
+    return found;
+}
+
+double member(const std::string& json, const std::string& name) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    JsonText text(json, "json");
+    text.object([&](const std::string& key) {
+        if (key == name)
+            value = text.number();
+        else
+            text.skip();
+    });
+    return value;
+}
+
+/// The layers of a page in mm.
+std::vector<PageLayer> layers_of(const ReadPage& page, std::size_t parts = 1) {
+    const std::string& head = page.json.at("head");
+    const std::vector<double> origin = numbers_of(head).at("origin");
+    std::vector<PageLayer> layers;
+    for (const std::string& data : page.data)
+        layers.push_back(page_layer(data, parts, member(head, "step_mm"), {origin[0], origin[1]}));
+    return layers;
+}
+
+double distance(const Point2& p, const Point2& a, const Point2& b) {
+    const double length = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
+    const double t =
+        length > 0 ? std::clamp(((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / length, 0.0, 1.0)
+                   : 0.0;
+    return std::hypot(a.x + t * (b.x - a.x) - p.x, a.y + t * (b.y - a.y) - p.y);
+}
+
+double distance(const Point2& p, const std::vector<PageContour>& contours) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const PageContour& contour : contours) {
+        const std::size_t n = contour.points.size();
+        for (std::size_t i = 0; i + (contour.closed ? 0 : 1) < n; ++i)
+            least = std::min(least, distance(p, contour.points[i], contour.points[(i + 1) % n]));
+    }
+    return least;
+}
+
+/// Rings of 2000 points, with a hole and an open chain in each layer.
+LayerStack fine_rings(std::size_t count) {
+    LayerStack layers;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        LayerBuilder builder;
+        for (const double turn : {1.0, -1.0}) {
+            constexpr int points = 2000;
+            const double radius = turn > 0 ? 40 : 25;
+            for (int p = 0; p < points; ++p) {
+                const double angle = turn * 2 * std::numbers::pi * p / points;
+                const double wave = 1 + 0.05 * std::sin(9 * angle + static_cast<double>(i));
+                builder.add_point({radius * wave * std::cos(angle), radius * wave * std::sin(angle)});
+            }
+            builder.end_contour(true);
+        }
+        add_contour(builder, {{-3, 0}, {1, 2}, {4, -1}}, false);
+        const double bottom = 0.1 * static_cast<double>(i);
+        layers.push_back(builder.finish(i, bottom + 0.05, bottom, bottom + 0.1));
+    }
+    return layers;
+}
+
+TEST(LayerPage, HoldsEveryContourWithinHalfAStep) {
+    std::vector<LayerStack> parts{random_layers(3, 20, 60, {500, -200}, true),
+                                  random_layers(3, 20, 60, {-40, 10}, true)};
+    LayerFileInfo info = info_of(parts[0]);
+    info.box.add(info_of(parts[1]).box);
+    info.parts = {{"one", {}}, {"two", {}}};
+    for (std::size_t i = 0; i < parts[1].size(); ++i)
+        parts[1][i].hatches = PointArray(std::vector<Point2>{{1, 2}, {3.25, 4}, {-7, 8}, {9, 10}});
+    const WrittenPage written = write_page(parts, info, options_with());
+    EXPECT_TRUE(written.warnings.empty());
+    const double step = member(written.page.json.at("head"), "step_mm");
+    EXPECT_EQ(step, page_step_mm(info.box));
+    const std::vector<PageLayer> read = layers_of(written.page, 2);
+    ASSERT_EQ(read.size(), 20U);
+    const auto expect_near = [&](const Point2& a, const Point2& b) {
+        EXPECT_NEAR(a.x, b.x, 0.5001 * step);
+        EXPECT_NEAR(a.y, b.y, 0.5001 * step);
+    };
+    for (std::size_t i = 0; i < read.size(); ++i)
+        for (std::size_t p = 0; p < 2; ++p) {
+            const Layer& layer = parts[p][i];
+            const PagePart& part = read[i].parts[p];
+            ASSERT_EQ(part.contours.size(), layer.contours());
+            for (std::size_t c = 0; c < layer.contours(); ++c) {
+                const auto contour = layer.contour(c);
+                ASSERT_EQ(part.contours[c].closed, layer.closed(c));
+                ASSERT_EQ(part.contours[c].points.size(), contour.size());
+                for (std::size_t k = 0; k < contour.size(); ++k)
+                    expect_near(part.contours[c].points[k], contour[k]);
+            }
+            ASSERT_EQ(part.hatches.size(), layer.hatches.size());
+            for (std::size_t k = 0; k < layer.hatches.size(); ++k)
+                expect_near(part.hatches[k], layer.hatches[k]);
+        }
+}
+
+TEST(LayerPage, HasAStepThatIsRoundAndSmall) {
+    const auto step = [](double width, double depth) {
+        return page_step_mm({{-1, 3, 0}, {width - 1, depth + 3, 1}});
+    };
+    EXPECT_DOUBLE_EQ(step(50, 20), 0.001);
+    EXPECT_DOUBLE_EQ(step(51, 20), 0.002);
+    EXPECT_DOUBLE_EQ(step(10, 250), 0.005);
+    EXPECT_DOUBLE_EQ(step(0, 0), 0.001);
+    for (double width = 1e-6; width < 1e9; width *= 1.37) {
+        EXPECT_GE(step(width, 0), width / 50000 * (1 - 1e-12));
+        EXPECT_LE(step(width, 0), 2.5001 * width / 50000);
+    }
+}
+
+TEST(LayerPage, TellsTheFiguresOfTheFullContours) {
+    const LayerStack layers = fine_rings(6);
+    for (const PageOptions& options : {options_with(), options_with(6000), options_with(1U << 24U, 600)}) {
+        auto table = numbers_of(write_page(layers, options).page.json.at("table"));
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const LayerMeasure expected = measure(layers[i]);
+            EXPECT_EQ(table["index"][i], static_cast<double>(i));
+            EXPECT_EQ(table["z"][i], layers[i].z);
+            EXPECT_EQ(table["bottom"][i], layers[i].bottom);
+            EXPECT_EQ(table["top"][i], layers[i].top);
+            EXPECT_EQ(table["area_mm2"][i], expected.area_mm2);
+            EXPECT_EQ(table["perimeter_mm"][i], expected.perimeter_mm);
+            EXPECT_EQ(table["contours"][i], 3);
+            EXPECT_EQ(table["holes"][i], 1);
+            EXPECT_EQ(table["open_chains"][i], 1);
+            EXPECT_EQ(table["points"][i], 4003);
+        }
+    }
+}
+
+TEST(LayerPage, ThinsOutBeyondItsBudgetAndSaysSo) {
+    const LayerStack layers = fine_rings(12);
+    const WrittenPage full = write_page(layers);
+    EXPECT_TRUE(full.warnings.empty());
+    const std::size_t frame = write_page(LayerStack{}).html.size();
+    for (const PageOptions& options : {options_with(12000), options_with(1U << 24U, 12 * 200)}) {
+        const WrittenPage thin = write_page(layers, options);
+        ASSERT_EQ(thin.warnings.size(), 1U);
+        EXPECT_NE(thin.warnings[0].find("12 of 12 layers"), std::string::npos) << thin.warnings[0];
+        EXPECT_LT(thin.html.size(), full.html.size());
+        auto table = numbers_of(thin.page.json.at("table"));
+        double shown = 0;
+        const double step = member(thin.page.json.at("head"), "step_mm");
+        const std::vector<PageLayer> read = layers_of(thin.page);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            shown += table["shown"][i];
+            const double tolerance = table["tolerance_mm"][i];
+            EXPECT_GT(tolerance, 0);
+            const auto& contours = read[i].parts[0].contours;
+            ASSERT_EQ(contours.size(), 3U);
+            std::size_t points = 0;
+            for (const PageContour& contour : contours)
+                points += contour.points.size();
+            EXPECT_EQ(static_cast<double>(points), table["shown"][i]);
+            for (const Point2& p : layers[i].points)
+                EXPECT_LE(distance(p, contours), tolerance + step);
+            const auto chain = std::ranges::find(contours, false, &PageContour::closed);
+            ASSERT_NE(chain, contours.end());
+        }
+        EXPECT_LE(shown, static_cast<double>(options.budget_points));
+        EXPECT_LE(thin.html.size(), frame + options.budget_bytes + 300 * layers.size());
+    }
+}
+
+TEST(LayerPage, LetsALayerUseWhatThoseBelowLeft) {
+    LayerStack layers = square_with_hole();
+    const LayerStack fine = fine_rings(3);
+    layers.push_back(fine[2]);
+    layers[2].bottom = 1;
+    layers[2].z = 1.05;
+    layers[2].top = 1.1;
+    // 4003 points are more than a share, but not more than three.
+    const WrittenPage page = write_page(layers, options_with(1U << 24U, 3 * 2000));
+    EXPECT_TRUE(page.warnings.empty());
+    EXPECT_FALSE(write_page(layers, options_with(1U << 24U, 3 * 1000)).warnings.empty());
+}
+
+TEST(LayerPage, FindsFaults) {
+    LayerBuilder builder;
+    add_contour(builder, {{0, 0}, {10, 10}, {10, 0}, {0, 10}});   // crosses itself at 5, 5
+    add_contour(builder, {{20, 0}, {20, 10}, {30, 10}, {30, 0}}); // a hole in nothing
+    add_contour(builder, {{40, 0}, {60, 0}, {60, 20}, {40, 20}}); // and one in it
+    add_contour(builder, {{45, 5}, {50, 5}, {50, 10}, {45, 10}}); // that is no hole
+    const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
+    const WrittenPage written = write_page(layers);
+    auto table = numbers_of(written.page.json.at("table"));
+    EXPECT_EQ(table["crossings"][0], 1);
+    EXPECT_GE(table["misoriented"][0], 1);
+    EXPECT_EQ(table["overlapping"][0], 1);
+    const PageLayer read = layers_of(written.page).front();
+    ASSERT_EQ(read.crossings.size(), 1U);
+    EXPECT_NEAR(read.crossings[0].x, 5, 0.01);
+    EXPECT_NEAR(read.crossings[0].y, 5, 0.01);
+}
+
+TEST(LayerPage, KeepsHostileTextInItsPlace) {
+    const LayerStack layers = square_with_hole();
+    const std::size_t scripts = write_page(layers).page.scripts;
+    for (const std::string& text :
+         {std::string("</script><script>alert(1)</script>"), std::string("<!--<script>"),
+          std::string("\"}\\]"), std::string("\xff\xfe\n\0\x1b[31m", 10),
+          std::string("\xe2\x80\xa8]]>-->")}) {
+        LayerFileInfo info = info_of(layers);
+        info.parts = {{text, {}}};
+        PageOptions options = options_with();
+        options.title = text;
+        PageNotes notes;
+        notes.sections = {{text, {{text, text, Tone::bad}}}};
+        notes.places = {{text, text, {{1, 2, 3}}}};
+        const WrittenPage written = write_page({layers}, info, options, notes);
+        EXPECT_EQ(written.page.scripts, scripts);
+        EXPECT_EQ(written.page.data.size(), 2U);
+        for (const auto& [id, json] : written.page.json) {
+            EXPECT_EQ(json.find('<'), std::string::npos) << id;
+            JsonText checked(json, id);
+            checked.skip();
+            checked.end();
+        }
+        EXPECT_TRUE(written.html.ends_with("<p>after</p>"));
+    }
+}
+
+TEST(LayerPage, NeedsAViewer) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    for (const auto& [viewer, kind, word] :
+         {std::tuple{"", ErrorKind::usage, "Node.js"},
+          std::tuple{"<html></html>", ErrorKind::internal, "lamella-data"}}) {
+        try {
+            static_cast<void>(open_layer_page(folder.file("page.html"), info_of(layers), {.viewer = viewer}));
+            FAIL();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), kind);
+            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_TRUE(folder.entries().empty());
+}
+
+struct CoarseMesh {
+    std::vector<Point3> vertices;
+    std::vector<std::array<std::uint64_t, 3>> triangles;
+    std::vector<std::uint64_t> shells;
+};
+
+CoarseMesh mesh_of(const std::string& bytes, const Point3& corner, double step) {
+    PageNumbers numbers(bytes);
+    CoarseMesh mesh;
+    mesh.vertices.resize(numbers.next());
+    mesh.triangles.resize(numbers.next());
+    std::array<std::int64_t, 3> cell{};
+    for (Point3& vertex : mesh.vertices) {
+        for (std::int64_t& along : cell)
+            along += numbers.next_signed();
+        const auto mm = [&](std::int64_t along) {
+            return (static_cast<double>(along) + 0.5) * step;
+        };
+        vertex = {corner.x + mm(cell[0]), corner.y + mm(cell[1]), corner.z + mm(cell[2])};
+    }
+    std::int64_t shell = 0;
+    std::int64_t at = 0;
+    for (auto& triangle : mesh.triangles) {
+        mesh.shells.push_back(static_cast<std::uint64_t>(shell += numbers.next_signed()));
+        for (std::uint64_t& k : triangle)
+            k = static_cast<std::uint64_t>(at += numbers.next_signed());
+    }
+    EXPECT_TRUE(numbers.at_end());
+    return mesh;
+}
+
+ReadPage mesh_page(const IndexedMesh& mesh) {
+    const TemporaryFolder folder;
+    write_mesh_page(folder.file("mesh.html"), mesh, diagnose(mesh), {}, options_with());
+    return read_page(file_bytes(folder.file("mesh.html")));
+}
+
+TEST(MeshPage, HoldsASmallMeshWhole) {
+    IndexedMesh mesh = weld(make_sphere(20, 3));
+    const IndexedMesh other = transformed(weld(make_sphere(2, 1)), translation(100, -50, 7));
+    const auto shift = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const auto& [a, b, c] : other.triangles)
+        mesh.triangles.push_back({a + shift, b + shift, c + shift});
+    const ReadPage page = mesh_page(mesh);
+    const std::string& head = page.json.at("head");
+    const double step = member(head, "step_mm");
+    const Box3 box = bounding_box(mesh);
+    EXPECT_DOUBLE_EQ(step, (box.max.x - box.min.x) / 65536);
+    const CoarseMesh read = mesh_of(page.data.at(0), box.min, step);
+    ASSERT_EQ(read.triangles.size(), mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        EXPECT_EQ(read.shells[t], t < 20 * 64 ? 0U : 1U);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Point3& is = read.vertices.at(read.triangles[t][k]);
+            const Point3& was = mesh.vertices[mesh.triangles[t][k]];
+            EXPECT_NEAR(is.x, was.x, 0.5001 * step);
+            EXPECT_NEAR(is.y, was.y, 0.5001 * step);
+            EXPECT_NEAR(is.z, was.z, 0.5001 * step);
+        }
+    }
+}
+
+TEST(MeshPage, CoarsensALargeMeshByItsRule) {
+    const IndexedMesh mesh = weld(make_sphere(20, 8)); // 1.3 million triangles
+    const ReadPage page = mesh_page(mesh);
+    const std::string& head = page.json.at("head");
+    EXPECT_EQ(member(head, "triangles"), static_cast<double>(mesh.triangles.size()));
+    const double shown = member(head, "shown");
+    EXPECT_LE(shown, static_cast<double>(page_triangles));
+    EXPECT_GT(shown, page_triangles / 8.0); // half the step would be too fine
+    const double step = member(head, "step_mm");
+    EXPECT_DOUBLE_EQ(std::exp2(std::round(std::log2(40 / step))), 40 / step);
+    const CoarseMesh read = mesh_of(page.data.at(0), bounding_box(mesh).min, step);
+    EXPECT_EQ(static_cast<double>(read.triangles.size()), shown);
+    for (const Point3& vertex : read.vertices)
+        EXPECT_NEAR(std::hypot(vertex.x, vertex.y, vertex.z), 20, step);
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,146 @@
+import { brief, count, counted, mm } from './text.js';
+
+/** What the figures of the layers mean, in plain words. */
+
+const sum = (values) => values.reduce((total, value) => total + value, 0);
+
+/** Kinds of faults that a layer can have, the gravest first. */
+export const faults = [
+  {
+    column: 'open_chains',
+    name: 'open contours',
+    one: 'open contour',
+    meaning: 'contours that do not close, where the mesh has a hole or triangles that face the wrong way',
+  },
+  {
+    column: 'crossings',
+    name: 'crossings',
+    one: 'crossing',
+    meaning: 'places where contours cross each other or themselves',
+  },
+  {
+    column: 'misoriented',
+    name: 'rings inside out',
+    one: 'ring inside out',
+    meaning: 'rings that run the wrong way round, as if there were no material in them',
+  },
+];
+
+/** How many faults layer i has. */
+export const faultsOf = (table, i) => sum(faults.map(({ column }) => table[column][i]));
+
+/** "2 open contours, 1 crossing"; "" for a layer without faults. */
+export function faultText(table, i) {
+  return faults
+    .filter(({ column }) => table[column][i] > 0)
+    .map(({ column, one, name }) => `${count(table[column][i])} ${table[column][i] === 1 ? one : name}`)
+    .join(', ');
+}
+
+/** "in 3 layers, the lowest at z = 1.25 mm" */
+function where(table, affected) {
+  const layers = affected.length === table.z.length ? 'in every layer' : `in ${counted(affected.length, 'layer')}`;
+  return `${layers}, the lowest at z = ${mm(table.z[affected[0]])} mm`;
+}
+
+const layersWith = (column) => column.flatMap((n, i) => (n > 0 ? [i] : []));
+
+/**
+ * @returns {{tone: string, text: string, layer?: number}[]} the gravest first; `layer` is one to look at
+ */
+export function findings(page) {
+  const { head, table } = page;
+  const found = [];
+  for (const { column, name, meaning } of faults) {
+    const affected = layersWith(table[column]);
+    if (affected.length === 0) continue;
+    const text = `${count(sum(table[column]))} ${name} ${where(table, affected)}: ${meaning}.`;
+    found.push({ tone: 'bad', text, layer: affected[0] });
+  }
+  if (found.length === 0 && table.z.length > 0)
+    found.push({ tone: 'good', text: 'Every contour closes, none crosses another, and all run the right way round.' });
+  const overlapping = layersWith(table.overlapping);
+  if (overlapping.length > 0)
+    found.push({
+      tone: 'warning',
+      text: `Bodies overlap ${where(table, overlapping)}. Areas count such places twice; lamella slice --fill nonzero unites them.`,
+      layer: overlapping[0],
+    });
+  const empty = table.contours.flatMap((n, i) => (n === 0 ? [i] : []));
+  if (empty.length > 0)
+    found.push({ tone: 'warning', text: `${counted(empty.length, 'layer')} without any contour, the lowest at z = ${mm(table.z[empty[0]])} mm.`, layer: empty[0] });
+  found.push(accuracy(head, table));
+  return found;
+}
+
+function accuracy(head, table) {
+  const thinned = layersWith(table.tolerance_mm);
+  const rounded = `coordinates are rounded to ${brief(head.step_mm)} mm`;
+  if (thinned.length === 0) return { tone: 'plain', text: `The page shows every point; ${rounded}.` };
+  const worst = Math.max(...table.tolerance_mm);
+  return {
+    tone: 'warning',
+    text:
+      `To keep the page small, ${counted(thinned.length, 'layer')} of ${count(table.z.length)} ` +
+      `${thinned.length === 1 ? 'is' : 'are'} drawn with fewer points, up to ${brief(worst)} mm off ` +
+      `(${count(sum(table.shown))} of ${count(sum(table.points))} points in all); ${rounded}. ` +
+      'All figures are of the full contours.',
+    layer: thinned[0],
+  };
+}
+
+/** In one line for the head of the page: { tone, text }. */
+export function verdict(page) {
+  const bad = page.table.z.filter((_, i) => faultsOf(page.table, i) > 0).length;
+  if (bad > 0) return { tone: 'bad', text: `${counted(bad, 'layer')} with faults` };
+  if (page.notes.places.length > 0) return { tone: 'warning', text: 'Contours are sound, the mesh has defects' };
+  return { tone: 'good', text: 'All contours are sound' };
+}
+
+/** Layers worth a look, the worst first: { layer, text, bad }. */
+export function worstLayers(table, most = 10) {
+  const layers = [...table.z.keys()];
+  return layers
+    .filter((i) => faultsOf(table, i) > 0)
+    .sort((a, b) => faultsOf(table, b) - faultsOf(table, a) || a - b)
+    .slice(0, most)
+    .map((layer) => ({ layer, text: faultText(table, layer), bad: true }));
+}
+
+/** The layer with most faults; null where there are none. */
+export const firstFault = (table) => worstLayers(table, 1)[0]?.layer ?? null;
+
+/** Layers that stand out, faults or not. */
+export function remarkableLayers(table) {
+  const layers = [...table.z.keys()];
+  if (layers.length < 2) return [];
+  const largest = (value) => layers.reduce((best, i) => (value(i) > value(best) ? i : best), 0);
+  const step = (i) => (i === 0 ? 0 : Math.abs(table.area_mm2[i] - table.area_mm2[i - 1]));
+  const [points, contours, area, change] = [(i) => table.points[i], (i) => table.contours[i], (i) => table.area_mm2[i], step].map(largest);
+  const uneven = (column) => column.some((value) => value !== column[0]);
+  return [
+    { layer: area, text: `largest area, ${brief(table.area_mm2[area])} mm²`, stands: uneven(table.area_mm2) },
+    { layer: change, text: `area changes most, by ${brief(step(change))} mm²`, stands: uneven(table.area_mm2) },
+    { layer: contours, text: `most contours, ${count(table.contours[contours])}`, stands: uneven(table.contours) },
+    { layer: points, text: `most points, ${count(table.points[points])}`, stands: uneven(table.points) },
+  ].filter(({ stands }) => stands);
+}
+
+/** Figures of the whole stack: [name, value] pairs. */
+export function totals(page) {
+  const { head, table } = page;
+  const n = table.z.length;
+  const thickness = table.z.map((_, i) => table.top[i] - table.bottom[i]);
+  const [thin, thick] = [Math.min(...thickness), Math.max(...thickness)];
+  const uneven = thick - thin > 1e-6 * thick;
+  return [
+    ['Layers', count(n)],
+    ['Layer height', n === 0 ? '–' : uneven ? `${mm(thin)} to ${mm(thick)} mm` : `${mm(thin)} mm`],
+    ['From z', n === 0 ? '–' : `${mm(table.bottom[0])} to ${mm(table.top[n - 1])} mm`],
+    ['Size', `${head.box[0].map((low, k) => brief(head.box[1][k] - low)).join(' × ')} mm`],
+    ['Volume', `${brief(sum(thickness.map((t, i) => t * table.area_mm2[i])))} mm³`],
+    ['Contours', count(sum(table.contours))],
+    ['Open contours', count(sum(table.open_chains))],
+    ['Points', count(sum(table.points))],
+  ];
+}

@@ -1,0 +1,217 @@
+import { element } from '../element.js';
+import { brief, mm } from '../text.js';
+import { Camera } from './camera.js';
+import { drawLayer } from './draw_layer.js';
+import { roundStep } from './round_step.js';
+
+/** Where lines of the notes' places pass through the plane at z, x and y in turn. */
+export function marksAt(places, z, tolerance, origin) {
+  const marks = [];
+  for (const { points, closed } of places) {
+    if (points.length === 1 && Math.abs(points[0][2] - z) <= tolerance)
+      marks.push(points[0][0] - origin[0], points[0][1] - origin[1]);
+    const lines = closed ? points.length : points.length - 1;
+    for (let i = 0; i < lines; ++i) {
+      const [a, b] = [points[i], points[(i + 1) % points.length]];
+      if (a[2] <= z === b[2] <= z) continue;
+      const t = (z - a[2]) / (b[2] - a[2]);
+      marks.push(a[0] + t * (b[0] - a[0]) - origin[0], a[1] + t * (b[1] - a[1]) - origin[1]);
+    }
+  }
+  return marks;
+}
+
+/** One layer, seen from above: a canvas to zoom and pan, with its tools. */
+export class LayerView {
+  #page;
+  #shelf;
+  #store;
+  #camera = new Camera();
+  #layer = null; // what is drawn
+  #shown = -1;
+  #asked = false;
+
+  constructor(page, shelf, store) {
+    this.#page = page;
+    this.#shelf = shelf;
+    this.#store = store;
+    this.origin = page.head.origin.map((steps) => steps * page.head.step_mm);
+    this.canvas = element('canvas', {
+      className: 'drawing',
+      tabIndex: 0,
+      role: 'img',
+      'aria-describedby': 'keys-of-layer',
+    });
+    this.readout = element('output', { className: 'readout', 'aria-hidden': true });
+    this.scaleText = element('span');
+    this.scale = element('div', { className: 'scale', 'aria-hidden': true }, this.scaleText, element('i'));
+    this.node = element(
+      'section',
+      { className: 'pane', 'aria-label': 'The layer, seen from above' },
+      this.canvas,
+      this.#tools(),
+      this.scale,
+      this.readout,
+      element('p', { id: 'keys-of-layer', className: 'unseen' }, 'Plus and minus zoom, shift and arrows move, 0 shows all.'),
+    );
+    const [low, high] = page.head.box;
+    this.#camera.frame([low[0] - this.origin[0], low[1] - this.origin[1], high[0] - this.origin[0], high[1] - this.origin[1]]);
+    this.#listen();
+    store.on(['layer'], (state) => this.#show(state.layer));
+    store.on(['theme', 'fill', 'lines', 'directions', 'hatches', 'hidden'], () => this.redraw());
+  }
+
+  get camera() {
+    return this.#camera;
+  }
+
+  #tools() {
+    const button = (label, sign, act) =>
+      element('button', { type: 'button', className: 'icon', title: label, 'aria-label': label, onclick: act }, sign);
+    const toggle = (key, label) => {
+      const node = element('button', { type: 'button', className: 'toggle' }, label);
+      node.addEventListener('click', () => this.#store.set({ [key]: !this.#store.state[key] }));
+      this.#store.on([key], (state) => node.setAttribute('aria-pressed', state[key]));
+      return node;
+    };
+    const toggles = [toggle('fill', 'Fill'), toggle('lines', 'Contours'), toggle('directions', 'Direction')];
+    if (this.#page.table.hatches.some((n) => n > 0)) toggles.push(toggle('hatches', 'Hatches'));
+    return element(
+      'div',
+      { className: 'tools', role: 'toolbar', 'aria-label': 'How the layer is drawn' },
+      ...toggles,
+      element('span', { className: 'gap' }),
+      button('Zoom in (+)', '+', () => this.zoomBy(1.5)),
+      button('Zoom out (−)', '−', () => this.zoomBy(1 / 1.5)),
+      button('Show all (0)', '⤢', () => this.fit()),
+    );
+  }
+
+  async #show(number) {
+    const layer = await this.#shelf.layer(number);
+    if (this.#store.state.layer !== number) return; // another one was asked for meanwhile
+    this.#layer = layer;
+    this.#shown = number;
+    const { table } = this.#page;
+    const text =
+      `Layer ${number + 1} of ${this.#shelf.count} at z = ${mm(table.z[number])} mm, seen from above: ` +
+      `${table.contours[number]} contours, ${brief(table.area_mm2[number])} mm²` +
+      (table.open_chains[number] > 0 ? `, ${table.open_chains[number]} of the contours open` : '');
+    this.canvas.setAttribute('aria-label', text);
+    this.redraw();
+  }
+
+  #listen() {
+    const { canvas } = this;
+    new ResizeObserver(() => {
+      this.#camera.resize(canvas.clientWidth, canvas.clientHeight);
+      this.draw();
+    }).observe(canvas);
+    canvas.addEventListener(
+      'wheel',
+      (event) => {
+        event.preventDefault();
+        const unit = event.deltaMode === 1 ? 30 : 1;
+        this.#camera.zoomBy(Math.exp(-event.deltaY * unit * (event.ctrlKey ? 0.01 : 0.002)), event.offsetX, event.offsetY);
+        this.redraw();
+      },
+      { passive: false },
+    );
+    const fingers = new Map();
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    });
+    canvas.addEventListener('pointermove', (event) => {
+      this.#tell(event.offsetX, event.offsetY);
+      const before = fingers.get(event.pointerId);
+      if (!before) return;
+      const now = [event.offsetX, event.offsetY];
+      const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1];
+      if (other) {
+        const spread = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]);
+        this.#camera.zoomBy(spread(now) / Math.max(1, spread(before)), other[0], other[1]);
+      } else {
+        this.#camera.moveBy(now[0] - before[0], now[1] - before[1]);
+      }
+      fingers.set(event.pointerId, now);
+      this.redraw();
+    });
+    for (const kind of ['pointerup', 'pointercancel']) canvas.addEventListener(kind, (event) => fingers.delete(event.pointerId));
+    canvas.addEventListener('pointerleave', () => (this.readout.value = ''));
+    canvas.addEventListener('dblclick', (event) => {
+      this.#camera.zoomBy(2.5, event.offsetX, event.offsetY);
+      this.redraw();
+    });
+  }
+
+  #tell(pixelX, pixelY) {
+    const [x, y] = this.#camera.toPlane(pixelX, pixelY);
+    this.readout.value = `x ${mm(x + this.origin[0])}   y ${mm(y + this.origin[1])} mm`;
+  }
+
+  zoomBy(factor) {
+    this.#camera.zoomBy(factor);
+    this.redraw();
+  }
+
+  moveBy(x, y) {
+    this.#camera.moveBy(x, y);
+    this.redraw();
+  }
+
+  fit() {
+    this.#camera.fit();
+    this.redraw();
+  }
+
+  /** Shows the surroundings of a place, mm of the part's coordinates. */
+  lookAt(x, y) {
+    const { fitScale } = this.#camera;
+    this.#camera.x = x - this.origin[0];
+    this.#camera.y = y - this.origin[1];
+    this.#camera.scale = Math.max(this.#camera.scale, 4 * fitScale);
+    this.#camera.fitted = false;
+    this.redraw();
+  }
+
+  /** In the next frame. */
+  redraw() {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    this.#asked = false;
+    const { canvas } = this;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (this.#layer === null || width === 0) return;
+    this.#camera.resize(width, height);
+    const density = window.devicePixelRatio || 1;
+    const [pixelsX, pixelsY] = [Math.round(width * density), Math.round(height * density)];
+    if (canvas.width !== pixelsX || canvas.height !== pixelsY) [canvas.width, canvas.height] = [pixelsX, pixelsY];
+    const ctx = canvas.getContext('2d');
+    ctx.setTransform(density, 0, 0, density, 0, 0);
+    const { state } = this.#store;
+    const { table, notes } = this.#page;
+    const z = table.z[this.#shown];
+    const half = (table.top[this.#shown] - table.bottom[this.#shown]) / 2;
+    drawLayer(ctx, this.#camera, this.#layer, {
+      ...state,
+      origin: this.origin,
+      colours: state.theme,
+      partColours: state.theme.fills,
+      marks: marksAt(notes.places, z, half, this.origin),
+    });
+    this.#drawScale();
+    if (canvas.dataset.layer === undefined) performance.mark('first picture');
+    canvas.dataset.layer = this.#shown;
+  }
+
+  #drawScale() {
+    const length = roundStep(70 / this.#camera.scale);
+    this.scale.lastChild.style.width = `${length * this.#camera.scale}px`;
+    this.scaleText.textContent = `${mm(length)} mm`;
+  }
+}

@@ -1,0 +1,115 @@
+import { element } from './element.js';
+import { LayerShelf } from './data/page.js';
+import { faultText, faultsOf, firstFault, verdict } from './findings.js';
+import { LayerView } from './layer/layer_view.js';
+import { layerPanels, middleOf } from './panels/panels.js';
+import { StackView } from './stack/stack_view.js';
+import { Player } from './player.js';
+import { Timeline } from './timeline/timeline.js';
+import { brief, count, mm } from './text.js';
+import { switchTheme } from './theme.js';
+
+/** The middle layer, or the worst one where there are faults: something to see at once. */
+const firstLayer = (table) => firstFault(table) ?? Math.floor(table.z.length / 2);
+
+/** Tells screen readers where one is, once the layer stays. */
+function announce(page, store) {
+  const live = document.getElementById('live');
+  let waiting = 0;
+  let first = true;
+  store.on(['layer'], ({ layer }) => {
+    if (first) return void (first = false);
+    clearTimeout(waiting);
+    waiting = setTimeout(() => {
+      const { table } = page;
+      live.textContent =
+        `Layer ${layer + 1} of ${count(page.head.layers)}, z ${mm(table.z[layer])} millimetres, ` +
+        `${count(table.contours[layer])} contours, ${brief(table.area_mm2[layer])} square millimetres, ` +
+        (faultText(table, layer) || 'no faults');
+    }, 400);
+  });
+}
+
+/** Buttons for the layer, the stack, or both side by side. */
+function switchViews(store, layerView, stackView) {
+  const names = { layer: 'Layer', stack: 'Stack', both: 'Both' };
+  const group = document.getElementById('views');
+  const buttons = Object.entries(names).map(([view, name]) =>
+    element('button', { type: 'button', onclick: () => store.set({ view }) }, name),
+  );
+  group.append(...buttons);
+  group.hidden = false;
+  store.on(['view'], ({ view }) => {
+    Object.keys(names).forEach((name, i) => buttons[i].setAttribute('aria-pressed', name === view));
+    layerView.node.hidden = view === 'stack';
+    stackView.node.hidden = view === 'layer';
+  });
+}
+
+function keyTable(page, store, player, layerView, stackView, help) {
+  const faulty = page.table.z.flatMap((_, i) => (faultsOf(page.table, i) > 0 ? [i] : []));
+  const nextFault = () => faulty.find((i) => i > store.state.layer) ?? faulty[0];
+  const lastFault = () => faulty.findLast((i) => i < store.state.layer) ?? faulty.at(-1);
+  const goTo = (layer) => layer !== undefined && player.go(layer);
+  /** Keys are for the drawing that has the focus, or the only one there is. */
+  const inStack = () => store.state.view === 'stack' || stackView.node.contains(document.activeElement);
+  const zoom = (factor) => (inStack() ? stackView : layerView).zoomBy(factor);
+  const move = (x, y) => (inStack() ? stackView.turnBy(-0.2 * x, 0.2 * y) : layerView.moveBy(-60 * x, 60 * y));
+  return [
+    { keys: ['ArrowRight', 'ArrowUp'], label: '→ ↑', help: 'layer above', act: () => player.step(1) },
+    { keys: ['ArrowLeft', 'ArrowDown'], label: '← ↓', help: 'layer below', act: () => player.step(-1) },
+    { keys: ['PageUp'], label: 'Page up', help: 'ten layers up', act: () => player.step(10) },
+    { keys: ['PageDown'], label: 'Page down', help: 'ten layers down', act: () => player.step(-10) },
+    { keys: ['Home'], label: 'Home', help: 'first layer', act: () => player.go(0) },
+    { keys: ['End'], label: 'End', help: 'last layer', act: () => player.go(page.head.layers - 1) },
+    { keys: [' '], label: 'Space', help: 'play and pause', act: () => player.toggle() },
+    { keys: ['n'], label: 'N', help: 'next layer with a fault', act: () => goTo(nextFault()) },
+    { keys: ['p'], label: 'P', help: 'layer with a fault before', act: () => goTo(lastFault()) },
+    { keys: ['+', '='], label: '+', help: 'zoom in', act: () => zoom(1.5) },
+    { keys: ['-'], label: '−', help: 'zoom out', act: () => zoom(1 / 1.5) },
+    { keys: ['0'], label: '0', help: 'show all', act: () => (inStack() ? stackView : layerView).fit() },
+    { keys: ['Shift+ArrowLeft'], label: 'Shift + arrows', help: 'move the layer, turn the stack', act: () => move(-1, 0) },
+    { keys: ['Shift+ArrowRight'], act: () => move(1, 0) },
+    { keys: ['Shift+ArrowUp'], act: () => move(0, 1) },
+    { keys: ['Shift+ArrowDown'], act: () => move(0, -1) },
+    { keys: ['d'], label: 'D', help: 'directions of contours', act: () => store.set({ directions: !store.state.directions }) },
+    { keys: ['f'], label: 'F', help: 'fill', act: () => store.set({ fill: !store.state.fill }) },
+    { keys: ['1', '2', '3'], label: '1 2 3', help: 'the layer, the stack, or both', act: ({ key }) => store.set({ view: ['layer', 'stack', 'both'][key - 1] }) },
+    { keys: ['t'], label: 'T', help: 'dark or light', act: () => switchTheme(store) },
+    { keys: ['?'], label: '?', help: 'this list', act: () => help().showModal() },
+  ];
+}
+
+/** Builds the page of a stack of layers. Returns its table of keys. */
+export function buildLayerPage(page, store, main, help) {
+  if (page.head.layers === 0) {
+    main.append(element('p', { className: 'trouble' }, 'There are no layers in this file.'));
+    return [];
+  }
+  store.set({ layer: firstLayer(page.table) });
+  const shelf = new LayerShelf(page);
+  const player = new Player(store, page.head.layers);
+  const layerView = new LayerView(page, shelf, store);
+  const timeline = new Timeline(page, store, player);
+  const show = (place) => {
+    const [x, y, z] = middleOf(place);
+    const near = page.table.z.reduce((best, at, i) => (Math.abs(at - z) < Math.abs(page.table.z[best] - z) ? i : best), 0);
+    player.go(near);
+    layerView.lookAt(x, y);
+    stackView.lookAt([x, y, z]);
+  };
+  const stackView = new StackView(page, shelf, store);
+  const stage = element('div', { className: 'stage' }, layerView.node, stackView.node);
+  switchViews(store, layerView, stackView);
+  main.append(stage, timeline.node, layerPanels(page, store, (layer) => player.go(layer), show));
+  // Neighbours are ready before they are asked for.
+  store.on(['layer'], ({ layer }) => {
+    for (const next of [layer + 1, layer - 1]) if (next >= 0 && next < shelf.count) shelf.layer(next);
+  });
+  announce(page, store);
+  const { tone, text } = verdict(page);
+  const node = document.getElementById('verdict');
+  node.className = `verdict ${tone}`;
+  node.textContent = text;
+  return keyTable(page, store, player, layerView, stackView, help);
+}

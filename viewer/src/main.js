@@ -1,0 +1,60 @@
+import './styles.css';
+import { readPage } from './data/page.js';
+import { element } from './element.js';
+import { listenToKeys } from './keys.js';
+import { buildLayerPage } from './layer_page.js';
+import { buildMeshPage } from './mesh_page.js';
+import { helpDialog } from './panels/help.js';
+import { Store } from './store.js';
+import { firstTheme, followTheme, switchTheme } from './theme.js';
+
+/**
+ * What the page shows at the moment.
+ * @typedef {object} View
+ * @property {number} layer counted from 0
+ * @property {boolean} playing
+ * @property {object} theme the colours in effect
+ * @property {boolean} fill whether the material is filled; likewise contours, directions, hatches
+ * @property {boolean} ghosts whether the layers above are hinted at in the stack
+ * @property {'layer'|'stack'|'both'} view
+ * @property {Set<number>} hidden parts that are not shown
+ * @property {number|null} shell of a mesh: the one that is shown in colours; null for all
+ */
+async function build() {
+  const page = readPage(document);
+  const store = new Store({
+    layer: 0,
+    playing: false,
+    theme: firstTheme(),
+    fill: true,
+    lines: true,
+    directions: true,
+    hatches: true,
+    ghosts: true,
+    view: matchMedia('(min-width: 1100px)').matches ? 'both' : 'layer',
+    hidden: new Set(),
+    shell: null,
+  });
+  followTheme(store);
+  document.title = `${page.head.title} – Lamella`;
+  document.getElementById('title').textContent = page.head.title;
+  document.getElementById('theme').addEventListener('click', () => switchTheme(store));
+  let help;
+  const buildPage = page.head.kind === 'mesh' ? buildMeshPage : buildLayerPage;
+  const keys = await buildPage(page, store, document.getElementById('main'), () => help);
+  help = helpDialog(keys);
+  document.getElementById('help').addEventListener('click', () => help.showModal());
+  listenToKeys(keys);
+}
+
+const main = document.getElementById('main');
+try {
+  if (typeof DecompressionStream === 'undefined')
+    throw new Error('this browser is too old for this page: it takes Chrome 103, Firefox 113, Safari 16.4 or later');
+  await build();
+} catch (error) {
+  main.replaceChildren(element('p', { className: 'trouble', role: 'alert' }, `This page cannot be shown: ${error.message}.`));
+  throw error;
+} finally {
+  main.classList.remove('loading');
+}

@@ -1,0 +1,109 @@
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, Vector3 } from 'three';
+import { element } from '../element.js';
+import { placeMarks } from '../stack/place_marks.js';
+import { Space } from '../stack/space.js';
+
+const vertex = /* glsl */ `
+  attribute vec3 colour;
+  varying vec3 seen;
+  varying vec3 painted;
+
+  void main() {
+    vec4 place = modelViewMatrix * vec4(position, 1.0);
+    seen = place.xyz;
+    painted = colour;
+    gl_Position = projectionMatrix * place;
+  }
+`;
+
+const fragment = /* glsl */ `
+  uniform vec3 inside;
+  varying vec3 seen;
+  varying vec3 painted;
+
+  void main() {
+    vec3 n = normalize(cross(dFdx(seen), dFdy(seen)));
+    float key = max(0.0, dot(n, normalize(vec3(-0.45, 0.65, 0.7))));
+    float side = max(0.0, dot(n, normalize(vec3(0.9, 0.1, 0.35))));
+    vec3 colour = gl_FrontFacing ? painted : inside;
+    gl_FragColor = vec4(colour * (0.34 + 0.58 * key + 0.2 * side), 1.0);
+  }
+`;
+
+/** A mesh in space, each shell in a colour of its own, what is seen from inside in another one. */
+export class MeshView {
+  #space;
+  #mesh;
+  #colours;
+  #origin;
+  #marks;
+  #surface;
+
+  /** @param {import('../data/mesh.js').Mesh} mesh */
+  constructor(page, mesh, store) {
+    this.#mesh = mesh;
+    this.#origin = page.head.box[0];
+    this.#space = new Space(page.head.box, 'The mesh in space. Buttons look at it from several sides.');
+    this.#surface = this.#build();
+    this.#marks = placeMarks(page.notes.places, this.#origin);
+    this.#space.scene.add(this.#surface, this.#marks);
+    this.node = element(
+      'section',
+      { className: 'pane', 'aria-label': 'The mesh in space' },
+      this.#space.canvas,
+      element(
+        'div',
+        { className: 'tools', role: 'toolbar', 'aria-label': 'How the mesh is seen' },
+        ...this.#space.tools,
+        element('span', { className: 'gap' }),
+        ...this.#space.zoomTools,
+      ),
+    );
+    store.on(['theme', 'shell'], (state) => this.#paint(state));
+  }
+
+  /** Triangles share no corners, so that shells that touch keep their colours. */
+  #build() {
+    const { vertices, triangles } = this.#mesh;
+    const positions = new Float32Array(3 * triangles.length);
+    triangles.forEach((corner, i) => positions.set(vertices.subarray(3 * corner, 3 * corner + 3), 3 * i));
+    this.#colours = new BufferAttribute(new Uint8Array(3 * triangles.length), 3, true);
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(positions, 3));
+    geometry.setAttribute('colour', this.#colours);
+    const uniforms = { inside: { value: new Color() } };
+    return new Mesh(geometry, new ShaderMaterial({ vertexShader: vertex, fragmentShader: fragment, side: DoubleSide, uniforms }));
+  }
+
+  /** All shells, or one of them with the others greyed. */
+  #paint({ theme, shell }) {
+    const bytes = (css) => new Color(css).toArray().map((c) => Math.round(255 * c));
+    const walls = theme.walls.map(bytes);
+    const grey = bytes(theme.gridStrong);
+    this.#mesh.shells.forEach((of, t) => {
+      const colour = shell === null || shell === of ? walls[of % walls.length] : grey;
+      for (let k = 0; k < 3; ++k) this.#colours.array.set(colour, 9 * t + 3 * k);
+    });
+    this.#colours.needsUpdate = true;
+    this.#surface.material.uniforms.inside.value.set(theme.wallCut);
+    this.#marks.paint(theme);
+    this.#space.paint(theme);
+  }
+
+  /** @param {number[]} place mm of the part's coordinates @param {number} [reach] mm around it */
+  lookAt(place, reach = this.#space.reach / 6) {
+    this.#space.lookAt(new Vector3(...place.map((value, k) => value - this.#origin[k])), reach);
+  }
+
+  turnBy(sideways, upwards) {
+    this.#space.turnBy(sideways, upwards);
+  }
+
+  zoomBy(factor) {
+    this.#space.zoomBy(factor);
+  }
+
+  fit() {
+    this.#space.look('Aslant');
+  }
+}

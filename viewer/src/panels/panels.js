@@ -1,0 +1,181 @@
+import { element } from '../element.js';
+import { brief, count, counted, mm } from '../text.js';
+import { faultText, findings, remarkableLayers, totals, worstLayers } from '../findings.js';
+
+/** The column beside the drawings: what is known, in words and figures. */
+
+const signs = { good: '✓', warning: '!', bad: '✕', plain: 'i' };
+
+function card(title, ...children) {
+  return element('section', { className: 'card' }, element('h2', {}, title), ...children);
+}
+
+/** A list of names and values. */
+function facts(pairs) {
+  const list = element('dl');
+  for (const [name, value, tone = 'plain'] of pairs)
+    list.append(element('dt', {}, name), element('dd', { className: tone }, value));
+  return list;
+}
+
+function finding({ tone, text, layer }, go) {
+  const sign = element('span', { className: `sign ${tone}`, 'aria-hidden': true }, signs[tone]);
+  const item = element('li', { className: 'finding' }, sign, element('span', {}, text));
+  if (layer !== undefined)
+    item.lastChild.append(' ', element('button', { type: 'button', className: 'link', onclick: () => go(layer) }, `Show layer ${layer + 1}`));
+  return item;
+}
+
+function diagnosisCard(page, go) {
+  return card('Diagnosis', element('ul', { className: 'findings' }, ...findings(page).map((each) => finding(each, go))));
+}
+
+/** The figures of the layer that is shown. */
+function layerCard(page, store) {
+  const { table } = page;
+  const rows = [
+    ['Cut at z', (i) => `${mm(table.z[i])} mm`],
+    ['Thickness', (i) => `${mm(table.top[i] - table.bottom[i])} mm`],
+    ['Area', (i) => `${brief(table.area_mm2[i])} mm²`],
+    ['Perimeter', (i) => `${brief(table.perimeter_mm[i])} mm`],
+    ['Contours', (i) => count(table.contours[i])],
+    ['of them holes', (i) => count(table.holes[i])],
+    ['Points', (i) => count(table.points[i])],
+  ];
+  const list = facts(rows.map(([name]) => [name, '']));
+  const values = list.querySelectorAll('dd');
+  const fault = element('p', { className: 'fault' });
+  const node = card('Layer', list, fault);
+  store.on(['layer'], ({ layer }) => {
+    node.firstChild.textContent = `Layer ${count(layer + 1)}`;
+    rows.forEach(([, tell], k) => (values[k].textContent = tell(layer)));
+    const text = faultText(table, layer);
+    fault.className = `fault ${text === '' ? 'good' : 'bad'}`;
+    fault.textContent = text === '' ? 'No faults in this layer' : text;
+  });
+  return node;
+}
+
+function layerList(title, layers, page, go) {
+  const items = layers.map(({ layer, text, bad }) =>
+    element(
+      'li',
+      {},
+      element(
+        'button',
+        { type: 'button', className: `pick${bad ? ' bad' : ''}`, onclick: () => go(layer) },
+        element('b', {}, count(layer + 1)),
+        element('span', {}, text),
+        element('small', {}, `z ${mm(page.table.z[layer])}`),
+      ),
+    ),
+  );
+  return card(title, element('ol', { className: 'picks' }, ...items));
+}
+
+function partsCard(page, store) {
+  const items = page.head.parts.map(({ label }, part) => {
+    const box = element('input', { type: 'checkbox', checked: true });
+    box.addEventListener('change', () => {
+      const hidden = new Set(store.state.hidden);
+      if (box.checked) hidden.delete(part);
+      else hidden.add(part);
+      store.set({ hidden });
+    });
+    const swatch = element('i', { className: 'swatch', style: `background: var(--wall-${part % 8})`, 'aria-hidden': true });
+    return element('li', {}, element('label', {}, box, swatch, element('span', {}, label)));
+  });
+  return card(`${count(items.length)} parts`, element('ul', { className: 'parts' }, ...items));
+}
+
+/** What the program told beside the data. */
+function noteCards(page) {
+  return page.notes.sections.map(({ title, facts: told }) =>
+    card(title, facts(told.map(({ name, value, tone }) => [name, value, tone]))),
+  );
+}
+
+/**
+ * The places that the program found in the mesh, kind by kind.
+ * @param {(place: object) => void} show
+ */
+function placesCard(page, show) {
+  const kinds = byKind(page.notes.places);
+  const most = 50; // in the list; all of them are drawn
+  const lists = [...kinds].map(([kind, places]) => {
+    const rest = places.length - most;
+    const items = places.slice(0, most).map((place) =>
+      element(
+        'li',
+        {},
+        element('button', { type: 'button', className: 'pick place', onclick: () => show(place) }, element('span', {}, place.text), element('small', {}, at(place))),
+      ),
+    );
+    if (rest > 0) items.push(element('li', { className: 'rest' }, `and ${count(rest)} more`));
+    return element('details', { open: places.length <= 8 }, element('summary', {}, `${kind} (${count(places.length)})`), element('ol', { className: 'picks' }, ...items));
+  });
+  return card('Defects of the mesh', ...lists);
+}
+
+function byKind(places) {
+  const kinds = new Map();
+  for (const place of places) kinds.set(place.kind, [...(kinds.get(place.kind) ?? []), place]);
+  return kinds;
+}
+
+/** The middle of a place's points. */
+export function middleOf({ points }) {
+  return [0, 1, 2].map((k) => points.reduce((total, p) => total + p[k], 0) / points.length);
+}
+
+const at = (place) => `(${middleOf(place).map(brief).join(', ')})`;
+
+/** The shells, each a button. @param {(shell: number|null, box?: number[][]) => void} show */
+function shellsCard({ head }, store, show) {
+  const button = (number, text, box) => {
+    const node = element('button', { type: 'button', className: 'pick', onclick: () => show(number, box) }, ...text);
+    store.on(['shell'], ({ shell }) => node.setAttribute('aria-pressed', shell === number));
+    return element('li', {}, node);
+  };
+  const items = head.shells.map(({ kind, triangles, volume_mm3, box, inside }, number) => {
+    const swatch = element('i', { className: 'swatch', style: `background: var(--wall-${number % 8})`, 'aria-hidden': true });
+    const what = inside === null ? kind : `${kind} in shell ${inside + 1}`;
+    const volume = kind === 'open' ? '' : `, ${brief(volume_mm3)} mm³`;
+    return button(number, [swatch, element('b', {}, count(number + 1)), element('span', {}, `${what}${volume}`), element('small', {}, counted(triangles, 'triangle'))], box);
+  });
+  items.unshift(button(null, [element('span', {}, 'All shells')]));
+  if (head.shell_count > head.shells.length)
+    items.push(element('li', { className: 'rest' }, `and ${count(head.shell_count - head.shells.length)} more`));
+  return card(counted(head.shell_count, 'shell'), element('ol', { className: 'picks' }, ...items));
+}
+
+function surfaceCard({ head }) {
+  const all = head.shown === head.triangles;
+  const text = all
+    ? `All ${count(head.triangles)} triangles are shown, their corners rounded to ${brief(head.step_mm)} mm.`
+    : `${count(head.shown)} of ${count(head.triangles)} triangles are shown: corners moved to the middles of cubes of ${brief(head.step_mm)} mm, and triangles left out that have two of them in one. Figures are of all.`;
+  return card('This picture', element('p', {}, text), element('p', { className: 'soft' }, 'Orange is the inner side of the surface: where it is seen from outside, there is a hole, or triangles face the wrong way.'));
+}
+
+/** Beside a mesh. @param {{place: (place: object) => void, shell: (shell: number|null, box?: number[][]) => void}} show */
+export function meshPanels(page, store, show) {
+  const [mesh, ...others] = noteCards(page);
+  const cards = [mesh];
+  if (page.notes.places.length > 0) cards.push(placesCard(page, show.place));
+  cards.push(shellsCard(page, store, show.shell), ...others, surfaceCard(page));
+  return element('aside', { className: 'panels', 'aria-label': 'Figures and findings' }, ...cards);
+}
+
+/** Beside layers. @param {(layer: number) => void} go @param {(place: object) => void} show */
+export function layerPanels(page, store, go, show) {
+  const worst = worstLayers(page.table);
+  const remarkable = remarkableLayers(page.table);
+  const cards = [layerCard(page, store), diagnosisCard(page, go)];
+  if (worst.length > 0) cards.push(layerList('Worst layers', worst, page, go));
+  if (page.notes.places.length > 0) cards.push(placesCard(page, show));
+  if (page.head.parts.length > 1) cards.push(partsCard(page, store));
+  cards.push(card('Stack', facts(totals(page))));
+  if (remarkable.length > 0) cards.push(layerList('Layers that stand out', remarkable, page, go));
+  cards.push(...noteCards(page));
+  return element('aside', { className: 'panels', 'aria-label': 'Figures and findings' }, ...cards);
+}

@@ -1,0 +1,21 @@
+/** Numbers and counts as a person reads them. */
+
+const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
+
+/** 1,234,567 */
+export const count = (n) => whole.format(n);
+
+/** "1 layer", "3 layers" */
+export const counted = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
+
+/** Four digits that matter, more before the point: 0.05, 12.35, 1,234.5, 123,457 */
+export function brief(value) {
+  if (value === 0 || !Number.isFinite(value)) return String(value);
+  const digits = Math.min(6, Math.max(0, 3 - Math.floor(Math.log10(Math.abs(value)))));
+  return new Intl.NumberFormat('en', { maximumFractionDigits: digits }).format(value);
+}
+
+/** Heights and coordinates, to a thousandth. */
+export const mm = (value) => new Intl.NumberFormat('en', { maximumFractionDigits: 3 }).format(value);
+
+export const size = (box) => box[0].map((low, k) => brief(box[1][k] - low)).join(' × ');

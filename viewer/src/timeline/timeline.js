@@ -1,0 +1,145 @@
+import { element } from '../element.js';
+import { brief, count, mm } from '../text.js';
+import { LayerAxis, drawPlot, drawTicks } from './plot.js';
+
+const rows = [
+  { column: 'area_mm2', name: 'Area', unit: 'mm²', tell: brief },
+  { column: 'perimeter_mm', name: 'Perimeter', unit: 'mm', tell: brief },
+  { column: 'contours', name: 'Contours', unit: '', tell: count },
+  { column: 'points', name: 'Points', unit: '', tell: count },
+  { column: 'open_chains', name: 'Open', unit: '', tell: count, fault: true },
+];
+
+/** The slider over all layers, and under it what they measure, on the same axis. */
+export class Timeline {
+  #page;
+  #store;
+  #player;
+
+  constructor(page, store, player) {
+    this.#page = page;
+    this.#store = store;
+    this.#player = player;
+    this.slider = element('input', {
+      type: 'range',
+      id: 'layer',
+      min: 0,
+      max: Math.max(0, page.head.layers - 1),
+      step: 1,
+      'aria-label': 'Layer',
+    });
+    this.slider.addEventListener('input', () => player.go(Number(this.slider.value)));
+    this.number = element('input', {
+      type: 'number',
+      className: 'number',
+      min: 1,
+      max: page.head.layers,
+      'aria-label': 'Number of the layer',
+    });
+    this.number.addEventListener('change', () => {
+      const wanted = Math.round(Number(this.number.value)) - 1;
+      if (Number.isFinite(wanted)) player.go(wanted);
+      this.number.value = store.state.layer + 1;
+    });
+    this.height = element('span', { className: 'height' });
+    this.cursor = element('i', { className: 'cursor', 'aria-hidden': true });
+    this.plots = rows.map((row) => this.#plot(row));
+    this.node = element(
+      'section',
+      { className: 'timeline', 'aria-label': 'Layers' },
+      element(
+        'div',
+        { className: 'transport' },
+        this.#button('First layer (Home)', '⏮', () => player.go(0)),
+        this.#button('Layer below (←)', '◀', () => player.step(-1)),
+        this.#playButton(),
+        this.#button('Layer above (→)', '▶', () => player.step(1), 'next'),
+        this.#button('Last layer (End)', '⏭', () => player.go(page.head.layers - 1)),
+        this.number,
+        element('span', { className: 'of' }, `of ${count(page.head.layers)}`),
+        this.height,
+      ),
+      element('div', { className: 'track' }, this.slider),
+      element('div', { className: 'plots' }, ...this.plots.map((plot) => plot.node), this.cursor),
+    );
+    new ResizeObserver(() => this.#draw()).observe(this.plots[0].canvas);
+    store.on(['layer'], (state) => this.#follow(state.layer));
+    store.on(['theme'], () => this.#draw());
+  }
+
+  #button(label, sign, act, className = '') {
+    return element('button', { type: 'button', className: `icon ${className}`, title: label, 'aria-label': label, onclick: act }, sign);
+  }
+
+  #playButton() {
+    const button = this.#button('Play (space)', '', () => this.#player.toggle(), 'play');
+    this.#store.on(['playing'], ({ playing }) => {
+      button.textContent = playing ? 'Pause' : 'Play';
+      button.setAttribute('aria-label', playing ? 'Pause' : 'Play');
+    });
+    return button;
+  }
+
+  #plot(row) {
+    const values = this.#page.table[row.column];
+    const value = element('span', { className: 'value' });
+    const low = values.length > 0 ? Math.min(...values) : 0;
+    const high = values.length > 0 ? Math.max(...values) : 0;
+    const text = `${row.name} of the layers, from ${row.tell(low)} to ${row.tell(high)} ${row.unit}`;
+    const canvas = element('canvas', { className: 'plot', role: 'img', 'aria-label': text });
+    const go = (event) => {
+      const axis = new LayerAxis(this.#page.head.layers, canvas.clientWidth);
+      this.#player.go(axis.layerAt(event.offsetX));
+    };
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      go(event);
+    });
+    canvas.addEventListener('pointermove', (event) => {
+      if (event.buttons > 0) go(event);
+    });
+    const quiet = row.fault && high === 0;
+    const node = element(
+      'div',
+      { className: `row${row.fault ? ' fault' : ''}${quiet ? ' quiet' : ''}` },
+      element('span', { className: 'name' }, row.name),
+      value,
+      canvas,
+    );
+    return { ...row, values, canvas, value, node };
+  }
+
+  #follow(layer) {
+    const { table, head } = this.#page;
+    this.slider.value = layer;
+    const faults = table.open_chains[layer] > 0 ? `, ${count(table.open_chains[layer])} open contours` : '';
+    this.slider.setAttribute('aria-valuetext', `${layer + 1} of ${head.layers}, z = ${mm(table.z[layer])} mm${faults}`);
+    if (document.activeElement !== this.number) this.number.value = layer + 1;
+    this.height.textContent = `z = ${mm(table.z[layer])} mm`;
+    for (const plot of this.plots) plot.value.textContent = `${plot.tell(plot.values[layer])} ${plot.unit}`;
+    this.#place();
+  }
+
+  #place() {
+    const { canvas } = this.plots[0];
+    const axis = new LayerAxis(this.#page.head.layers, canvas.clientWidth);
+    this.cursor.style.transform = `translateX(${canvas.offsetLeft + axis.at(this.#store.state.layer)}px)`;
+  }
+
+  #draw() {
+    const { theme } = this.#store.state;
+    const density = window.devicePixelRatio || 1;
+    for (const { canvas, values, fault } of this.plots) {
+      const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+      if (width === 0 || values.length === 0) continue;
+      canvas.width = Math.round(width * density);
+      canvas.height = Math.round(height * density);
+      const ctx = canvas.getContext('2d');
+      ctx.setTransform(density, 0, 0, density, 0, 0);
+      const axis = new LayerAxis(values.length, width);
+      if (fault) drawTicks(ctx, values, axis, height, theme.fault);
+      else drawPlot(ctx, values, axis, height, { line: theme.plot, fill: theme.plotFill });
+    }
+    this.#place();
+  }
+}

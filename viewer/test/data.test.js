@@ -1,0 +1,94 @@
+import assert from 'node:assert/strict';
+import { deflateRawSync } from 'node:zlib';
+import { test } from 'node:test';
+import { NumberReader } from '../src/data/number_reader.js';
+import { readLayer } from '../src/data/layer.js';
+import { readMesh } from '../src/data/mesh.js';
+import { LayerShelf } from '../src/data/page.js';
+import { unpack } from '../src/data/unpack.js';
+
+/** Writes what NumberReader reads, in big integers: another way to the same bytes. */
+function numbers(...values) {
+  const bytes = [];
+  for (const value of values) {
+    let rest = BigInt(value);
+    for (; rest >= 128n; rest >>= 7n) bytes.push(Number(rest & 127n) | 128);
+    bytes.push(Number(rest));
+  }
+  return new Uint8Array(bytes);
+}
+const signed = (value) => (value >= 0 ? 2n * BigInt(value) : -2n * BigInt(value) - 1n);
+
+test('numbers of any size and sign are read back', () => {
+  const values = [0, 1, 63, 64, 127, 128, 300, 16383, 16384, 2 ** 21, 2 ** 30, 2 ** 31, 2 ** 32 + 5, 2 ** 50];
+  const reader = new NumberReader(numbers(...values));
+  for (const value of values) assert.equal(reader.next(), value);
+  assert.ok(reader.atEnd);
+  const both = values.flatMap((value) => [value, -value]).filter((value) => Math.abs(value) < 2 ** 51);
+  const signs = new NumberReader(numbers(...both.map(signed)));
+  for (const value of both) assert.equal(signs.nextSigned() + 0, value + 0);
+});
+
+test('data that end too early are an error', () => {
+  assert.throws(() => new NumberReader(new Uint8Array([0x80, 0x80, 0x80])).next(), /too early/);
+});
+
+test('bytes are unpacked', async () => {
+  const bytes = Uint8Array.from({ length: 5000 }, (_, i) => (i * i) % 251);
+  const text = deflateRawSync(bytes).toString('base64');
+  assert.deepEqual(await unpack(text), bytes);
+});
+
+/** Two rings, one inside the other, and a chain; a hatch line; a crossing. Steps of half a millimetre. */
+const layerBytes = numbers(
+  2, 1, 1,
+  4, ...[0, 0, 20, 0, 0, 20, -20, 0].map(signed),
+  3, ...[4, 4, 0, 6, 6, -6].map(signed),
+  2, ...[26, 0, 2, 4].map(signed),
+  ...[2, 2, 6, 0].map(signed),
+  1, ...[8, 10].map(signed),
+);
+
+test('a layer is read: contours, hatches, crossings', () => {
+  const layer = readLayer(layerBytes, 1, 0.5);
+  const [part] = layer.parts;
+  assert.equal(part.rings, 2);
+  assert.deepEqual([...part.ends], [4, 7, 9]);
+  assert.deepEqual([...part.points], [0, 0, 10, 0, 10, 10, 0, 10, 2, 2, 2, 5, 5, 2, 15, 2, 16, 4]);
+  assert.deepEqual([...part.areas.slice(0, 2)], [100, -4.5]);
+  assert.deepEqual([...part.boxes.slice(0, 8)], [0, 0, 10, 10, 2, 2, 5, 5]);
+  assert.deepEqual([...part.hatches], [1, 1, 4, 1]);
+  assert.deepEqual([...layer.crossings], [4, 5]);
+});
+
+test('data of another number of parts are an error', () => {
+  assert.throws(() => readLayer(layerBytes, 2, 0.5));
+  assert.throws(() => readLayer(numbers(0, 0, 0, 0, 7), 1, 0.5), /go on/);
+});
+
+test('a mesh is read', () => {
+  const bytes = numbers(3, 2, ...[0, 0, 0, 4, 0, 0, -4, 2, 6].map(signed), ...[0, 0, 1, 1, 1, -2, 2, -1].map(signed));
+  const mesh = readMesh(bytes, 2);
+  assert.deepEqual([...mesh.vertices], [1, 1, 1, 9, 1, 1, 1, 5, 13]);
+  assert.deepEqual([...mesh.triangles], [0, 1, 2, 0, 2, 1]);
+  assert.deepEqual([...mesh.shells], [0, 1]);
+});
+
+test('the shelf decodes a layer once, and lets go of old ones', async () => {
+  const text = deflateRawSync(layerBytes).toString('base64');
+  let read = 0;
+  const data = Array.from({ length: 5 }, () => ({
+    get textContent() {
+      ++read;
+      return text;
+    },
+  }));
+  const page = { head: { layers: 5, parts: [{}], step_mm: 0.5 }, table: { shown: [9, 9, 9, 9, 4e6] }, data };
+  const shelf = new LayerShelf(page);
+  assert.equal(await shelf.layer(0), await shelf.layer(0));
+  await shelf.layer(1);
+  assert.equal(read, 2);
+  await shelf.layer(4); // too much for the shelf together with the others
+  await shelf.layer(0);
+  assert.equal(read, 4);
+});

@@ -1,0 +1,129 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { findings, firstFault, remarkableLayers, verdict, worstLayers } from '../src/findings.js';
+import { Camera } from '../src/layer/camera.js';
+import { roundStep } from '../src/layer/round_step.js';
+import { Walls, spacingFor } from '../src/stack/walls.js';
+import { Store } from '../src/store.js';
+import { LayerAxis, columnsOf } from '../src/timeline/plot.js';
+import { brief, counted } from '../src/text.js';
+
+test('a camera fits, zooms about a pixel and moves', () => {
+  const camera = new Camera();
+  camera.resize(800, 400);
+  camera.frame([-10, 5, 30, 25]);
+  assert.ok(camera.toPixelX(-10) >= 0 && camera.toPixelX(30) <= 800);
+  assert.ok(camera.toPixelY(25) >= 0 && camera.toPixelY(5) <= 400);
+  const place = camera.toPlane(100, 70);
+  camera.zoomBy(7, 100, 70);
+  assert.ok(Math.abs(camera.toPlane(100, 70)[0] - place[0]) < 1e-9);
+  assert.ok(Math.abs(camera.toPlane(100, 70)[1] - place[1]) < 1e-9);
+  assert.ok(Math.abs(camera.zoom - 7) < 1e-9);
+  camera.moveBy(13, -4);
+  assert.ok(Math.abs(camera.toPlane(113, 66)[0] - place[0]) < 1e-9);
+  camera.fit();
+  assert.equal(camera.zoom, 1);
+  assert.ok(camera.sees([0, 10, 1, 11], 0));
+  assert.ok(!camera.sees([500, 10, 501, 11], 0));
+});
+
+test('steps are round', () => {
+  assert.deepEqual([0.3, 1, 1.01, 2.2, 7].map(roundStep), [0.5, 1, 2, 5, 10]);
+});
+
+test('an axis maps layers to pixels and back, and a plot loses no peak', () => {
+  const axis = new LayerAxis(1000, 300);
+  for (const layer of [0, 1, 499, 998, 999]) assert.ok(Math.abs(axis.layerAt(axis.at(layer)) - layer) <= 2);
+  assert.equal(axis.layerAt(-50), 0);
+  assert.equal(axis.layerAt(5000), 999);
+  const values = Array.from({ length: 1000 }, (_, i) => (i === 617 ? 99 : 1));
+  const columns = columnsOf(values, axis);
+  assert.ok(columns.length <= 300);
+  assert.equal(Math.max(...columns.map((column) => column.high)), 99);
+  assert.equal(Math.min(...columns.map((column) => column.low)), 1);
+});
+
+const columns = ['area_mm2', 'contours', 'points', 'shown', 'open_chains', 'crossings', 'misoriented', 'overlapping', 'tolerance_mm', 'hatches'];
+function pageOf(layers, notes = { sections: [], places: [] }) {
+  const table = { z: [], bottom: [], top: [] };
+  for (const column of columns) table[column] = layers.map((layer) => layer[column] ?? (column === 'contours' ? 1 : 0));
+  layers.forEach((_, i) => {
+    table.bottom.push(i);
+    table.z.push(i + 0.5);
+    table.top.push(i + 1);
+  });
+  return { head: { step_mm: 0.001, layers: layers.length }, table, notes };
+}
+
+test('faults are told, the worst layers first', () => {
+  const page = pageOf([{}, { open_chains: 2 }, { crossings: 5, open_chains: 1 }, { misoriented: 1 }, {}]);
+  const told = findings(page);
+  assert.deepEqual(told.slice(0, 3).map(({ tone, layer }) => [tone, layer]), [['bad', 1], ['bad', 2], ['bad', 3]]);
+  assert.match(told[0].text, /^3 open contours in 2 layers, the lowest at z = 1\.5 mm/);
+  assert.deepEqual(worstLayers(page.table).map(({ layer }) => layer), [2, 1, 3]);
+  assert.equal(verdict(page).text, '3 layers with faults');
+  assert.equal(firstFault(page.table), 2);
+});
+
+test('a sound stack is called sound, and thinning is said', () => {
+  const page = pageOf([{ points: 100, shown: 100 }, { points: 100, shown: 20, tolerance_mm: 0.04 }]);
+  assert.equal(verdict(page).tone, 'good');
+  const told = findings(page);
+  assert.equal(told[0].tone, 'good');
+  assert.match(told.at(-1).text, /1 layer of 2 is drawn with fewer points, up to 0\.04 mm off \(120 of 200 points in all\)/);
+  assert.equal(firstFault(page.table), null);
+  const flawed = pageOf([{}], { sections: [], places: [{ kind: 'boundary loop' }] });
+  assert.equal(verdict(flawed).tone, 'warning');
+});
+
+test('only what differs stands out', () => {
+  assert.deepEqual(remarkableLayers(pageOf([{ area_mm2: 5 }, { area_mm2: 5 }, { area_mm2: 5 }]).table), []);
+  const told = remarkableLayers(pageOf([{ area_mm2: 5 }, { area_mm2: 9 }, { area_mm2: 8 }]).table);
+  assert.deepEqual(told.map(({ layer }) => layer), [1, 1]);
+});
+
+/** A square of 10 mm with one open chain beside it. */
+function squareLayer() {
+  const points = new Float32Array([0, 0, 10, 0, 10, 10, 0, 10, 20, 0, 21, 0]);
+  return { parts: [{ points, ends: new Uint32Array([4, 6]), rings: 1 }] };
+}
+
+test('walls stand on every line, with normals that point out of the material', () => {
+  const walls = new Walls();
+  walls.add(squareLayer(), { number: 3, bottom: 1, top: 2 }, 0);
+  assert.equal(walls.size, 5);
+  assert.deepEqual(walls.counts, [5]);
+  assert.deepEqual(walls.ends.slice(0, 4), [0, 0, 10, 0]);
+  assert.deepEqual(walls.normals.slice(0, 4), [0, -127, 0, -127].map((n) => n + 0));
+  assert.deepEqual(walls.heights.slice(0, 2), [1, 2]);
+  assert.deepEqual(walls.info, [3, 0, 3, 0, 3, 0, 3, 0, 3, 0.5]);
+});
+
+test('points are left out by their distance until enough are', () => {
+  const n = 1000;
+  const points = new Float32Array(2 * n);
+  for (let i = 0; i < n; ++i) points.set([10 * Math.cos((2 * Math.PI * i) / n), 10 * Math.sin((2 * Math.PI * i) / n)], 2 * i);
+  const layer = { parts: [{ points, ends: new Uint32Array([n]), rings: 1 }] };
+  assert.equal(spacingFor(layer, 1000, 0.01), 0);
+  const apart = spacingFor(layer, 100, 0.01);
+  assert.ok(apart > 0.3 && apart < 1.5, `${apart}`);
+  const walls = new Walls();
+  walls.add(layer, { number: 0, bottom: 0, top: 1 }, apart);
+  assert.ok(walls.size <= 100 && walls.size > 30);
+});
+
+test('a store tells those who listen, and of changes only', () => {
+  const store = new Store({ a: 1, b: 2 });
+  const heard = [];
+  store.on(['a'], ({ a }) => heard.push(a));
+  store.set({ b: 3 });
+  store.set({ a: 1 });
+  store.set({ a: 5, b: 4 });
+  assert.deepEqual(heard, [1, 5]);
+});
+
+test('numbers read well', () => {
+  assert.deepEqual([0, 0.05, 12.3456, 1234.56, 123456.7, 1e-5].map(brief), ['0', '0.05', '12.35', '1,235', '123,457', '0.00001']);
+  assert.equal(counted(1, 'layer'), '1 layer');
+  assert.equal(counted(1200, 'layer'), '1,200 layers');
+});
