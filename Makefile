@@ -40,7 +40,7 @@ test-all: test-large test-asan test-tsan test-fuzz test-shared  ## the long suit
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
-	@tools/install_packages.sh tools/packages-all.txt
+	@tools/install_packages.sh tools/packages-all.txt tools/packages-docs.txt
 
 test-large: packages-all
 	cmake --preset release -D LAMELLA_LARGE_TESTS=ON
@@ -110,6 +110,11 @@ python-bench: build packages-rivals  ## compare with other ways to slice in Pyth
 
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
+
+# Debian's packages belong to Debian's interpreter, whichever comes first in the path.
+docs: build  ## build the documentation site: out/site/
+	@tools/install_packages.sh tools/packages-docs.txt
+	/usr/bin/python3 -B tools/site/build_site.py build out/site
 
 format:  ## lay out the sources by .clang-format
 	@tools/install_packages.sh tools/packages-lint.txt

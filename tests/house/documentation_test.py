@@ -1,11 +1,13 @@
-"""What the documentation shows is what runs: the sample in C++, the command lines of README.md, every link.
+"""What the documentation shows is what runs: samples, command lines, pictures, every link.
 
-usage: documentation_test.py PROGRAM EXAMPLE [unittest arguments], the built lamella and lamella_example_slice_part
+usage: documentation_test.py PROGRAM EXAMPLES [unittest arguments], the built lamella and the folder of the built examples
+
+In README.md and the pages of docs/, blocks marked `sh` are commands that a reader may type, one after the other in one folder;
+blocks marked `cpp` are files of examples/. Blocks without a mark show what is printed.
 """
 
 import os
 import re
-import shlex
 import subprocess
 import sys
 import tempfile
@@ -13,7 +15,14 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PROGRAM, EXAMPLE = (os.path.abspath(path) for path in sys.argv[1:3])
+PROGRAM, EXAMPLES = (Path(path).resolve() for path in sys.argv[1:3])
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
+
+PICTURES = {
+    "tutorial_layer.svg": "lamella make rook && lamella slice rook.stl -o layers --format svg-layers --layers 485:486",
+    "tutorial_torn.svg": "lamella make sphere --ascii --detail 3 -o ball.stl && sed 702,708d ball.stl > torn.stl && "
+                         "lamella info torn.stl --picture torn.svg",
+}
 
 
 def code_blocks(text, language):
@@ -25,12 +34,12 @@ class Documentation(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
-        self.readme = (ROOT / "README.md").read_text(encoding="utf-8")
         self.example = (ROOT / "examples/slice_part.cpp").read_text(encoding="utf-8")
 
     def run_here(self, *command):
         result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=False)
-        self.assertEqual(result.returncode, 0, f"{shlex.join(command)}\n{result.stdout}{result.stderr}")
+        self.assertEqual(result.returncode, 0, f"{command}\n{result.stdout}{result.stderr}")
+        return result.stdout
 
     def has_viewer(self):
         """Programs may be built without it; tests/app/view_test.py holds them to saying so."""
@@ -38,8 +47,19 @@ class Documentation(unittest.TestCase):
         result = subprocess.run([PROGRAM, "view", "any.stl"], cwd=self.folder, capture_output=True, text=True, check=False)
         return "no viewer" not in result.stderr
 
-    def test_the_readme_shows_the_example(self):
-        self.assertEqual(code_blocks(self.readme, "cpp"), [self.example])
+    def run_script(self, script, folder):
+        environment = {**os.environ, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}"}
+        result = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment, text=True,
+                                capture_output=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
+    def test_samples_are_the_examples(self):
+        examples = [path.read_text(encoding="utf-8") for path in ROOT.glob("examples/*.cpp")]
+        shown = [block for page in PAGES for block in code_blocks(page.read_text(encoding="utf-8"), "cpp")]
+        for block in shown:
+            self.assertIn(block, examples)
+        for example in examples:
+            self.assertIn(example, shown)
 
     def test_the_door_shows_the_example(self):
         door = (ROOT / "include/lamella/lamella.hpp").read_text(encoding="utf-8")
@@ -49,16 +69,34 @@ class Documentation(unittest.TestCase):
 
     def test_the_example_slices_a_part(self):
         self.run_here(PROGRAM, "make", "rook", "-o", "part.stl")
-        self.run_here(EXAMPLE)
+        self.run_here(EXAMPLES / "lamella_example_slice_part")
         self.run_here(PROGRAM, "verify", "part.cli", "--mesh", "part.stl")
 
-    def test_the_command_lines_of_the_readme_work(self):
-        lines = [line for block in code_blocks(self.readme, "sh") for line in block.splitlines()]
-        commands = [shlex.split(line, comments=True) for line in lines if line.startswith("lamella ")]
-        self.assertGreater(len(commands), 2)
-        for command in commands:
-            if command[1] != "view" or self.has_viewer():
-                self.run_here(PROGRAM, *command[1:])
+    def test_the_example_streams_layers(self):
+        printed = self.run_here(EXAMPLES / "lamella_example_stream_layers")
+        self.assertEqual(len(printed.splitlines()), 20)
+        self.assertIn(" 0.25 mm   47.531 mm2\n", printed)
+
+    def test_the_commands_of_all_pages_work(self):
+        tried = 0
+        has_viewer = self.has_viewer()
+        for page in PAGES:
+            script = "".join(code_blocks(page.read_text(encoding="utf-8"), "sh"))
+            if not has_viewer:
+                script = "".join(line for line in script.splitlines(keepends=True) if not line.startswith("lamella view"))
+            if not script:
+                continue
+            tried += 1
+            with self.subTest(page=page.relative_to(ROOT)), tempfile.TemporaryDirectory() as folder:
+                self.run_script(script, folder)
+        self.assertGreater(tried, 3)
+
+    def test_pictures_of_the_tutorial_are_what_its_commands_draw(self):
+        for name, script in PICTURES.items():
+            with self.subTest(picture=name), tempfile.TemporaryDirectory() as folder:
+                self.run_script(script, folder)
+                drawn = next(Path(folder).glob("**/*.svg")).read_text(encoding="utf-8")
+                self.assertEqual((ROOT / "docs/images" / name).read_text(encoding="utf-8"), drawn)
 
     def test_relative_links_lead_to_files(self):
         pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("bench/*.md")]

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Builds the documentation site from docs/, the public headers and the docstrings of the Python module.
+
+usage: tools/site/build_site.py BUILD_FOLDER SITE_FOLDER
+
+BUILD_FOLDER is where Lamella was built; of its Python module, python/ in there, the reference is made. The pages go through
+MkDocs, which complains of every link that leads nowhere.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import cpp_reference
+import python_reference
+
+ROOT = Path(__file__).resolve().parents[2]
+# Pages that live elsewhere in the tree, and what they are called in the site.
+ADOPTED = {"bench/README.md": "benchmarks.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+LINK = re.compile(r"(\]\()([^)#\s]+)((?:#[^)]*)?\))")
+
+
+def main(build, site):
+    with tempfile.TemporaryDirectory() as folder:
+        pages = Path(folder, "docs")
+        shutil.copytree(ROOT / "docs", pages)
+        for source, name in ADOPTED.items():
+            (pages / name).write_text(relinked(ROOT / source), encoding="utf-8")
+        for page in (ROOT / "docs").glob("**/*.md"):
+            (pages / page.relative_to(ROOT / "docs")).write_text(relinked(page), encoding="utf-8")
+        cpp_reference.write_pages(ROOT / "include/lamella", pages / "reference/cpp")
+        python_reference.write_page(build / "python", pages / "reference/python.md")
+        configuration = Path(folder, "mkdocs.yml")
+        shutil.copy(ROOT / "tools/site/mkdocs.yml", configuration)
+        subprocess.run([sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--config-file", configuration,
+                        "--site-dir", site], check=True)
+    print(f"The site is in {site}; open {site / 'index.html'}")
+
+
+def relinked(page):
+    """The text of a page with its links leading to where their targets are in the site; links to what the site does not
+    have, such as sources, become plain words."""
+    place = site_place(page)
+
+    def follow(match):
+        target = match[2]
+        if "://" in target:
+            return match[0]
+        found = site_place((page.parent / target).resolve())
+        return match[1] + relative(found, place.parent) + match[3] if found else match[1] + "#" + ")"
+
+    text = LINK.sub(follow, page.read_text(encoding="utf-8"))
+    return re.sub(r"\[([^\]]*)\]\(#\)", r"\1", text)
+
+
+def site_place(path):
+    """Where a file of the tree is in the site, or None."""
+    inside = path.relative_to(ROOT).as_posix()
+    if inside in ADOPTED:
+        return Path(ADOPTED[inside])
+    if path.is_relative_to(ROOT / "docs"):
+        return path.relative_to(ROOT / "docs")
+    return None
+
+
+def relative(path, start):
+    ups = [".."] * len(start.parts)
+    return "/".join([*ups, *path.parts])
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__.strip())
+    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve())
