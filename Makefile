@@ -83,6 +83,9 @@ rivals: build packages-rivals  ## compare with other slicers on the same parts: 
 	cmake --build build-bench --target lamella_cgal_slicer
 	python3 -B -m bench.rivals $(OPTIONS)
 
+broken: build packages-rivals  ## compare with other slicers on broken meshes: out/broken/ (bench/README.md)
+	python3 -B -m bench.broken $(OPTIONS)
+
 read-meshes: build packages-rivals  ## compare with other readers of meshes: out/read_meshes/ (bench/README.md)
 	cmake --preset bench
 	cmake --build build-bench --target bench/read_meshes/all
@@ -113,4 +116,4 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages build demo test test-all packages-all test-large test-asan test-tsan test-fuzz test-shared \
-        bench packages-rivals rivals read-meshes paper format format-check lint install clean
+        bench packages-rivals rivals broken read-meshes paper format format-check lint install clean
