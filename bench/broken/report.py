@@ -6,8 +6,6 @@ import re
 from bench.broken.picture import picture
 from bench.harness.page import Chart, Page, Table
 
-OURS = ("lamella", "lamella-mended")
-
 
 def build_page(found, public, present, absent, here):
     page = Page("Broken meshes, as slicers see them")
@@ -71,24 +69,14 @@ def picture_name(finding):
 
 
 def layer_picture(finding):
-    z = telling_height(finding)
+    z = finding.z
     expected = next((layer.area_mm2 for layer in finding.expected if abs(layer.z - z) < 1e-3), 0.0)
     panels = []
-    for view, off in finding.rows:
+    for (view, _), drawn in zip(finding.rows, finding.drawings):
         area = next((layer.area_mm2 for layer in view.layers if abs(layer.z - z) < 1e-3), 0.0)
-        drawn = view.draw(z)
         open_chains = f", {len(drawn.chains)} open" if drawn is not None and drawn.chains else ""
         panels.append((view.title, drawn, f"{area:.1f} mm²{open_chains}" if view.ok else view.ended))
     return picture(f"{finding.title}: the layer at z = {z:g}, {expected:.1f} mm² in truth", panels, finding.bounds)
-
-
-def telling_height(finding):
-    """The layer in which the others are most off; where they agree with the truth, the one in which Lamella is without
-    mending."""
-    told = [(view, off) for view, off in finding.rows if off]
-    others = [off for view, off in told if view.slicer not in OURS and off.share > 0.01]
-    worst = max(others or [off for _, off in told], key=lambda off: off.share)
-    return min((layer.z for layer in finding.expected), key=lambda z: abs(z - worst.worst_z))
 
 
 def percent(off):

@@ -1,7 +1,8 @@
 """One mesh after the other, as each slicer sees it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Optional
 
 from bench.broken.cases import LAYER_HEIGHT_MM
 from bench.broken.triangles import bounds, write_stl
@@ -9,6 +10,7 @@ from bench.broken.views import difference, our_view, their_view
 from bench.harness.layers import Layer
 from bench.rivals.job import Job
 
+OURS = ("lamella", "lamella-mended")
 # For meshes of which nobody says what is wrong with them.
 ALL_POLICIES = ("--weld-tolerance", "0.001", "--drop-duplicates", "--orient", "--close-gaps", "2", "--fill", "nonzero")
 # What each program reads; others are not shown it.
@@ -24,6 +26,8 @@ class Finding:
     rows: list  # of (View, Difference, or None where there are no layers)
     bounds: tuple
     expected: list  # layers
+    z: Optional[float] = None  # of the layer that is drawn, above the bottom
+    drawings: list = field(default_factory=list)  # of that layer, one for each row
 
 
 class Study:
@@ -51,9 +55,9 @@ class Study:
 
     def ours(self, mesh, policies, layer_height):
         """As it is, and with the policies."""
-        tries = [("lamella", "Lamella", ())]
+        tries = [(OURS[0], "Lamella", ())]
         if policies:
-            tries.append(("lamella-mended", "Lamella, mended", policies))
+            tries.append((OURS[1], "Lamella, mended", policies))
         return [our_view(self.program, mesh, self.folder, name, title, layer_height, options, self.timeout)
                 for name, title, options in tries]
 
@@ -72,4 +76,19 @@ class Study:
         sinking = {rival.name for rival in self.rivals if rival.sinks}
         rows = [(view, difference(view, expected, LAYER_HEIGHT_MM, view.slicer in sinking) if view.ok and expected else None)
                 for view in views]
-        return Finding(name, title, broken, policies, rows, extent, expected)
+        found = Finding(name, title, broken, policies, rows, extent, expected)
+        if expected:
+            found.z = telling_height(found)
+            found.drawings = [view.draw(found.z) for view in views]
+        for view in views:
+            view.draw = None  # holds all layers
+        return found
+
+
+def telling_height(finding):
+    """The layer in which the others are most off; where they agree with the truth, the one in which Lamella is without
+    mending."""
+    told = [(view, off) for view, off in finding.rows if off]
+    others = [off for view, off in told if view.slicer not in OURS and off.share > 0.01]
+    worst = max(others or [off for _, off in told], key=lambda off: off.share)
+    return min((layer.z for layer in finding.expected), key=lambda z: abs(z - worst.worst_z))

@@ -27,7 +27,7 @@ class View:
     title: str
     ended: str  # "ok", "timeout", "exit code 3", ...
     layers: list = field(default_factory=list)  # harness.layers.Layer
-    draw: Callable[[float], Optional[Drawing]] = lambda z: None  # by height above the bottom of the part
+    draw: Optional[Callable[[float], Optional[Drawing]]] = lambda z: None  # by height above the bottom of the part
     last_words: str = ""
     open_chains: Optional[int] = None
 

@@ -19,6 +19,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
