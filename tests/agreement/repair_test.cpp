@@ -371,7 +371,7 @@ TEST(RepairedMeshes, SeveralFaultsAtOnceMoveTheUnionByNoMoreThanTheirWidth) {
 
 class DiagnosedMesh : public testing::TestWithParam<test::SharedMesh> {};
 
-INSTANTIATE_TEST_SUITE_P(Stl, DiagnosedMesh, testing::ValuesIn(test::shared_stl_meshes()),
+INSTANTIATE_TEST_SUITE_P(Shared, DiagnosedMesh, testing::ValuesIn(test::shared_meshes()),
                          test::shared_mesh_name);
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(DiagnosedMesh);
 
@@ -386,7 +386,8 @@ double distance_to(const EdgePlace& edge, const Point3& p) {
 TEST_P(DiagnosedMesh, TellsOfEveryPlaceWhereAChainEnds) {
     IndexedMesh mesh;
     try {
-        mesh = weld(read_mesh(GetParam().path).mesh());
+        const std::array inputs{PlateInput{.path = GetParam().path}};
+        mesh = weld(joined(load_plate(inputs)));
     } catch (const Error& error) {
         GTEST_SKIP() << error.what();
     }
