@@ -92,6 +92,9 @@ rivals: build packages-rivals  ## compare with other slicers on the same parts: 
 	cmake --build build-bench --target lamella_cgal_slicer
 	python3 -B -m bench.rivals $(OPTIONS)
 
+broken: build packages-rivals  ## compare with other slicers on broken meshes: out/broken/ (bench/README.md)
+	python3 -B -m bench.broken $(OPTIONS)
+
 read-meshes: build packages-rivals  ## compare with other readers of meshes: out/read_meshes/ (bench/README.md)
 	cmake --preset bench
 	cmake --build build-bench --target bench/read_meshes/all

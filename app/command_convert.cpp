@@ -47,8 +47,11 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
     LayerChanges changes;
-    for (LayerPart& part : file.parts)
-        part.layers = take_steps(arguments.making.steps(), std::move(part.layers), changes, execution);
+    for (LayerPart& part : file.parts) {
+        LayerChanges of_part;
+        part.layers = take_steps(arguments.making.steps(), std::move(part.layers), of_part, execution);
+        changes += of_part;
+    }
     LayerFileInfo info = info_of(file);
     if (!arguments.label.empty()) {
         if (file.parts.size() > 1)
@@ -62,9 +65,11 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     for (const std::string& warning : write_layers(arguments.output, format, stacks, info, options))
         context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
 
-    const std::string text =
+    std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(arguments.output), counted(info.layers, "layer"),
                     one_line(file.path), file.format, format.name);
+    if (arguments.making.steps().any())
+        text += fmt::format("  {}\n", changes_text(changes, "than before"));
     if (arguments.output == "-")
         context.messages.note(text);
     else

@@ -324,10 +324,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
     if (job.repair.close_gaps_mm)
         text += gaps_text(result.gaps);
     if (result.changes)
-        text += fmt::format("made     {} other than sliced: {} united, {} turned, {} dropped, {} left out\n",
-                            counted(result.changes->changed_layers, "layer"),
-                            counted(result.changes->rings_united, "ring"), result.changes->rings_reversed,
-                            result.changes->rings_dropped, counted(result.changes->points_dropped, "point"));
+        text += fmt::format("made     {}\n", changes_text(*result.changes, "than sliced"));
     const FileResult::Seconds& s = result.seconds;
     text += fmt::format("took     {:.3f} s on {} (read {:.3f}, ", s.total, counted(result.threads, "thread"),
                         s.read);
@@ -353,9 +350,9 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
     std::vector<std::string> warnings;
     if (result.report.open_chains > 0)
         warnings.push_back(fmt::format("{}: {} {}: contours do not close where the mesh has holes or flipped "
-                                       "triangles; see lamella info {}",
+                                       "triangles, the longest gap is {} mm; see lamella info {}",
                                        name, counted(result.report.open_chains, "open chain"),
-                                       where(result.open), name));
+                                       where(result.open), brief(result.open_gaps.longest_mm), name));
     if (result.inside_out.layers > 0)
         warnings.push_back(
             fmt::format("{}: inside out {}: outer contours run clockwise, as around holes, because "

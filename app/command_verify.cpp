@@ -50,6 +50,13 @@ nlohmann::ordered_json verification_json(const std::string& path, const Verifica
                                   {"max_area_error_mm2", nullptr}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
+    if (!found.open_layers.empty()) {
+        nlohmann::ordered_json& layers = object["open_layers"] = nlohmann::ordered_json::array();
+        for (const Verification::OpenLayer& layer : found.open_layers) {
+            layers.push_back({{"index", layer.index}, {"z", layer.z}});
+            layers.back().update(open_gaps_json(layer.gaps));
+        }
+    }
     return object;
 }
 

@@ -272,6 +272,13 @@ OptionGroup layer_step_options(LayerStepOptions& target) {
              length("simplify", "leave out points, contours moving by so much at most", target.simplify)}};
 }
 
+std::string changes_text(const LayerChanges& changes, std::string_view than) {
+    return fmt::format("{} other {}: {} united, {} turned, {} dropped, {} left out",
+                       counted(changes.changed_layers, "layer"), than, counted(changes.rings_united, "ring"),
+                       changes.rings_reversed, changes.rings_dropped,
+                       counted(changes.points_dropped, "point"));
+}
+
 const std::vector<std::string>& slice_at_names() {
     static const std::vector<std::string> names{"bottom", "middle", "top"};
     return names;

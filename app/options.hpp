@@ -103,6 +103,8 @@ struct LayerStepOptions {
     [[nodiscard]] LayerSteps steps() const;
 };
 [[nodiscard]] OptionGroup layer_step_options(LayerStepOptions& target);
+/// "3 layers other than sliced: 2 rings united, ..."; `than` says what the layers were before.
+[[nodiscard]] std::string changes_text(const LayerChanges& changes, std::string_view than);
 
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
 [[nodiscard]] SliceAt slice_at_of(std::string_view name);

@@ -80,6 +80,8 @@ Json layers_json(const FileResult& result) {
                           {"open_chains", layer.measure.open_chains},
                           // As text: a JSON number loses digits beyond 2^53.
                           {"hash", fmt::format("{:016x}", layer.hash)}});
+        if (layer.open_gaps.count > 0)
+            layers.back().update(open_gaps_json(layer.open_gaps));
         if (!layer.joins.empty())
             layers.back()["gaps"] = joins_json(layer.joins);
         if (result.changes)
@@ -142,6 +144,11 @@ Json defects_json(const Inspection& found) {
             {"inverted_shells", found.inverted_shells}};
 }
 
+Json open_gaps_json(const OpenGaps& gaps) {
+    return {
+        {"open_gaps", gaps.count}, {"longest_open_gap_mm", gaps.longest_mm}, {"open_gaps_mm", gaps.total_mm}};
+}
+
 Json box_json(const Box3& box) {
     return {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}};
 }
@@ -197,6 +204,8 @@ Json stats_json(const Command& command, const FileResult& result) {
             repairs.back()["path"] = result.files[repair.file].path;
         }
     }
+    if (result.open_gaps.count > 0)
+        stats.update(open_gaps_json(result.open_gaps));
     if (result.gaps.closed > 0)
         stats["gaps"] = gaps_json(result.gaps);
     stats["layers"] = layers_json(result);

@@ -2,6 +2,7 @@
 
 // The JSON that --stats writes and the parts of it that other commands share; docs/program.md lists the keys.
 
+#include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/mesh/transform.hpp"
@@ -17,6 +18,8 @@ namespace lamella::app {
 
 /// The defects that an inspection counts.
 [[nodiscard]] nlohmann::ordered_json defects_json(const Inspection& found);
+/// What is missing where contours stay open.
+[[nodiscard]] nlohmann::ordered_json open_gaps_json(const OpenGaps& gaps);
 /// [[x, y, z], [x, y, z]]
 [[nodiscard]] nlohmann::ordered_json box_json(const Box3& box);
 

@@ -1,1 +1,1 @@
-"""What `bench/rivals` and `bench/paper` share: processes measured from outside, parts, tables and charts."""
+"""What the comparisons beside this folder share: processes measured from outside, parts, tables and charts."""

@@ -39,14 +39,18 @@ def slicing_seconds(_job, text):
     return float(found[1]) if found else None
 
 
+def path(job):
+    """Where its tool path is, and how to read it."""
+    return job.file("cura.gcode"), lambda line: line.startswith(";LAYER:"), is_wall
+
+
 CURA = Rival(
     name="cura", title="CuraEngine",
     writes="G-code of one wall",
     compared="rings and areas of every layer, from the tool path",
     version=lambda: version(["CuraEngine", "help"], r"version (\S+)") if SETTINGS.exists() else None,
     command=command,
-    layers=lambda job: toolpath.read_layers(job.file("cura.gcode"), lambda line: line.startswith(";LAYER:"), is_wall,
-                                            WIDTH_MM, job.layer_height),
+    layers=lambda job: toolpath.read_layers(*path(job), WIDTH_MM, job.layer_height),
     slicing_seconds=slicing_seconds,
     threaded=True,
     sinks=True)

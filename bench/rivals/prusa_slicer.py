@@ -37,13 +37,17 @@ def slicing_seconds(_job, text):
     return (end - start).total_seconds()
 
 
+def path(job):
+    """Where its tool path is, and how to read it."""
+    return job.file("prusa.gcode"), lambda line: line.startswith(";LAYER_CHANGE"), is_wall
+
+
 PRUSA_SLICER = Rival(
     name="prusa-slicer", title="PrusaSlicer",
     writes="G-code of one wall",
     compared="rings and areas of every layer, from the tool path",
     version=lambda: version(["prusa-slicer", "--help"], r"PrusaSlicer-(\d[\w.]*)"),
     command=command,
-    layers=lambda job: toolpath.read_layers(job.file("prusa.gcode"), lambda line: line.startswith(";LAYER_CHANGE"),
-                                            is_wall, WIDTH_MM, job.layer_height),
+    layers=lambda job: toolpath.read_layers(*path(job), WIDTH_MM, job.layer_height),
     slicing_seconds=slicing_seconds,
     threaded=True)

@@ -11,6 +11,8 @@ import math
 from bench.harness.layers import Layer
 from bench.rivals.ring import length, signed_area
 
+SHORT_MM = 0.1  # less than the width of any path
+
 
 def read_layers(path, starts_layer, is_wall, width, layer_height):
     """Rings of each layer, from extruding moves that follow one another.
@@ -62,7 +64,9 @@ def read_rings(path, starts_layer, is_wall):
             amount = float(words.get("E", extruded))
             moves = "X" in words or "Y" in words
             to_x, to_y = float(words.get("X", x)), float(words.get("Y", y))
-            if moves and amount > extruded and wall:
+            # A step so short that the amount stays the same after rounding belongs to the path, too.
+            step = math.dist((x, y), (to_x, to_y))
+            if moves and wall and (amount > extruded or (ring and amount == extruded and step < SHORT_MM)):
                 if not ring:
                     ring = [(x, y)]
                 ring.append((to_x, to_y))

@@ -20,6 +20,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/stack_hash.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"

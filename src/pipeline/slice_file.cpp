@@ -109,7 +109,7 @@ namespace {
 class Gatherer {
   public:
     Gatherer(const Plan& plan, std::size_t parts, const FileJob& job)
-        : first_(plan.layers.front().index), signs_(plan.layers.size()),
+        : first_(plan.layers.front().index), open_(plan.layers.size()), inside_out_(plan.layers.size()),
           gaps_(job.repair.close_gaps_mm ? plan.layers.size() : 0),
           layers_(job.layer_statistics ? plan.layers.size() : 0), changes_(plan.layers.size()),
           parts_(parts) {}
@@ -125,11 +125,12 @@ class Gatherer {
             gaps.total_mm += join.length_mm;
         }
         LayerMeasure together;
+        OpenGaps& open = open_[place];
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const Layer& layer = parts[i];
             // In normal form the first ring has the smallest point of all, so nothing lies around it.
-            signs_[place].open |= layer.open_chains() > 0;
-            signs_[place].inside_out |= layer.rings > 0 && ring_area(layer.contour(0)) < 0;
+            open += open_gaps(layer);
+            inside_out_[place] |= layer.rings > 0 && ring_area(layer.contour(0)) < 0;
             parts_[i].contours.fetch_add(layer.contours(), std::memory_order_relaxed);
             parts_[i].open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
             parts_[i].points.fetch_add(layer.points.size(), std::memory_order_relaxed);
@@ -137,10 +138,14 @@ class Gatherer {
                 together.add(measure(layer));
         }
         if (!layers_.empty())
-            layers_[place] = {first.index,       first.z,
-                              first.thickness(), together,
-                              std::move(joins),  content_hash(parts.size() == 1 ? first : merged(parts)),
-                              changes_[place]};
+            layers_[place] = {.index = first.index,
+                              .z = first.z,
+                              .thickness = first.thickness(),
+                              .measure = together,
+                              .open_gaps = open,
+                              .joins = std::move(joins),
+                              .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
+                              .changes = changes_[place]};
     }
 
     /// Before the layers are added.
@@ -154,9 +159,10 @@ class Gatherer {
             if (affected && into.layers++ == 0)
                 into.first_z = z;
         };
-        for (std::size_t i = 0; i < signs_.size(); ++i) {
-            count(signs_[i].open, plan.layers[i].z, result.open);
-            count(signs_[i].inside_out, plan.layers[i].z, result.inside_out);
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            count(open_[i].count > 0, plan.layers[i].z, result.open);
+            result.open_gaps += open_[i];
+            count(inside_out_[i] != 0, plan.layers[i].z, result.inside_out);
         }
         for (std::size_t i = 0; i < gaps_.size(); ++i) {
             if (gaps_[i].closed == 0)
@@ -186,18 +192,15 @@ class Gatherer {
     }
 
   private:
-    struct Signs {
-        bool open = false;
-        bool inside_out = false;
-    };
     struct Counts {
         std::atomic<std::uint64_t> contours{0};
         std::atomic<std::uint64_t> open_chains{0};
         std::atomic<std::uint64_t> points{0};
     };
     std::uint64_t first_;
-    std::vector<Signs> signs_;
-    std::vector<FileResult::Gaps> gaps_; ///< of each layer, where gaps are closed
+    std::vector<OpenGaps> open_;
+    std::vector<unsigned char> inside_out_; ///< not bits: threads write to neighbours
+    std::vector<FileResult::Gaps> gaps_;    ///< of each layer, where gaps are closed
     std::vector<LayerStatistics> layers_;
     std::vector<LayerChanges> changes_; // of all parts
     std::atomic<double> step_seconds_{0};

@@ -31,6 +31,7 @@ struct Occurrences {
 struct LayerCheck {
     LayerMeasure measure;
     Occurrences open_chains;
+    OpenGaps open_gaps;
     Occurrences crossings;
     Occurrences misoriented;
     Occurrences overlapping;
@@ -51,6 +52,7 @@ LayerCheck check(const Layer& layer, double quantum) {
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
         if (!layer.contour(i).empty())
             result.open_chains.add(1, layer.contour(i).front());
+    result.open_gaps = open_gaps(layer);
     const Crossings crossings = find_crossings(layer, 1);
     if (crossings.count > 0)
         result.crossings.add(crossings.count, crossings.first.front().at);
@@ -88,6 +90,21 @@ std::uint64_t summed(std::span<const Layer> layers, std::span<const LayerCheck> 
 
 const char* plural(std::uint64_t n) {
     return n == 1 ? "" : "s";
+}
+
+std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
+    OpenGaps all;
+    const Verification::OpenLayer* worst = &layers.front();
+    for (const Verification::OpenLayer& layer : layers) {
+        all += layer.gaps;
+        if (layer.gaps.longest_mm > worst->gaps.longest_mm)
+            worst = &layer;
+    }
+    return fmt::format(
+        "{:.4g} mm are missing between their ends, in {} layer{}; the longest gap, of {:.4g} mm, is in "
+        "layer {} (z {:.7g} mm) from ({:.7g}, {:.7g}) to ({:.7g}, {:.7g})",
+        all.total_mm, layers.size(), plural(layers.size()), worst->gaps.longest_mm, worst->index, worst->z,
+        worst->gaps.from.x, worst->gaps.from.y, worst->gaps.to.x, worst->gaps.to.y);
 }
 
 /// The areas that the section of a mesh has within a quantum of the z of a layer.
@@ -211,6 +228,8 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
         result.contours += checks[i].measure.contours;
         result.points += checks[i].measure.points;
         result.volume_mm3 += checks[i].measure.area_mm2 * layers[i].thickness();
+        if (checks[i].open_gaps.count > 0)
+            result.open_layers.push_back({layers[i].index, layers[i].z, checks[i].open_gaps});
     }
     const auto total = [&](Occurrences LayerCheck::*kind, const auto& text) {
         return summed(layers, checks, kind, text, result.findings);
@@ -218,6 +237,8 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     result.open_chains = total(&LayerCheck::open_chains, [](std::uint64_t n, const std::string& place) {
         return fmt::format("{} contour{} not closed, the first in {}", n, n == 1 ? " is" : "s are", place);
     });
+    if (!result.open_layers.empty())
+        result.findings.push_back(gaps_text(result.open_layers));
     result.crossings = total(&LayerCheck::crossings, [](std::uint64_t n, const std::string& place) {
         return fmt::format("{} crossing{} of contours, the first in {}", n, plural(n), place);
     });

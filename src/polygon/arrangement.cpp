@@ -60,6 +60,21 @@ std::vector<Side> sides_of(std::span<const std::span<const Point2>> rings, const
     return sides;
 }
 
+/// Which ends a side is cut at that passes by.
+enum class Reach : std::uint8_t {
+    on_it,     ///< those that lie on it
+    beside_it, ///< also those in whose squares of the grid it comes: then nothing crosses so close to an end
+};
+
+/// Whether the side comes into the unit square around p, up to rounding, between its own ends.
+bool passes_by(const Segment& s, const Point2& p) noexcept {
+    const double dx = s.hi.x - s.lo.x;
+    const double dy = s.hi.y - s.lo.y;
+    const double along = (p.x - s.lo.x) * dx + (p.y - s.lo.y) * dy;
+    const double across = (p.y - s.lo.y) * dx - (p.x - s.lo.x) * dy;
+    return 2 * std::abs(across) < std::abs(dx) + std::abs(dy) && along > 0 && along < dx * dx + dy * dy;
+}
+
 /// The ends of sides, row by row.
 class Ends {
   public:
@@ -83,27 +98,28 @@ class Ends {
         std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
     }
 
-    /// Calls visit(end) for the ends that lie strictly within the segment.
+    /// Calls visit(end) for the ends within the reach of the segment, but for its own.
     template <class Visit>
-    void for_ends_on(const Segment& s, Visit visit) const {
+    void for_ends_on(const Segment& s, Reach reach, Visit visit) const {
+        const double beside = reach == Reach::on_it ? 0 : 1;
         const double dx = s.hi.x - s.lo.x;
         const double dy = s.hi.y - s.lo.y;
         const auto x_at = [&](double y) {
             return s.lo.x + std::clamp((y - s.lo.y) / dy, 0.0, 1.0) * dx;
         };
-        const std::size_t last = row(std::max(s.lo.y, s.hi.y));
-        for (std::size_t r = row(std::min(s.lo.y, s.hi.y)); r <= last; ++r) {
+        const std::size_t last = std::min(row(std::max(s.lo.y, s.hi.y) + beside), begins_.size() - 2);
+        for (std::size_t r = row(std::max(std::min(s.lo.y, s.hi.y) - beside, low_)); r <= last; ++r) {
             double x0 = s.lo.x;
             double x1 = s.hi.x;
             if (dy != 0) {
                 const double bottom = low_ + static_cast<double>(r) * height_;
-                std::tie(x0, x1) = std::minmax({x_at(bottom), x_at(bottom + height_)});
+                std::tie(x0, x1) = std::minmax({x_at(bottom - beside), x_at(bottom + height_ + beside)});
             }
             const auto end = ends_.begin() + begins_[r + 1];
             for (auto p = std::partition_point(ends_.begin() + begins_[r], end,
                                                [&](const Point2& q) { return q.x < x0 - 1; });
                  p != end && p->x <= x1 + 1; ++p)
-                if (s.lo < *p && *p < s.hi && side(s, *p) == 0)
+                if (s.lo < *p && *p < s.hi && (reach == Reach::on_it ? side(s, *p) == 0 : passes_by(s, *p)))
                     visit(*p);
         }
     }
@@ -119,21 +135,17 @@ class Ends {
     double height_ = 1;
 };
 
-/// Cuts all sides where they cross others, in the nearest place of the grid, and where others end on them.
-/// False when there was nothing to cut.
-bool cut(std::vector<Side>& sides) {
-    struct Cut {
-        std::size_t side;
-        Point2 at;
-    };
-    std::vector<Cut> cuts;
-    const Ends ends(sides);
+struct Cut {
+    std::size_t side;
+    Point2 at;
+};
+
+/// Where sides cross, in the nearest place of the grid.
+void add_crossings(const std::vector<Side>& sides, std::vector<Cut>& cuts) {
     Layer layer; // every side an open chain
     std::vector<Point2> points;
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-        const Segment& line = sides[i].line;
-        ends.for_ends_on(line, [&](const Point2& p) { cuts.push_back({i, p}); });
-        points.insert(points.end(), {line.lo, line.hi});
+    for (const Side& side : sides) {
+        points.insert(points.end(), {side.line.lo, side.line.hi});
         layer.offsets.push_back(points.size());
     }
     layer.points = PointArray(std::move(points));
@@ -146,6 +158,18 @@ bool cut(std::vector<Side>& sides) {
         add(crossing.contour_a, at);
         add(crossing.contour_b, at);
     }
+}
+
+/// Cuts all sides where they cross others, in the nearest place of the grid, and where others end within
+/// their reach. False when there was nothing to cut.
+bool cut(std::vector<Side>& sides, Reach reach) {
+    std::vector<Cut> cuts;
+    const Ends ends(sides);
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        ends.for_ends_on(sides[i].line, reach, [&](const Point2& p) { cuts.push_back({i, p}); });
+    // Sides that are drawn to an end cross elsewhere then, if at all.
+    if (reach == Reach::on_it || cuts.empty())
+        add_crossings(sides, cuts);
     if (cuts.empty())
         return false;
     const auto along = [&](const Cut& c) {
@@ -220,10 +244,12 @@ std::vector<Side> arrangement(std::span<const std::span<const Point2>> rings, st
                               const ClippingGrid& grid) {
     std::vector<Side> sides = sides_of(rings, grid);
     // Rounding the places where sides cross bends them, so that they may cross others: each round has far
-    // fewer.
+    // fewer. Sides that run side by side would cross again a unit further, round after round, if they were
+    // not drawn to the ends that they pass by.
     constexpr int rounds = 30;
-    for (int round = 0; round < rounds && !sides.empty() && cut(sides); ++round) {
-    }
+    Reach reach = Reach::on_it;
+    for (int round = 0; round < rounds && !sides.empty() && cut(sides, reach); ++round)
+        reach = Reach::beside_it;
     wind(sides, around);
     return sides;
 }

@@ -22,12 +22,10 @@ Layer offset(const Layer& layer, double distance) {
         rings.push_back(layer.contour(i));
     const std::size_t points = layer.offsets[layer.rings];
     const ClippingGrid grid(layer.points.span().first(points), 2 * std::abs(distance));
-    // The library moves rings that overlap each on its own side: it has to see boundaries of material.
-    std::vector<Ring> united;
-    if (!winds_once(rings, 0, grid)) {
-        united = filled(rings, FillRule::positive, 0, grid);
-        rings.assign(united.begin(), united.end());
-    }
+    // The library moves every ring by itself. It has to see boundaries of material: where rings overlap, and
+    // where a hole runs along its body, no wall must grow out of nothing.
+    const std::vector<Ring> united = filled(rings, FillRule::positive, 0, grid);
+    rings.assign(united.begin(), united.end());
     // What the library gives is right as an area, but its rings may lie upon one another along sides.
     const std::vector<Ring> moved = grown(rings, distance, grid);
     rings.assign(moved.begin(), moved.end());

@@ -58,7 +58,8 @@ class Thinned {
         return result;
     }
 
-    /// Puts back the point farthest from a segment of the last layer; false when none was left out there.
+    /// Puts back the point farthest from a segment of the last layer, and what the tolerance asks for then;
+    /// false when none was left out there.
     bool refine(const Layer& thinned, std::uint64_t contour, std::uint64_t segment) {
         const std::uint64_t first = thinned.offsets[contour] + segment;
         const std::uint64_t next =
@@ -71,6 +72,9 @@ class Thinned {
             return false;
         const auto [farthest, square] = farthest_between(contour, begin, end);
         kept_[wrapped(contour, farthest)] = true;
+        // What was near to the longer segment need not be near to its successors.
+        thin(contour, begin, farthest);
+        thin(contour, farthest, end);
         return true;
     }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>
 
+#include <array>
 #include <cmath>
 
 namespace lamella {
@@ -74,6 +75,40 @@ TEST_P(EverySharedMesh, HasItsVolumeInLayers) {
     change += std::abs(before);
     const double expected = *GetParam().volume_mm3;
     EXPECT_NEAR(volume_of_layers, expected, 2 * height * change + 1e-6 * std::abs(expected));
+}
+
+class SharedMeshOfAnyFormat : public testing::TestWithParam<test::SharedMesh> {};
+
+INSTANTIATE_TEST_SUITE_P(Shared, SharedMeshOfAnyFormat, testing::ValuesIn(test::shared_meshes()),
+                         test::shared_mesh_name);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SharedMeshOfAnyFormat);
+
+TEST_P(SharedMeshOfAnyFormat, IsClosedAndHasItsVolumeWhereTheFileIsClosed) {
+    if (!GetParam().closed)
+        GTEST_SKIP() << "not closed";
+    const std::array inputs{PlateInput{.path = GetParam().path}};
+    const IndexedMesh mesh = weld(joined(load_plate(inputs)));
+    const Inspection inspected = inspect(mesh);
+    EXPECT_TRUE(inspected.closed());
+    const double height = (inspected.box.max.z - inspected.box.min.z) / 200;
+    const LayerStack layers =
+        slice(mesh, plan_uniform(inspected.box.min.z, inspected.box.max.z, {.layer_height = height}));
+    double volume = 0;
+    double change = 0;
+    double before = 0;
+    for (const Layer& layer : layers) {
+        EXPECT_EQ(layer.open_chains(), 0U) << "z " << layer.z;
+        EXPECT_EQ(open_gaps(layer).count, 0U);
+        const double area = measure(layer).area_mm2;
+        volume += area * layer.thickness();
+        change += std::abs(area - before);
+        before = area;
+    }
+    change += std::abs(before);
+    EXPECT_NEAR(volume, inspected.volume_mm3, 2 * height * change);
+    if (GetParam().volume_mm3) {
+        EXPECT_NEAR(inspected.volume_mm3, *GetParam().volume_mm3, 1e-5 * std::abs(inspected.volume_mm3));
+    }
 }
 
 } // namespace

@@ -14,6 +14,27 @@ class Repair(ProgramTest):
         self.assertNotIn("repairs", stats)
         self.assertNotIn("gaps", stats)
 
+    def test_what_is_missing_is_told(self):
+        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
+        stats = self.stats("open.stl", "--layer-height", "1")
+        for of in [stats["layers"][0], stats["layers"][9]]:
+            self.assertEqual(of["open_gaps"], 1)
+            self.assertAlmostEqual(of["longest_open_gap_mm"], 30, places=4)
+            self.assertAlmostEqual(of["open_gaps_mm"], 30, places=4)
+        self.assertEqual(stats["open_gaps"], 10)
+        self.assertAlmostEqual(stats["longest_open_gap_mm"], 30, places=4)
+        self.assertAlmostEqual(stats["open_gaps_mm"], 300, places=3)
+        told = self.succeed("slice", "open.stl", "--layer-height", "1", "-o", "open.cli").err
+        self.assertIn("the longest gap is 30 mm", told)
+        found = self.run_program("verify", "open.cli", "--json").json()
+        self.assertEqual([layer["index"] for layer in found["open_layers"]], list(range(10)))
+        self.assertEqual([round(layer["longest_open_gap_mm"], 3) for layer in found["open_layers"]], [30] * 10)
+        self.assertRegex(self.run_program("verify", "open.cli").text, r"300 mm are missing .* in 10 layers; the longest gap, of 30 mm")
+        # What is closed has none.
+        mended = self.stats("open.stl", "--layer-height", "1", "--close-gaps", "30.5")
+        self.assertNotIn("open_gaps", mended)
+        self.assertNotIn("open_gaps", mended["layers"][0])
+
     def test_closing_gaps_tells_every_join(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))
         stats = self.stats("open.stl", "--layer-height", "1", "--close-gaps", "30.5")

@@ -25,7 +25,7 @@ class Verify(ProgramTest):
         result = self.run_program("verify", "--json", *arguments, **keywords)
         self.assertEqual(result.code, code, result.err)
         found = result.json()
-        self.assertEqual(list(found), KEYS)
+        self.assertEqual(list(found), KEYS + (["open_layers"] if found["open_chains"] else []))
         self.assertEqual(found["ok"], code == 0)
         return found
 
@@ -61,7 +61,9 @@ class Verify(ProgramTest):
 
     def test_an_open_chain(self):
         self.write("a.cli", ascii_cli((2, SQUARE[:3])))
-        self.assertEqual(self.verify("a.cli", code=4)["open_chains"], 1)
+        found = self.verify("a.cli", code=4)
+        self.assertEqual(found["open_chains"], 1)
+        self.assertEqual([layer["open_gaps"] for layer in found["open_layers"]], [1])
 
     def test_a_hole_that_runs_the_wrong_way(self):
         self.write("a.cli", ascii_cli((0, SQUARE[::-1])))

@@ -72,6 +72,14 @@ class Readers(unittest.TestCase):
                                       prusa_slicer.is_wall, 0.4, 0.1)
         self.assertEqual(layers[0].contours, 2)
 
+    def test_a_step_too_short_to_extrude_is_of_the_path(self):
+        first, _ = moves(OUTER, 0)
+        x, y = OUTER[2]
+        first.insert(3, f"G1 X{x - 0.05:g} Y{y:g}")
+        text = "\n".join([";LAYER:0", ";TYPE:WALL-OUTER", *first])
+        layers = toolpath.read_layers(self.write(text), lambda line: line.startswith(";LAYER:"), cura.is_wall, 0.4, 0.1)
+        self.assertEqual(layers[0].contours, 1)
+
     def test_prusa_slicer_tells_when_its_first_stage_begins_and_ends(self):
         text = ("[2026-01-01 23:59:59.500000] [0x1] [info]    Slicing volumes... Resident memory: 74MB\n"
                 "20 => Generating perimeters\n"

@@ -52,6 +52,10 @@ TEST(Verify, NamesTheFirstPlaceOfEachKindOfFinding) {
     const Verification found = verify(layers);
     EXPECT_FALSE(found.ok());
     EXPECT_EQ(found.open_chains, 2U);
+    ASSERT_EQ(found.open_layers.size(), 2U);
+    EXPECT_EQ(found.open_layers[0].index, 5U);
+    EXPECT_EQ(found.open_layers[1].z, 6.5);
+    EXPECT_EQ(found.open_layers[1].gaps.longest_mm, 7);
     EXPECT_EQ(found.crossings, 2U);
     EXPECT_EQ(found.misoriented, 1U);
     EXPECT_EQ(found.overlapping, 1U);
@@ -59,6 +63,9 @@ TEST(Verify, NamesTheFirstPlaceOfEachKindOfFinding) {
         found.findings,
         (std::vector<std::string>{
             "2 contours are not closed, the first in layer 5 (z 5.5 mm) at (7, 7)",
+            "8.414 mm are missing between their ends, in 2 layers; the longest gap, of 7 mm, is in layer 6 "
+            "(z 6.5 mm) "
+            "from (8, 9) to (1, 9)",
             "2 crossings of contours, the first in layer 5 (z 5.5 mm) at (4, 1)",
             "1 ring runs the wrong way round, the first in layer 6 (z 6.5 mm) at (0, 4)",
             "1 ring lies within material: bodies that overlap, or holes that run the wrong way round; the "

@@ -235,6 +235,36 @@ TEST(Fill, DoesNotDependOnPlaceAndScaleBeyondRounding) {
         }
 }
 
+TEST(Fill, IsRightWhereSidesRunBesideOneAnotherForLong) {
+    // A ring that folds back by 0.02 mm, in units of the grid: rounded to it, the sides cross again one unit
+    // further, and again.
+    const Contour folded{{-46515776756, -11909104958},
+                         {-45071908681, -13153808872},
+                         {-45072286567, -13153483111},
+                         {-44291582251, -13720388620},
+                         {0, -13720388620},
+                         {0, 40000000000},
+                         {-72000000000, 40000000000}};
+    for (const double turn : {1, -1})
+        for (const bool mirrored : {false, true}) {
+            Contour ring;
+            for (const Point2& p : folded) {
+                const Point2 at{p.x * 0x1p-34, p.y * turn * 0x1p-34};
+                ring.push_back(mirrored ? Point2{at.y, at.x} : at);
+            }
+            if ((turn < 0) != mirrored)
+                std::ranges::reverse(ring);
+            const Layer layer = normal_layer({ring});
+            ASSERT_TRUE(has_crossings(layer));
+            for (const FillRule rule : rules) {
+                const Layer filled = fill(layer, rule).layer;
+                EXPECT_NEAR(measure(filled).area_mm2, measure(layer).area_mm2, 1e-8);
+                EXPECT_FALSE(has_crossings(filled));
+                EXPECT_FALSE(fill(filled, rule).changed());
+            }
+        }
+}
+
 TEST(Fill, OfAnEmptyLayerIsEmpty) {
     EXPECT_EQ(fill(Layer{}, FillRule::nonzero).layer.contours(), 0U);
     EXPECT_EQ(fill(layer_of({{}, {{1, 1}}}), FillRule::nonzero).layer.contours(), 0U);

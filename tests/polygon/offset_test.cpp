@@ -74,6 +74,16 @@ TEST(Offset, UnitesWhatMeetsAndOverlaps) {
     EXPECT_EQ(find_crossings(offset(crossing, 1)).count, 0U);
 }
 
+TEST(Offset, MakesNoWallsWhereAHoleRunsAlongItsBody) {
+    const Layer notched = layer_of({rectangle(6, 5, 14, 6), reversed(rectangle(6, 5, 8, 6))});
+    const Layer rest = layer_of({rectangle(8, 5, 14, 6)});
+    for (const double distance : {0.05, 2.0, -0.2}) {
+        const Layer moved = offset(notched, distance);
+        EXPECT_EQ(moved.rings, 1U);
+        EXPECT_NEAR(measure(moved).area_mm2, measure(offset(rest, distance)).area_mm2, 1e-8);
+    }
+}
+
 TEST(Offset, KeepsOpenChains) {
     const Contour chain{{1, 1}, {20, 3}};
     const Layer grown = offset(normal_form(layer_of({rectangle(0, 0, 4, 4)}, {chain})), 1);

@@ -121,6 +121,32 @@ TEST(Simplify, NeverMakesContoursCrossTurnOverOrMovePastOthers) {
     EXPECT_LT(2 * after, before);
 }
 
+TEST(Simplify, StaysWithinTheToleranceAlsoWhereContoursWouldCross) {
+    Random random(43);
+    std::size_t put_back = 0;
+    for (int round = 0; round < 300; ++round) {
+        const double tolerance = random.real(0.3, 2);
+        const Contour body = wobbly_circle(random, 0, 0, 8, 60, 2);
+        Contour hole; // close to it all around
+        for (const Point2& p : body)
+            hole.insert(hole.begin(), {0.97 * p.x, 0.97 * p.y});
+        const Layer layer = normal_form(layer_of({body, hole}));
+        if (find_crossings(layer).count > 0)
+            continue;
+        const Layer simple = simplify(layer, tolerance);
+        ASSERT_EQ(simple.rings, 2U);
+        // In normal form the body comes first.
+        for (std::size_t i = 0; i < 2; ++i) {
+            ASSERT_LE(farthest(layer.contour(i), simple.contour(i), true), tolerance + 1e-12) << round;
+            ASSERT_LE(farthest(simple.contour(i), layer.contour(i), true), tolerance + 1e-12) << round;
+            const Layer alone =
+                normal_form(layer_of({Contour(layer.contour(i).begin(), layer.contour(i).end())}));
+            put_back += simple.contour(i).size() - simplify(alone, tolerance).points.size();
+        }
+    }
+    EXPECT_GT(put_back, 100U);
+}
+
 TEST(Simplify, OfWhatHasNothingToLeaveOutIsTheLayerItself) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4)}, {{{9, 9}, {10, 10}}}));
     EXPECT_EQ(simplify(layer, 0.5).points.data(), layer.points.data());

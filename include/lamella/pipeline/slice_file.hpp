@@ -3,6 +3,7 @@
 // The whole way: mesh files in, slice file out, layer by layer.
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/inspect.hpp"
@@ -98,6 +99,7 @@ struct LayerStatistics {
     double z = 0;
     double thickness = 0;
     LayerMeasure measure;       ///< of all parts together
+    OpenGaps open_gaps;         ///< of all parts together, after gaps were closed
     std::vector<GapJoin> joins; ///< with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
     LayerChanges changes;   ///< by FileJob::steps
@@ -149,6 +151,7 @@ struct FileResult {
     };
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
     Affected open;                       ///< with open chains
+    OpenGaps open_gaps;                  ///< of these, in all
     Affected inside_out;                 ///< whose first ring, always an outer one, runs clockwise
     std::uint64_t planned_layers = 0;    ///< by all shards
     PlaneRange shard;                    ///< which of them by this one: all, where there are no shards

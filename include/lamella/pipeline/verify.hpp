@@ -3,6 +3,7 @@
 // Is a stack of layers right? Closed, oriented, without crossings, and of the area of its mesh.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/slicing/slice.hpp"
 
@@ -26,10 +27,18 @@ struct VerifyOptions {
 };
 
 struct Verification {
+    /// A layer with contours that do not close.
+    struct OpenLayer {
+        std::uint64_t index = 0;
+        double z = 0;
+        OpenGaps gaps;
+    };
+
     std::uint64_t layers = 0;
     std::uint64_t contours = 0;
     std::uint64_t points = 0;
     std::uint64_t open_chains = 0;
+    std::vector<OpenLayer> open_layers; ///< in the order of the layers
     /// Pairs of segments that cross properly; touching is allowed.
     std::uint64_t crossings = 0;
     /// Rings that contradict their nesting: clockwise where there is no material to have a hole in, and every

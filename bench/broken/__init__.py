@@ -1,0 +1,1 @@
+"""Broken meshes as each slicer sees them: see ../README.md."""

@@ -1,0 +1,232 @@
+#include "lamella/contour/open_gaps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::size_t none = ~std::size_t{0};
+
+double distance(const Point2& a, const Point2& b) noexcept {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+/// Points of which the nearest is asked for, and which are taken away one by one. A tree of medians along the
+/// longer side: the middle of a range is the median of it, those before it are no greater.
+class NearestPoints {
+  public:
+    explicit NearestPoints(std::vector<Point2> points)
+        : points_(std::move(points)), order_(points_.size()), place_(points_.size()), nodes_(points_.size()),
+          gone_(points_.size(), false) {
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+        build({0, order_.size()});
+        for (std::size_t place = 0; place < order_.size(); ++place)
+            place_[order_[place]] = place;
+    }
+
+    /// The number of the nearest one left for which `fits(number, distance)`, or none.
+    template <class Fits>
+    [[nodiscard]] std::size_t nearest(const Point2& to, const Fits& fits) const {
+        Best best;
+        search({0, order_.size()}, to, fits, best);
+        return best.number;
+    }
+
+    void remove(std::size_t number) {
+        Range range{0, order_.size()};
+        for (;; range = place_[number] < range.middle() ? range.before() : range.after()) {
+            --nodes_[range.middle()].left;
+            if (place_[number] == range.middle())
+                break;
+        }
+        gone_[number] = true;
+    }
+
+  private:
+    struct Range {
+        std::size_t begin;
+        std::size_t end;
+
+        [[nodiscard]] bool empty() const noexcept { return begin == end; }
+        [[nodiscard]] std::size_t middle() const noexcept { return begin + (end - begin) / 2; }
+        [[nodiscard]] Range before() const noexcept { return {begin, middle()}; }
+        [[nodiscard]] Range after() const noexcept { return {middle() + 1, end}; }
+    };
+    struct Best {
+        double distance = std::numeric_limits<double>::infinity();
+        std::size_t number = none;
+    };
+
+    /// Of a range, by the place of its middle.
+    struct Node {
+        std::size_t left = 0; ///< how many points are
+        double Point2::*axis = nullptr;
+    };
+
+    void build(const Range& range) {
+        if (range.empty())
+            return;
+        const auto at = [&](std::size_t place) {
+            return order_.begin() + static_cast<std::ptrdiff_t>(place);
+        };
+        const auto extent = [&](double Point2::*axis) {
+            const auto [low, high] =
+                std::minmax_element(at(range.begin), at(range.end), [&](std::size_t a, std::size_t b) {
+                    return points_[a].*axis < points_[b].*axis;
+                });
+            return points_[*high].*axis - points_[*low].*axis;
+        };
+        double Point2::*const axis = extent(&Point2::x) >= extent(&Point2::y) ? &Point2::x : &Point2::y;
+        // Equal ones by their numbers, so that the tree is the same everywhere.
+        std::nth_element(at(range.begin), at(range.middle()), at(range.end),
+                         [&](std::size_t a, std::size_t b) {
+                             return std::tuple(points_[a].*axis, a) < std::tuple(points_[b].*axis, b);
+                         });
+        nodes_[range.middle()] = {range.end - range.begin, axis};
+        build(range.before());
+        build(range.after());
+    }
+
+    template <class Fits>
+    void search(const Range& range, const Point2& to, const Fits& fits, Best& best) const {
+        if (range.empty() || nodes_[range.middle()].left == 0)
+            return;
+        const std::size_t number = order_[range.middle()];
+        if (!gone_[number])
+            if (const double d = distance(points_[number], to); d < best.distance && fits(number, d))
+                best = {d, number};
+        double Point2::*const axis = nodes_[range.middle()].axis;
+        const double beyond = to.*axis - points_[number].*axis;
+        search(beyond < 0 ? range.before() : range.after(), to, fits, best);
+        if (std::abs(beyond) < best.distance)
+            search(beyond < 0 ? range.after() : range.before(), to, fits, best);
+    }
+
+    std::vector<Point2> points_;
+    std::vector<std::size_t> order_;
+    std::vector<std::size_t> place_; ///< of a point in `order_`
+    std::vector<Node> nodes_;
+    std::vector<bool> gone_;
+};
+
+/// From the end of one chain to the start of another.
+struct Gap {
+    double length;
+    std::size_t from;
+    std::size_t to;
+
+    friend bool operator>(const Gap& a, const Gap& b) noexcept {
+        return std::tuple(a.length, a.from, a.to) > std::tuple(b.length, b.from, b.to);
+    }
+};
+
+double length_of(std::span<const Point2> chain) {
+    double length = 0;
+    for (std::size_t i = 1; i < chain.size(); ++i)
+        length += distance(chain[i - 1], chain[i]);
+    return length;
+}
+
+/// Every chain is followed by one, and follows one.
+class Matching {
+  public:
+    explicit Matching(std::vector<std::span<const Point2>> chains)
+        : chains_(std::move(chains)), starts_(starts_of(chains_)), taken_(chains_.size(), false),
+          matched_(chains_.size(), false) {
+        for (const std::span<const Point2> chain : chains_)
+            lengths_.push_back(length_of(chain));
+    }
+
+    /// visit(from, to) for all gaps.
+    template <class Visit>
+    void for_each_gap(const Visit& visit) {
+        std::priority_queue<Gap, std::vector<Gap>, std::greater<>> closest;
+        const auto propose = [&](std::size_t from) {
+            const Point2 end = chains_[from].back();
+            const std::size_t to = starts_.nearest(end, [&](std::size_t start, double length) {
+                return start != from || 2 * length <= lengths_[from];
+            });
+            if (to != none)
+                closest.push({distance(end, chains_[to].front()), from, to});
+        };
+        for (std::size_t c = 0; c < chains_.size(); ++c)
+            propose(c);
+        std::vector<unsigned char> forestalled(chains_.size(), 0);
+        while (!closest.empty()) {
+            const Gap gap = closest.top();
+            closest.pop();
+            if (taken_[gap.to]) {
+                if (++forestalled[gap.from] < most_times)
+                    propose(gap.from);
+                continue;
+            }
+            taken_[gap.to] = matched_[gap.from] = true;
+            starts_.remove(gap.to);
+            visit(chains_[gap.from].back(), chains_[gap.to].front());
+        }
+        for (std::size_t from = 0, to = 0; from < chains_.size(); ++from) {
+            if (matched_[from])
+                continue;
+            while (taken_[to])
+                ++to;
+            visit(chains_[from].back(), chains_[to++].front());
+        }
+    }
+
+  private:
+    static constexpr unsigned char most_times = 16;
+
+    static std::vector<Point2> starts_of(std::span<const std::span<const Point2>> chains) {
+        std::vector<Point2> starts;
+        for (const std::span<const Point2> chain : chains)
+            starts.push_back(chain.front());
+        return starts;
+    }
+
+    std::vector<std::span<const Point2>> chains_;
+    NearestPoints starts_;
+    std::vector<double> lengths_;
+    std::vector<bool> taken_;   ///< starts
+    std::vector<bool> matched_; ///< ends
+};
+
+} // namespace
+
+OpenGaps& OpenGaps::operator+=(const OpenGaps& other) noexcept {
+    count += other.count;
+    total_mm += other.total_mm;
+    if (other.longest_mm > longest_mm) {
+        longest_mm = other.longest_mm;
+        from = other.from;
+        to = other.to;
+    }
+    return *this;
+}
+
+OpenGaps open_gaps(const Layer& layer) {
+    OpenGaps all;
+    std::vector<std::span<const Point2>> chains;
+    for (std::size_t c = layer.rings; c < layer.contours(); ++c)
+        if (!layer.contour(c).empty())
+            chains.push_back(layer.contour(c));
+    if (chains.empty())
+        return all;
+    Matching(std::move(chains)).for_each_gap([&](const Point2& from, const Point2& to) {
+        const double length = distance(from, to);
+        all += {.count = 1, .longest_mm = length, .total_mm = length, .from = from, .to = to};
+    });
+    return all;
+}
+
+} // namespace lamella
