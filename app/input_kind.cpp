@@ -68,10 +68,10 @@ std::variant<MeshFile, LayerFile> read_either(const std::string& path, const Mes
 }
 
 std::optional<LayerFile> read_if_layers(const std::string& path, const Execution& execution) {
-    const std::string head = head_of(path);
-    if (holds_layers(head))
+    const FileKind kind = file_kind(head_of(path));
+    if (kind == FileKind::layers)
         return read_layers(path, execution);
-    if (!may_hold_slices(head))
+    if (kind == FileKind::mesh)
         return std::nullopt;
     try {
         return read_layers(path, execution);

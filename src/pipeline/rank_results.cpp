@@ -15,6 +15,7 @@ struct Figures {
     double z;
     double thickness;
     LayerMeasure measure;
+    OpenGaps open_gaps;
     std::uint64_t hash;
     LayerChanges changes;
 };
@@ -24,11 +25,14 @@ std::string packed(const FileResult& mine) {
     packer.put(std::uint64_t{mine.parts.size()});
     for (const PartResult& part : mine.parts)
         packer.put(part.contours).put(part.open_chains).put(part.points);
-    packer.put(mine.gaps).put(mine.open).put(mine.inside_out).put(mine.changes.value_or(LayerChanges{}));
+    packer.put(mine.gaps).put(mine.open).put(mine.open_gaps).put(mine.inside_out);
+    packer.put(mine.changes.value_or(LayerChanges{}));
     packer.put(mine.seconds).put(mine.report.link_seconds).put(mine.report.slice_seconds);
     packer.put(std::uint64_t{mine.layers.size()});
     for (const LayerStatistics& layer : mine.layers)
-        packer.put(Figures{layer.index, layer.z, layer.thickness, layer.measure, layer.hash, layer.changes})
+        packer
+            .put(Figures{layer.index, layer.z, layer.thickness, layer.measure, layer.open_gaps, layer.hash,
+                         layer.changes})
             .put_all(std::span(layer.joins));
     return packer.take();
 }
@@ -63,6 +67,7 @@ void add(FileResult& sum, Unpacker from) {
     }
     add(sum.gaps, from.get<FileResult::Gaps>());
     add(sum.open, from.get<FileResult::Affected>());
+    sum.open_gaps += from.get<OpenGaps>();
     add(sum.inside_out, from.get<FileResult::Affected>());
     const auto changes = from.get<LayerChanges>();
     if (sum.changes)
@@ -73,7 +78,7 @@ void add(FileResult& sum, Unpacker from) {
     const auto layers = from.get<std::uint64_t>();
     for (std::uint64_t i = 0; i < layers; ++i) {
         const auto figures = from.get<Figures>();
-        sum.layers.push_back({figures.index, figures.z, figures.thickness, figures.measure,
+        sum.layers.push_back({figures.index, figures.z, figures.thickness, figures.measure, figures.open_gaps,
                               from.get_all<GapJoin>(), figures.hash, figures.changes});
     }
 }
@@ -86,6 +91,7 @@ void put_together(FileResult& result, Ranks& ranks) {
         part.contours = part.open_chains = part.points = 0;
     result.gaps = {};
     result.open = result.inside_out = {};
+    result.open_gaps = {};
     if (result.changes)
         result.changes.emplace();
     result.layers.clear();
