@@ -107,6 +107,8 @@ Cost cost_of(const Picture& picture) {
     return {base64_size(picture.bytes.size()), picture.shown};
 }
 
+constexpr std::uint64_t most_shares = 4; // for one layer
+
 /// Hands out the bytes of a page: an equal share for each layer, and from what layers below have left of
 /// theirs so much more that it makes four shares at most.
 class Budget {
@@ -128,14 +130,12 @@ class Budget {
     }
 
   private:
-    static constexpr std::uint64_t most_shares = 4;
-
     Cost share_;
     std::uint64_t saved_bytes_ = 0;
 };
 
 /// The same plane, all of it first, each with less detail than the one before, until one costs no more than
-/// the share.
+/// the share, or little is gained and it costs no more than four.
 std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const Point2> places,
                                  const PageGrid& grid, const Cost& share) {
     const auto picture = [&](std::span<const Layer> layers, double tolerance) {
@@ -145,11 +145,16 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     };
     std::vector<Picture> pictures{picture(parts, 0)};
     Thinning thinning(parts, grid.step_mm);
-    for (Cost cost = cost_of(pictures.back()); !cost.within(share) && !thinning.at_end();
-         cost = cost_of(pictures.back())) {
+    const Cost most{most_shares * share.bytes, share.points};
+    bool saves = true;
+    for (Cost cost = cost_of(pictures.back()); !cost.within(share) && !thinning.at_end();) {
+        if (!saves && cost.within(most))
+            break; // what is left is many small rings: better a larger page than a crude one
         // Curves keep half of their points at four times the tolerance.
         thinning.go_on(cost.within({2 * share.bytes, 2 * share.points}) ? 2 : 4);
         pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
+        saves = cost_of(pictures.back()).bytes < cost.bytes / 10 * 9;
+        cost = cost_of(pictures.back());
     }
     return pictures;
 }
