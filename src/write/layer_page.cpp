@@ -153,8 +153,9 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
         // Curves keep half of their points at four times the tolerance.
         thinning.go_on(cost.within({2 * share.bytes, 2 * share.points}) ? 2 : 4);
         pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
-        saves = cost_of(pictures.back()).bytes < cost.bytes / 10 * 9;
-        cost = cost_of(pictures.back());
+        const Cost next = cost_of(pictures.back());
+        saves = next.bytes < cost.bytes / 10 * 9 || next.points < cost.points / 10 * 9;
+        cost = next;
     }
     return pictures;
 }
