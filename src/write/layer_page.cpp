@@ -68,10 +68,11 @@ class Thinning {
     Thinning(std::span<const Layer> parts, double step_mm)
         : layers_(parts.begin(), parts.end()), step_mm_(step_mm) {}
 
-    /// To a tolerance of one step, then to so many times the last one; without hatches, and once the
+    /// To a tolerance of one step, then to four times the last one, at which curves keep half of their
+    /// points; without hatches, and once the
     /// tolerance can be seen, without specks.
-    void go_on(double times) {
-        const double tolerance = tolerance_mm_ == 0 ? step_mm_ : times * tolerance_mm_;
+    void go_on() {
+        const double tolerance = tolerance_mm_ == 0 ? step_mm_ : 4 * tolerance_mm_;
         for (Layer& layer : layers_) {
             layer.hatches = {};
             layer = simplify(layer, tolerance - tolerance_mm_);
@@ -150,8 +151,7 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     for (Cost cost = cost_of(pictures.back()); !cost.within(share) && !thinning.at_end();) {
         if (!saves && cost.within(most))
             break; // what is left is many small rings: better a larger page than a crude one
-        // Curves keep half of their points at four times the tolerance.
-        thinning.go_on(cost.within({2 * share.bytes, 2 * share.points}) ? 2 : 4);
+        thinning.go_on();
         pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
         const Cost next = cost_of(pictures.back());
         saves = next.bytes < cost.bytes / 10 * 9 || next.points < cost.points / 10 * 9;

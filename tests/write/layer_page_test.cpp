@@ -233,8 +233,7 @@ TEST(LayerPage, ThinsOutBeyondItsBudgetAndSaysSo) {
             const auto chain = std::ranges::find(contours, false, &PageContour::closed);
             ASSERT_NE(chain, contours.end());
         }
-        EXPECT_LE(thin.html.size(),
-                  frame + 4 * options.budget_bytes + 300 * layers.size()); // four shares each
+        EXPECT_LE(thin.html.size(), frame + options.budget_bytes + 300 * layers.size());
     }
 }
 
