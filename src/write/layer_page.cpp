@@ -68,39 +68,39 @@ class Thinning {
     Thinning(std::span<const Layer> parts, double step_mm)
         : layers_(parts.begin(), parts.end()), step_mm_(step_mm) {}
 
-    /// Twice the tolerance; first without hatches, and from the fourth time on without specks.
+    /// To a tolerance of one step, then to four times the last one, at which curves keep half of their
+    /// points; without hatches, and once the
+    /// tolerance can be seen, without specks.
     void go_on() {
-        ++times_;
-        const double tolerance = step_mm_ * static_cast<double>(std::uint64_t{1} << (times_ - 1));
+        const double tolerance = tolerance_mm_ == 0 ? step_mm_ : 4 * tolerance_mm_;
         for (Layer& layer : layers_) {
             layer.hatches = {};
             layer = simplify(layer, tolerance - tolerance_mm_);
-            if (times_ >= first_without_specks)
+            if (tolerance > steps_of_specks * step_mm_)
                 layer = without_small_rings(layer, tolerance * tolerance);
         }
         tolerance_mm_ = tolerance;
     }
-    [[nodiscard]] bool at_end() const noexcept { return times_ == most; }
+    [[nodiscard]] bool at_end() const noexcept { return tolerance_mm_ >= most_steps * step_mm_; }
     [[nodiscard]] std::span<const Layer> layers() const noexcept { return layers_; }
     [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
 
   private:
-    static constexpr unsigned first_without_specks = 4;
-    static constexpr unsigned most = 10; // 512 steps: a hundredth of the part
+    static constexpr double steps_of_specks = 7.5;
+    static constexpr double most_steps = 512; // a hundredth of the part
 
     std::vector<Layer> layers_;
     double step_mm_;
     double tolerance_mm_ = 0;
-    unsigned times_ = 0;
 };
 
-/// What a page spends on its layers.
+/// What a page spends on a layer.
 struct Cost {
     std::uint64_t bytes = 0;
     std::uint64_t points = 0;
 
-    [[nodiscard]] bool within(const Cost& other) const noexcept {
-        return bytes <= other.bytes && points <= other.points;
+    [[nodiscard]] bool within(const Cost& most) const noexcept {
+        return bytes <= most.bytes && points <= most.points;
     }
 };
 
@@ -108,41 +108,35 @@ Cost cost_of(const Picture& picture) {
     return {base64_size(picture.bytes.size()), picture.shown};
 }
 
-/// Hands out the page's budget: an equal share for each layer, and from what layers below have left of theirs
-/// so much more that it makes four shares at most.
+constexpr std::uint64_t most_shares = 4; // for one layer
+
+/// Hands out the bytes of a page: an equal share for each layer, and from what layers below have left of
+/// theirs so much more that it makes four shares at most.
 class Budget {
   public:
     Budget(const PageOptions& options, std::uint64_t layers)
-        : share_{options.budget_bytes / std::max<std::uint64_t>(1, layers),
-                 options.budget_points / std::max<std::uint64_t>(1, layers)} {}
+        : share_{options.budget_bytes / std::max<std::uint64_t>(1, layers), options.layer_points} {}
 
     [[nodiscard]] const Cost& share() const noexcept { return share_; }
 
     /// Of the pictures of the next layer, the finest first, the first that it can pay for; else the last.
     const Picture& choose(const std::vector<Picture>& pictures) {
-        const Cost all{std::min(saved_.bytes + share_.bytes, most_shares * share_.bytes),
-                       std::min(saved_.points + share_.points, most_shares * share_.points)};
+        const Cost most{std::min(saved_bytes_ + share_.bytes, most_shares * share_.bytes), share_.points};
         const auto fitting = std::ranges::find_if(
-            pictures, [&](const Picture& picture) { return cost_of(picture).within(all); });
+            pictures, [&](const Picture& picture) { return cost_of(picture).within(most); });
         const Picture& chosen = fitting == pictures.end() ? pictures.back() : *fitting;
-        const auto left = [](std::uint64_t saved, std::uint64_t share, std::uint64_t spent) {
-            return saved + share - std::min(saved + share, spent);
-        };
-        const Cost spent = cost_of(chosen);
-        saved_ = {left(saved_.bytes, share_.bytes, spent.bytes),
-                  left(saved_.points, share_.points, spent.points)};
+        saved_bytes_ += share_.bytes;
+        saved_bytes_ -= std::min(saved_bytes_, cost_of(chosen).bytes);
         return chosen;
     }
 
   private:
-    static constexpr std::uint64_t most_shares = 4;
-
     Cost share_;
-    Cost saved_;
+    std::uint64_t saved_bytes_ = 0;
 };
 
 /// The same plane, all of it first, each with less detail than the one before, until one costs no more than
-/// the share.
+/// the share, or little is gained and it costs no more than four.
 std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const Point2> places,
                                  const PageGrid& grid, const Cost& share) {
     const auto picture = [&](std::span<const Layer> layers, double tolerance) {
@@ -152,9 +146,16 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     };
     std::vector<Picture> pictures{picture(parts, 0)};
     Thinning thinning(parts, grid.step_mm);
-    while (!cost_of(pictures.back()).within(share) && !thinning.at_end()) {
+    const Cost most{most_shares * share.bytes, share.points};
+    bool saves = true;
+    for (Cost cost = cost_of(pictures.back()); !cost.within(share) && !thinning.at_end();) {
+        if (!saves && cost.within(most))
+            break; // what is left is many small rings: better a larger page than a crude one
         thinning.go_on();
         pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
+        const Cost next = cost_of(pictures.back());
+        saves = next.bytes < cost.bytes / 10 * 9 || next.points < cost.points / 10 * 9;
+        cost = next;
     }
     return pictures;
 }
@@ -251,10 +252,10 @@ class PageWriter final : public LayerPageWriter {
                                  page_quoted(part.label), page_box(part.box));
         return fmt::format(
             R"({{"kind":"layers","version":1,"title":{},"layers":{},"step_mm":{},"origin":[{},{}],)"
-            R"("box":{},"bottom":{},"budget_bytes":{},"budget_points":{},"parts":[{}]}})",
+            R"("box":{},"bottom":{},"budget_bytes":{},"layer_points":{},"parts":[{}]}})",
             page_quoted(options.title), info.layers, page_number(grid_.step_mm), grid_.origin.x,
             grid_.origin.y, page_box(info.box), page_number(info.bottom), options.budget_bytes,
-            options.budget_points, parts);
+            options.layer_points, parts);
     }
 
     void write(const PlaneFacts& facts, const std::vector<Picture>& pictures) {

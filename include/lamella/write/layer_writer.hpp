@@ -47,10 +47,10 @@ struct PageOptions {
     std::string_view viewer = {};
     /// What the page calls itself.
     std::string title = "Lamella";
-    /// The layers may take so many bytes of the page, and so many points. Those beyond their share are
-    /// thinned out.
-    std::uint64_t budget_bytes = std::uint64_t{16} << 20;
-    std::uint64_t budget_points = 6'000'000;
+    /// The layers may take so many bytes of the page, and each of them may have so many points. What is
+    /// beyond is thinned out.
+    std::uint64_t budget_bytes = std::uint64_t{24} << 20;
+    std::uint64_t layer_points = 250'000;
 };
 
 struct LayerWriteOptions {
