@@ -72,6 +72,7 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/growth
 	build-bench/bench/files
 	build-bench/bench/raster
+	build-bench/bench/layer_steps
 	build-bench/bench/kernels
 
 # The comparisons need other people's programs, and run for an hour or more in full; see bench/README.md for options.
