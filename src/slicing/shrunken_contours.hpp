@@ -6,6 +6,8 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
 
+#include "core/orientation.hpp"
+
 #include <cstddef>
 #include <vector>
 
@@ -48,10 +50,18 @@ inline bool folds_flat(const std::vector<Point2>& ring) {
     return true;
 }
 
+/// Whether all points of a ring lie on one line, exactly. O(n), and O(1) for a ring that begins at a corner.
+inline bool lies_on_line(const std::vector<Point2>& ring) noexcept {
+    for (std::size_t i = 2; i < ring.size(); ++i)
+        if (orientation(ring[0], ring[1], ring[i]) != 0)
+            return false;
+    return true;
+}
+
 /// Gives a contour to a layer, unless it shrank to a point or a line. `contour` is used up. O(n).
 inline void add_contour(LayerBuilder& layer, std::vector<Point2>& contour, bool closed) {
     drop_repeated_points(contour, closed);
-    if (contour.size() < (closed ? 3U : 2U) || (closed && folds_flat(contour)))
+    if (contour.size() < (closed ? 3U : 2U) || (closed && (folds_flat(contour) || lies_on_line(contour))))
         return;
     for (const Point2& p : contour)
         layer.add_point(p);

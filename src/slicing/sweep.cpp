@@ -3,6 +3,7 @@
 #include "lamella/contour/normal_form.hpp"
 
 #include "core/executor.hpp"
+#include "core/orientation.hpp"
 #include "core/pages.hpp"
 #include "slicing/cut_graph.hpp"
 #include "slicing/ordered_delivery.hpp"
@@ -449,12 +450,13 @@ class SlabSweep {
         }
         const std::size_t before = start == 0 ? n - 1 : start - 1;
         const std::size_t after = start + 1 == n ? 0 : start + 1;
-        const bool fold = scratch.point(before) == scratch.point(after);
+        // A ring turns at its smallest point, unless it comes back upon itself.
+        const bool fold = orientation(scratch.point(before), scratch.point(start), scratch.point(after)) == 0;
         if (repeats || tie || fold) {
             std::vector<Point2> points(n);
             for (std::size_t i = 0; i < n; ++i)
                 points[i] = scratch.point(i);
-            if (folds_flat(points))
+            if (folds_flat(points) || lies_on_line(points))
                 return false;
             if (tie)
                 start = smallest_rotation(points);

@@ -88,6 +88,26 @@ TEST(NonManifold, AWallWithoutThicknessBoundsNothing) {
         EXPECT_TRUE(same_contours(alone[i], beside[i]));
 }
 
+TEST(NonManifold, AWallWithoutThicknessOverTwoDiagonalsBoundsNothing) {
+    for (const bool along_x : {true, false}) {
+        const auto at = [&](float along, float z) {
+            return along_x ? Point3f{along, 2, z} : Point3f{2, along, z};
+        };
+        const Point3f a = at(0, 0);
+        const Point3f b = at(5, 0);
+        const Point3f c = at(5, 3);
+        const Point3f d = at(0, 3);
+        const Triangles both{{a, b, c}, {a, c, d}, {b, a, d}, {b, d, c}};
+        for (const SliceAt where : {SliceAt::bottom, SliceAt::top})
+            for (const Layer& layer : slice_at(both, {0, 0.5, 1, 1.7, 2, 3}, where))
+                EXPECT_EQ(layer.contours(), 0U) << layer.z;
+        for (const Engine& engine : engines())
+            for (const Layer& layer :
+                 slice(TriangleSoup(both), plan_listed({0.5, 1, 1.7, 2}), {}, nullptr, engine))
+                EXPECT_EQ(layer.contours(), 0U) << engine.name << ' ' << layer.z;
+    }
+}
+
 TEST(NonManifold, AFaceInsideABodyTakesThePlaceOfAWallAndLeavesTheRestOpen) {
     // Two boxes back to back, the common wall of one of them missing.
     Triangles triangles = test::boxes_back_to_back();

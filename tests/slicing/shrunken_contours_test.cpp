@@ -69,9 +69,16 @@ TEST(ShrunkenContours, FoldFlatAlongAnyTree) {
     }
 }
 
+TEST(ShrunkenContours, LieOnALineExactlyOrNotAtAll) {
+    EXPECT_TRUE(lies_on_line({{0, 0}, {3, 1}, {6, 2}, {-3, -1}}));
+    EXPECT_FALSE(lies_on_line({{0, 0}, {3, 1}, {6, 2 + 0x1p-50}, {-3, -1}}));
+    EXPECT_FALSE(lies_on_line({a, b, c}));
+}
+
 TEST(ShrunkenContours, ReachTheLayerOnlyWithSomethingInThem) {
     LayerBuilder builder;
-    for (Points points : {Points{a, a}, Points{a, b}, Points{a, b, c, b}, Points{}})
+    const Points line{{0, 0}, {2, 6}, {3, 9}, {1, 3}};
+    for (Points points : {Points{a, a}, Points{a, b}, Points{a, b, c, b}, Points{}, line})
         add_contour(builder, points, true);
     for (Points points : {Points{a, a}, Points{}})
         add_contour(builder, points, false);

@@ -1,0 +1,167 @@
+// What does looking after layers and meshes cost? Filling layers that are clean, and layers of a part and its
+// copy half a body further, against slicing; finding self-intersections against welding. Clean layers must
+// come back bit for bit, united ones must have no crossings left and, filled again, stay as they are.
+//
+//     layer_steps [--rounds 5] [--threads 2]
+
+#include "experiment.hpp"
+#include "parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <thread>
+
+namespace lamella::bench {
+
+namespace {
+
+/// Seconds, and whether the result is right.
+struct Timed {
+    double slice = 0;
+    double fill = 0;
+    std::uint64_t points = 0;
+    bool right = false;
+};
+
+bool equal(const LayerStack& a, const LayerStack& b) {
+    return std::ranges::equal(
+        a, b, [](const Layer& x, const Layer& y) { return content_hash(x) == content_hash(y); });
+}
+
+Timed fill_clean(const Part& part, const Execution& execution) {
+    const OpenedPart opened = open_part(part, execution);
+    Timed result;
+    const auto slicing = Clock::now();
+    const LayerStack layers = slice(opened.mesh, opened.plan, execution);
+    result.slice = seconds_since(slicing);
+    for (const Layer& layer : layers)
+        result.points += layer.points.size();
+    LayerChanges changes;
+    const auto filling = Clock::now();
+    const LayerStack filled = take_steps({.fill = FillRule::nonzero}, layers, changes, execution);
+    result.fill = seconds_since(filling);
+    result.right = changes.changed_layers == 0 && equal(filled, layers);
+    return result;
+}
+
+/// Every layer with a copy of itself, moved by half of the part's width: many bodies cross.
+LayerStack doubled(const LayerStack& layers, double by) {
+    LayerStack both;
+    for (const Layer& layer : layers) {
+        Layer moved = layer;
+        std::vector<Point2> points(layer.points.begin(), layer.points.end());
+        for (Point2& p : points)
+            p.x += by;
+        moved.points = PointArray(std::move(points));
+        both.push_back(merged(std::vector<Layer>{layer, normal_form(std::move(moved))}));
+    }
+    return both;
+}
+
+Timed fill_doubled(const Part& part, const Execution& execution) {
+    const OpenedPart opened = open_part(part, execution);
+    Timed result;
+    const auto slicing = Clock::now();
+    const LayerStack single = slice(opened.mesh, opened.plan, execution);
+    result.slice = seconds_since(slicing);
+    const LayerStack layers = doubled(single, (opened.box.max.x - opened.box.min.x) / 2);
+    for (const Layer& layer : layers)
+        result.points += layer.points.size();
+    LayerChanges changes;
+    const auto filling = Clock::now();
+    const LayerStack filled = take_steps({.fill = FillRule::nonzero}, layers, changes, execution);
+    result.fill = seconds_since(filling);
+    LayerChanges again;
+    const LayerStack same = take_steps({.fill = FillRule::nonzero}, filled, again, execution);
+    result.right = changes.groups_united > 0 && again.changed_layers == 0 && equal(same, filled) &&
+                   std::ranges::none_of(filled, [](const Layer& layer) { return has_crossings(layer); });
+    return result;
+}
+
+struct Meetings {
+    double weld = 0;
+    double find = 0;
+    std::uint64_t pairs = 0;
+};
+
+Meetings self_intersections(const Part& part, const Execution& execution) {
+    const OpenedPart opened = open_part(part, execution);
+    Meetings result;
+    const auto welding = Clock::now();
+    const IndexedMesh mesh = weld(opened.mesh, execution);
+    result.weld = seconds_since(welding);
+    const auto finding = Clock::now();
+    result.pairs = find_self_intersections(mesh, {}, execution).pairs();
+    result.find = seconds_since(finding);
+    return result;
+}
+
+/// One row: medians of what `measure` tells.
+template <class Measure>
+bool add_fill(Table& table, const std::string& what, int rounds, const Measure& measure) {
+    std::vector<double> slice;
+    std::vector<double> fill;
+    Timed last;
+    bool right = true;
+    for (int round = 0; round < rounds; ++round) {
+        last = measure_in_child<Timed>(measure).result;
+        slice.push_back(last.slice);
+        fill.push_back(last.fill);
+        right = right && last.right;
+    }
+    table.add({what, fmt::format("{:.2f}", static_cast<double>(last.points) / 1e6),
+               fmt::format("{:.4f}", median(slice)), fmt::format("{:.4f}", median(fill)),
+               fmt::format("{:.2f}", median(fill) / median(slice)),
+               fmt::format("{:.0f}", 1e9 * median(fill) / static_cast<double>(last.points)),
+               right ? "yes" : "WRONG"});
+    return right;
+}
+
+int report(int argc, char** argv) {
+    const int rounds = std::stoi(option(argc, argv, "--rounds", "5"));
+    const auto threads = static_cast<unsigned>(
+        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
+    const Execution execution{.threads = threads};
+    std::cout << machine() << "; medians of " << rounds << " rounds, " << threads << " threads\n\n";
+    std::vector<Part> parts = standard_parts();
+    parts.push_back(make_part("sole", 0.1, [] { return make_sole(); }));
+    std::erase_if(parts, [](const Part& part) { return part.name.ends_with("shuffled"); });
+
+    Table fills({"part", "Mpoints", "slice s", "fill s", "fill / slice", "ns/point", "checked"});
+    bool all_right = true;
+    for (const Part& part : parts)
+        all_right =
+            add_fill(fills, part.name, rounds, [&] { return fill_clean(part, execution); }) && all_right;
+    for (const Part& part : parts) {
+        if (part.name != "rook" && part.name != "lattice")
+            continue; // the others have crossings by the million, which take minutes
+        all_right =
+            add_fill(fills, part.name + ", doubled", 1, [&] { return fill_doubled(part, execution); }) &&
+            all_right;
+    }
+    std::cout << fills.text() << '\n';
+
+    Table meetings({"part", "weld s", "self-intersections s", "to weld", "pairs"});
+    for (const Part& part : parts) {
+        const Meetings found =
+            measure_in_child<Meetings>([&] { return self_intersections(part, execution); }).result;
+        const Meetings alone =
+            measure_in_child<Meetings>([&] { return self_intersections(part, {.threads = 1}); }).result;
+        all_right = all_right && alone.pairs == found.pairs;
+        meetings.add({part.name, fmt::format("{:.3f}", found.weld), fmt::format("{:.3f}", found.find),
+                      fmt::format("{:.1f}", found.find / found.weld),
+                      alone.pairs == found.pairs ? fmt::to_string(found.pairs) : "WRONG"});
+    }
+    std::cout << meetings.text();
+    return all_right ? 0 : 1;
+}
+
+} // namespace
+
+} // namespace lamella::bench
+
+int main(int argc, char** argv) {
+    return lamella::bench::report(argc, argv);
+}

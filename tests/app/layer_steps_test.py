@@ -1,0 +1,87 @@
+"""What is made of layers between slicing and writing, from the command line: --fill, --offset, --largest-only and so on."""
+
+from program import ProgramTest, binary_stl, box_triangles, main
+
+
+def moved(triangles, x, y):
+    return [tuple((px + x, py + y, pz) for px, py, pz in triangle) for triangle in triangles]
+
+
+class LayerSteps(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        # 20 x 30, another one that shares 10 x 10 with it, and a speck of 2 x 1; 10 high.
+        box = box_triangles(20, 30, 10)
+        self.write("heap.stl", binary_stl(box + moved(box, 10, 20) + moved(box_triangles(2, 1, 10), 50, 0)))
+        self.write("inside_out.stl", binary_stl([t[::-1] for t in box]))
+
+    def stats(self, *options, part="heap.stl"):
+        return self.succeed("slice", part, "--layer-height", "1", *options, "--stats", "-").json()
+
+    def assert_areas(self, stats, area):
+        for layer in stats["layers"]:
+            self.assertAlmostEqual(layer["area_mm2"], area, places=6)
+        self.assertAlmostEqual(stats["volume_mm3"], 10 * area, places=5)
+
+    def test_nothing_is_made_of_them_unasked(self):
+        stats = self.stats()
+        self.assert_areas(stats, 1202)
+        self.assertNotIn("changes", stats)
+
+    def test_fill_rules(self):
+        for rule, area in {"nonzero": 1102, "positive": 1102, "evenodd": 1002, "none": 1202}.items():
+            with self.subTest(rule=rule):
+                stats = self.stats("--fill", rule)
+                self.assert_areas(stats, area)
+                self.assertEqual(stats["options"]["fill"], rule)
+        changes = self.stats("--fill", "nonzero")["changes"]
+        self.assertEqual((changes["changed_layers"], changes["groups_united"], changes["rings_united"]), (10, 10, 20))
+        self.assertAlmostEqual(changes["area_before_mm2"] - changes["area_after_mm2"], 1000, places=6)
+
+    def test_a_body_inside_out_is_turned_or_dropped(self):
+        self.assert_areas(self.stats("--fill", "nonzero", part="inside_out.stl"), 600)
+        self.assert_areas(self.stats("--fill", "positive", part="inside_out.stl"), 0)
+        self.assertEqual(self.stats("--fill", "nonzero", part="inside_out.stl")["changes"]["rings_reversed"], 10)
+
+    def test_offsets(self):
+        self.assert_areas(self.stats("--offset", "1"), 2 * 22 * 32 - 12 * 12 + 4 * 3)
+        self.assert_areas(self.stats("--offset", "-1"), 2 * 18 * 28 - 8 * 8)
+
+    def test_the_largest_body_and_the_smallest_area(self):
+        self.assert_areas(self.stats("--fill", "nonzero", "--largest-only"), 1100)
+        self.assert_areas(self.stats("--min-area", "2.1"), 1200)
+        self.assert_areas(self.stats("--min-area", "1.9"), 1202)
+        self.assertEqual(self.stats("--min-area", "2.1")["changes"]["rings_dropped"], 10)
+
+    def test_simplified_contours_have_fewer_points(self):
+        self.succeed("make", "cylinder", "-o", "cylinder.stl", "--segments", "360")
+        exact = self.stats(part="cylinder.stl")
+        simple = self.stats("--simplify", "0.05", part="cylinder.stl")
+        self.assertLess(10 * simple["points"], exact["points"])
+        self.assertEqual(simple["changes"]["points_dropped"], exact["points"] - simple["points"])
+        for a, b in zip(simple["layers"], exact["layers"]):
+            self.assertAlmostEqual(a["area_mm2"], b["area_mm2"], delta=0.05 * b["perimeter_mm"])
+
+    def test_steps_are_taken_in_their_order_whatever_the_order_on_the_command_line(self):
+        steps = ["--fill", "nonzero", "--offset", "-0.7", "--largest-only"]
+        one, two = self.stats(*steps), self.stats(*steps[4:], *steps[2:4], *steps[:2])
+        self.assertEqual([layer["hash"] for layer in one["layers"]], [layer["hash"] for layer in two["layers"]])
+        self.assert_areas(one, 2 * 18.6 * 28.6 - 8.6 * 8.6)
+
+    def test_converting_takes_the_same_steps(self):
+        self.succeed("slice", "heap.stl", "--layer-height", "1", "-o", "heap.json")
+        for steps in [["--fill", "nonzero"], ["--offset", "0.5"], ["--largest-only"], ["--min-area", "3"], ["--simplify", "1"]]:
+            with self.subTest(steps=steps):
+                self.succeed("slice", "heap.stl", "--layer-height", "1", "-o", "sliced.json", *steps)
+                self.succeed("convert", "heap.json", "converted.json", *steps)
+                self.assertEqual(self.bytes_of("sliced.json"), self.bytes_of("converted.json"))
+
+    def test_values_that_make_no_sense(self):
+        for option, value in [("--fill", "some"), ("--offset", "x"), ("--offset", "inf"), ("--min-area", "0"),
+                              ("--min-area", "-1"), ("--simplify", "-1")]:
+            with self.subTest(option=option, value=value):
+                self.fail_with(2, "error", "slice", "heap.stl", option, value, "-o", "x.cli")
+
+
+if __name__ == "__main__":
+    main()
