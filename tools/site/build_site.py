@@ -52,8 +52,10 @@ def relinked(page):
         found = site_place((page.parent / target).resolve())
         return match[1] + relative(found, place.parent) + match[3] if found else match[1] + "#" + ")"
 
-    text = LINK.sub(follow, page.read_text(encoding="utf-8"))
-    return re.sub(r"\[([^\]]*)\]\(#\)", r"\1", text)
+    blocks = re.split(r"(^```.*?^```$)", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    prose = [re.sub(r"\[([^\]]*)\]\(#\)", r"\1", LINK.sub(follow, text)) for text in blocks[::2]]
+    blocks[::2] = prose
+    return "".join(blocks)
 
 
 def site_place(path):

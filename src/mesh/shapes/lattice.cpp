@@ -184,8 +184,9 @@ std::uint64_t lattice_triangles(const LatticeShape& shape) {
 }
 
 TriangleSoup make_lattice(const LatticeShape& shape) {
+    const std::uint64_t triangles = lattice_triangles(shape); // checks the shape
     LatticeMaker maker(shape);
-    maker.out.reserve(lattice_triangles(shape));
+    maker.out.reserve(triangles);
     for (unsigned level = 0; level <= shape.cells_z; ++level)
         make_level(maker, cells_of(shape), level);
     return TriangleSoup(std::move(maker.out));
