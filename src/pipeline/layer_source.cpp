@@ -57,10 +57,6 @@ std::unique_ptr<LayerSource> open_layer_source(const FileJob& job, const Engine&
     }
     const std::string needs_all = needs_whole_mesh(job, with);
     const bool streamable = other == nullptr && needs_all.empty();
-    // Of several parts all layers are held at once, and how much that is only the counts tell.
-    const bool several = job.inputs.size() > 1 || job.inputs.front().copies > 1;
-    if (memory.asked && several && streamable)
-        return open_slab_source(job, std::move(files), memory, execution);
     if (bytes <= memory.limit || (!memory.asked && !streamable))
         return open_plate_source(job, std::move(files), memory, execution);
 

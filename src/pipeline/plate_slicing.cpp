@@ -142,7 +142,7 @@ void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, co
     report = {};
     report.layers = plan.layers.size();
     // Each window takes a look at all triangles: they are few, and large. Engines that weld would do so anew.
-    constexpr std::uint64_t share = 4;
+    constexpr std::uint64_t share = 2;
     const auto all = static_cast<std::uint32_t>(plan.layers.size());
     const std::vector<PlaneRange> runs = with.welds || points_in_flight == 0
                                              ? std::vector<PlaneRange>{{0, all}}

@@ -19,7 +19,7 @@ namespace lamella {
 using PlateSink = std::function<std::function<void()>(std::span<const Layer> parts)>;
 
 /// A plate with one part is sliced while its layers go to the sink. Others are sliced window by window: a run
-/// of planes on which all shapes together have four times `points_in_flight` (as slice_to takes it; 0: all
+/// of planes on which all shapes together have twice `points_in_flight` (as slice_to takes it; 0: all
 /// planes at once). Contours and points are for the sink to count: parts may share a shape.
 void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
                     SliceReport& report, const Engine& with, std::uint64_t points_in_flight = 0);
