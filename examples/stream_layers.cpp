@@ -13,7 +13,9 @@ int main() {
     // one at a time: the place for results.
     const auto sink = [](lamella::Layer&& layer) -> std::function<void()> {
         const double area = lamella::measure(layer).area_mm2;
-        return [z = layer.z, area] { std::printf("%5.2f mm  %7.3f mm2\n", z, area); };
+        return [z = layer.z, area] {
+            std::printf("%5.2f mm  %7.3f mm2\n", z, area);
+        };
     };
     lamella::slice_to(sink, mesh, plan);
 }
