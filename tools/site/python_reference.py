@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+import re
 import sys
 
 
@@ -30,10 +31,45 @@ def entry(name, thing):
 def signature(name, thing):
     """None for what cannot tell it: functions written in C++ say it in their docstrings, properties have none."""
     try:
-        return ["```python", f"{name}{inspect.signature(thing)}", "```", ""] if callable(thing) else []
+        found = inspect.signature(thing) if callable(thing) else None
     except ValueError:
+        found = None
+    if found is None:
         return []
+    parts = [unquoted(part) for part in str(found)[1:].rsplit(")", 1)]
+    text = f"{name}({parts[0]}){parts[1]}"
+    if len(text) > 100:
+        text = f"{name}(\n" + "".join(f"    {line},\n" for line in parameters(found)) + f"){parts[1]}"
+    return ["```python", text, "```", ""]
+
+
+def parameters(found):
+    """One by one, with the star before those that have to be named."""
+    starred = False
+    for parameter in found.parameters.values():
+        if parameter.kind is parameter.KEYWORD_ONLY and not starred:
+            starred = True
+            yield "*"
+        yield unquoted(str(parameter))
+
+
+def unquoted(text):
+    """Annotations are kept as the text that they were written in."""
+    return re.sub(r"(: |-> )'([^']*)'", r"\1\2", text)
 
 
 def documented(thing):
-    return [inspect.getdoc(thing) or "", ""] if callable(thing) or inspect.isdatadescriptor(thing) else []
+    """Lines that begin with names and a colon tell of arguments: each is an item of a list."""
+    if not (callable(thing) or inspect.isdatadescriptor(thing)):
+        return []
+    lines = []
+    for line in (inspect.getdoc(thing) or "").splitlines():
+        argument = re.match(r"(\w+(?:, \w+)*): ", line)
+        if argument:
+            if lines and lines[-1] and not lines[-1].startswith(("- ", "  ")):
+                lines.append("")
+            line = f"- **{argument[1]}**: {line[argument.end():]}"
+        elif line and lines and lines[-1].startswith(("- ", "  ")):
+            line = f"  {line}"
+        lines.append(line)
+    return [*lines, ""]
