@@ -97,9 +97,12 @@ class Kills(ProgramTest):
                 pass
             process.kill()
             process.wait()
-            # Workers end by themselves, and finish nothing after that.
+            # Workers end by themselves, take their temporary files along, and finish nothing after that.
             before = None
-            while before != (before := sorted(p.name for p in self.path("out").iterdir())):
+            deadline = time.monotonic() + 60
+            while before != (before := sorted(p.name for p in self.path("out").iterdir())) or any(
+                    name.endswith(".tmp") for name in before):
+                self.assertLess(time.monotonic(), deadline, before)
                 time.sleep(0.2)
             for path in self.path("out").iterdir():
                 self.assertEqual(path.read_bytes(), expected[path.name], path)
