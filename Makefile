@@ -26,7 +26,7 @@ packages-viewer: packages
 
 build: packages  ## build the program, build/lamella, and the Python package, build/python
 	cmake --preset release
-	cmake --build build --target lamella_app lamella_python_package
+	cmake --build build --target lamella_programs lamella_python_package
 
 demo: packages-viewer build  ## make, slice and verify two parts; slice files, pictures and a page are left in out/
 	@python3 tools/demo.py build/lamella out
@@ -64,7 +64,7 @@ test-fuzz: packages-all
 
 test-shared: packages-all
 	cmake --preset shared
-	cmake --build build-shared --target lamella_app_files lamella_example_slice_part
+	cmake --build build-shared --target lamella_programs lamella_app_files examples/all
 	$(CTEST) --test-dir build-shared --label-regex '^house$$'
 
 bench: packages  ## build and run the benchmarks (bench/README.md)
