@@ -201,8 +201,10 @@ class Workers(ProgramTest):
         return [json.loads(line) for line in out.splitlines()], err.decode()
 
     def test_one_that_dies_takes_nobody_along(self):
-        for number, kind, code in [(signal.SIGSEGV, "crash", 1), (signal.SIGKILL, "limit", 5),
-                                   (signal.SIGBUS, "input", 3)]:
+        deaths = [(signal.SIGSEGV, "crash", 1), (signal.SIGKILL, "limit", 5)]
+        if "LAMELLA_SANITIZED" not in os.environ:
+            deaths.append((signal.SIGBUS, "input", 3))
+        for number, kind, code in deaths:
             with self.subTest(number):
                 process = self.start(["box1", "pipe", "box2", "box3"], "--jobs", "2")
                 os.kill(self.wait_for_reader(process, "pipe"), number)
