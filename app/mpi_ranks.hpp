@@ -12,7 +12,7 @@ namespace lamella::app {
 
 /// The processes that `mpirun` has started, from the making of the one object of this kind to its end. For
 /// one thread. Where a message fails or a rank is gone, MPI ends all of them.
-class MpiRanks final : public Ranks {
+class MpiRanks final : public Communicator {
   public:
     /// Of one message; longer ones go in several.
     static constexpr std::uint64_t most_bytes = std::uint64_t{1} << 28;

@@ -30,7 +30,7 @@ ErrorKind kind_of(const std::string& outcome) {
 
 } // namespace
 
-void in_agreement(Ranks& ranks, const std::function<void()>& step) {
+void in_agreement(Communicator& ranks, const std::function<void()>& step) {
     const std::vector<std::string> outcomes = ranks.gather(outcome_of(step));
     const std::string* worst = nullptr;
     for (const std::string& outcome : outcomes)

@@ -12,6 +12,6 @@ namespace lamella {
 
 /// Runs a step in which ranks do not talk to each other, and waits for all of them. Where it threw on any of
 /// them, all throw what the first of these threw (rather not, that it was cancelled), as Error.
-void in_agreement(Ranks& ranks, const std::function<void()>& step);
+void in_agreement(Communicator& ranks, const std::function<void()>& step);
 
 } // namespace lamella

@@ -45,13 +45,13 @@ std::function<void()> LayerMessages::prepare(std::span<const Layer> parts) {
     };
 }
 
-void LayerMessages::send(Ranks& ranks) {
+void LayerMessages::send(Communicator& ranks) {
     for (std::string& message : messages_)
         ranks.send(0, std::exchange(message, {}));
     ranks.send(0, {});
 }
 
-void write_messages(Ranks& ranks, LayerWriter& writer) {
+void write_messages(Communicator& ranks, LayerWriter& writer) {
     std::exception_ptr error;
     for (std::size_t from = 1; from < ranks.size(); ++from)
         for (std::string message; !(message = ranks.receive(from)).empty();) {

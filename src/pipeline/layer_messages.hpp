@@ -20,7 +20,7 @@ class LayerMessages final : public LayerWriter {
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return 0; }
 
     /// To rank 0, which calls write_messages.
-    void send(Ranks& ranks);
+    void send(Communicator& ranks);
 
   private:
     std::vector<std::string> messages_;
@@ -28,6 +28,6 @@ class LayerMessages final : public LayerWriter {
 
 /// On rank 0: hands the layers of all other ranks to the writer, in order. Should the writer fail, the rest
 /// of them is received nevertheless.
-void write_messages(Ranks& ranks, LayerWriter& writer);
+void write_messages(Communicator& ranks, LayerWriter& writer);
 
 } // namespace lamella

@@ -85,7 +85,7 @@ void add(FileResult& sum, Unpacker from) {
 
 } // namespace
 
-void put_together(FileResult& result, Ranks& ranks) {
+void put_together(FileResult& result, Communicator& ranks) {
     const std::string mine = packed(result);
     for (PartResult& part : result.parts)
         part.contours = part.open_chains = part.points = 0;

@@ -41,7 +41,7 @@ struct Source {
     [[nodiscard]] LayerSource& get() const { return shared ? *shared : *whole; }
 };
 
-Source open_source(const FileJob& job, const Engine& with, Ranks& ranks, const Execution& execution) {
+Source open_source(const FileJob& job, const Engine& with, Communicator& ranks, const Execution& execution) {
     for (const PlateInput& input : job.inputs)
         if (input.path == "-")
             throw Error(ErrorKind::usage,
@@ -78,7 +78,8 @@ std::vector<PlaneRange> slabs_for(const PlaneCounts& counts, std::size_t ranks) 
 class Output {
   public:
     /// Creates what is written, so that nobody slices for hours what cannot be written.
-    Output(const FileJob& job, const LayerFormat& format, LayerFileInfo info, PlaneRange mine, Ranks& ranks)
+    Output(const FileJob& job, const LayerFormat& format, LayerFileInfo info, PlaneRange mine,
+           Communicator& ranks)
         : job_(job), ranks_(ranks), info_(std::move(info)), mine_(mine) {
         if (format.pieces && is_regular(job.output)) {
             file_.emplace(job.output, ranks);
@@ -133,7 +134,7 @@ class Output {
     }
 
     const FileJob& job_;
-    Ranks& ranks_;
+    Communicator& ranks_;
     LayerFileInfo info_;
     PlaneRange mine_;
     std::optional<SharedFile> file_; ///< where all ranks write
@@ -145,7 +146,7 @@ class Output {
 
 } // namespace
 
-FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& execution,
+FileResult slice_file(const FileJob& job, Communicator& ranks, const Execution& execution,
                       std::vector<RankFigures>* figures) {
     const Stopwatch total;
     FileResult result;

@@ -49,7 +49,7 @@ void for_shapes_of(const Plate& plate, std::size_t file, const Body& body) {
 
 } // namespace
 
-RankSource::RankSource(const FileJob& job, std::vector<MeshInput> files, Ranks& ranks,
+RankSource::RankSource(const FileJob& job, std::vector<MeshInput> files, Communicator& ranks,
                        const Execution& execution)
     : ranks_(ranks), measure_volume_(job.layer_statistics), reading_{.strict = job.strict,
                                                                      .max_triangles = job.max_triangles,

@@ -21,7 +21,8 @@ namespace lamella {
 /// shared out (see MeshInput::records).
 class RankSource final : public LayerSource {
   public:
-    RankSource(const FileJob& job, std::vector<MeshInput> files, Ranks& ranks, const Execution& execution);
+    RankSource(const FileJob& job, std::vector<MeshInput> files, Communicator& ranks,
+               const Execution& execution);
 
     [[nodiscard]] std::uint64_t triangles(std::size_t shape) const override;
     [[nodiscard]] Plan adaptive_plan(const AdaptiveLayers& layers, const Execution& execution) override;
@@ -56,7 +57,7 @@ class RankSource final : public LayerSource {
     [[nodiscard]] TriangleSoup exchanged(const Outgoing& outgoing);
     [[nodiscard]] const Transform& placement(std::size_t shape) const;
 
-    Ranks& ranks_;
+    Communicator& ranks_;
     bool measure_volume_;
     MeshReadOptions reading_;
     std::vector<File> files_;

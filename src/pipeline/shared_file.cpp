@@ -53,7 +53,7 @@ void PieceBytes::add(std::string_view bytes) {
     size_ += bytes.size();
 }
 
-SharedFile::SharedFile(const std::string& path, Ranks& ranks) : path_(path), ranks_(ranks) {
+SharedFile::SharedFile(const std::string& path, Communicator& ranks) : path_(path), ranks_(ranks) {
     in_agreement(ranks, [&] {
         if (ranks.rank() == 0)
             file_.emplace(path);

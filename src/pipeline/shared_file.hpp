@@ -31,7 +31,7 @@ class PieceBytes {
 class SharedFile {
   public:
     /// Rank 0 creates it. Throws Error{output} on all ranks.
-    SharedFile(const std::string& path, Ranks& ranks);
+    SharedFile(const std::string& path, Communicator& ranks);
 
     /// The pieces of all ranks, in their order, each at once and at its place, which follows from the sizes
     /// of those before. Returns the size of the file. Throws Error{limit} where that is more than
@@ -40,7 +40,7 @@ class SharedFile {
 
   private:
     std::string path_;
-    Ranks& ranks_;
+    Communicator& ranks_;
     std::optional<AtomicFile> file_; ///< on rank 0
     std::string working_path_;
 };

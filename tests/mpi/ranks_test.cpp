@@ -20,14 +20,14 @@ std::string message(std::size_t from, std::size_t to) {
     return text;
 }
 
-bool sums(Ranks& ranks) {
+bool sums(Communicator& ranks) {
     std::vector<std::uint64_t> values(10, ranks.rank() + 1);
     ranks.sum(values);
     const std::uint64_t expected = ranks.size() * (ranks.size() + 1) / 2;
     return std::ranges::all_of(values, [&](std::uint64_t value) { return value == expected; });
 }
 
-bool gathers(Ranks& ranks) {
+bool gathers(Communicator& ranks) {
     const std::vector<std::string> all = ranks.gather(message(ranks.rank(), 9));
     for (std::size_t r = 0; r < ranks.size(); ++r)
         if (all[r] != message(r, 9))
@@ -35,7 +35,7 @@ bool gathers(Ranks& ranks) {
     return all.size() == ranks.size();
 }
 
-bool exchanges(Ranks& ranks) {
+bool exchanges(Communicator& ranks) {
     std::vector<std::string> outgoing;
     std::vector<std::uint64_t> sizes;
     for (std::size_t to = 0; to < ranks.size(); ++to)
@@ -56,7 +56,7 @@ bool exchanges(Ranks& ranks) {
     return true;
 }
 
-bool sends(Ranks& ranks) {
+bool sends(Communicator& ranks) {
     if (ranks.rank() > 0) {
         ranks.send(0, message(ranks.rank(), 4));
         ranks.send(0, {});

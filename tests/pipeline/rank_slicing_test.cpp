@@ -41,7 +41,7 @@ struct Meeting {
     std::map<std::pair<std::size_t, std::size_t>, std::deque<std::string>> messages;
 };
 
-class ThreadRanks final : public Ranks {
+class ThreadRanks final : public Communicator {
   public:
     ThreadRanks(Meeting& meeting, std::size_t rank) : meeting_(meeting), rank_(rank) {}
 

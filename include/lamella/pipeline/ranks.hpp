@@ -17,12 +17,12 @@ namespace lamella {
 /// How processes ("ranks", counted from 0) talk to each other: an interface, so that the library needs no
 /// message passing of its own. All but send and receive are called by all ranks, in the same order; messages
 /// may have any length. A rank that is gone ends the others.
-class Ranks {
+class Communicator {
   public:
-    Ranks() = default;
-    Ranks(const Ranks&) = delete;
-    Ranks& operator=(const Ranks&) = delete;
-    virtual ~Ranks() = default;
+    Communicator() = default;
+    Communicator(const Communicator&) = delete;
+    Communicator& operator=(const Communicator&) = delete;
+    virtual ~Communicator() = default;
 
     [[nodiscard]] virtual std::size_t rank() const noexcept = 0;
     [[nodiscard]] virtual std::size_t size() const noexcept = 0;
@@ -67,7 +67,7 @@ struct RankFigures {
 /// Errors are agreed on: whatever is thrown on one rank, all of them throw. Throws what slice_file throws,
 /// and Error{usage} for standard input, which reaches one rank only.
 /// `figures`: where not null, those of all ranks.
-[[nodiscard]] FileResult slice_file(const FileJob& job, Ranks& ranks, const Execution& execution = {},
+[[nodiscard]] FileResult slice_file(const FileJob& job, Communicator& ranks, const Execution& execution = {},
                                     std::vector<RankFigures>* figures = nullptr);
 
 } // namespace lamella
