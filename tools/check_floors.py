@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the floors of the house (docs/architecture.md) against every #include of the sources.
+"""Checks the floors of the house (docs/architecture.md) against every #include of the sources, and that types of
+all rooms have names of their own.
 
 usage: tools/check_floors.py [ROOT]
 
@@ -69,6 +70,9 @@ STANDARD = set(
 SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|[a-z0-9]+intrin|unistd|fcntl|sched|pthread|poll|signal|"
                     r"spawn|dirent|dlfcn|cpuid|malloc|errno|limits|stdlib|stdint)(\.h)?$")
 
+# Types at the level of the namespace, as headers lay them out.
+TYPE = re.compile(r"^(?:template <[^\n]*>\n)?(?:class|struct|union|enum class) (\w+)(?: final)?(?: : [^{;\n]*)? \{", re.MULTILINE)
+
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:<([^>\n]+)>|"([^"\n]+)")', re.MULTILINE)
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 
@@ -84,7 +88,19 @@ class House:
             for path in sorted((self.root / folder).rglob("*")):
                 if path.suffix in (".hpp", ".cpp", ".h", ".inc"):
                     self.check_file(path)
+        self.check_type_names()
         return self.findings
+
+    def check_type_names(self):
+        """All rooms share one namespace: two types of one name are undefined, even where nobody sees both."""
+        known = {}
+        for folder in ["include", "src"]:
+            for path in sorted((self.root / folder).rglob("*.hpp")):
+                name = path.relative_to(self.root).as_posix()
+                for match in TYPE.finditer(path.read_text(encoding="utf-8")):
+                    first = known.setdefault(match[1], name)
+                    if first != name:
+                        self.findings.append(f"{name}: {match[1]} is the name of a type in {first}, too")
 
     def check_table(self):
         floor = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}

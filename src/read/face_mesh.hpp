@@ -22,7 +22,7 @@ namespace lamella {
 
 /// A face of more than three corners. Until its real triangles are known it stands in the list of triangles
 /// as the fan from its first corner.
-struct Polygon {
+struct FaceFan {
     std::uint64_t first_triangle;
     std::uint32_t triangles;
 };
@@ -41,7 +41,7 @@ struct FacePiece {
 
     std::vector<Point3> vertices; ///< also such that are not finite
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Polygon> polygons;
+    std::vector<FaceFan> polygons;
     /// Corners (3 t + k: corner k of triangle t) that count from the first vertex of this piece.
     std::vector<std::uint64_t> relative;
     std::uint64_t thin_faces = 0; ///< of fewer than three corners
@@ -54,7 +54,7 @@ struct FacePiece {
 
 struct FaceMesh {
     IndexedMesh mesh;
-    std::vector<Polygon> polygons;
+    std::vector<FaceFan> polygons;
 };
 
 /// All pieces, in order. Empties them.

@@ -281,7 +281,7 @@ class BinaryReader {
             throw Error(ErrorKind::limit, fmt::format("{}: {} triangles are too many, at most {} can be held",
                                                       source_.name, sum.triangles, most));
         limits_.add_triangles(sum.triangles);
-        limits_.add_bytes(sum.triangles * sizeof(Corners) + sum.polygons * sizeof(Polygon));
+        limits_.add_bytes(sum.triangles * sizeof(Corners) + sum.polygons * sizeof(FaceFan));
         resize_in_huge_pages(executor_, faces_.mesh.triangles, sum.triangles);
         faces_.polygons.resize(sum.polygons);
         executor_.for_chunks(runs_.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
@@ -389,7 +389,7 @@ class BinaryReader {
     void fill(const FaceRun& run, const FaceRun& next) {
         const std::byte* at = run.at;
         Corners* out = faces_.mesh.triangles.data() + run.triangles;
-        Polygon* polygon = faces_.polygons.data() + run.polygons;
+        FaceFan* polygon = faces_.polygons.data() + run.polygons;
         const std::size_t item_bytes = ply_bytes(item_type_);
         for (std::uint64_t row = run.row; row < next.row; ++row) {
             at = walk<swapped>(before_, at, end_);

@@ -89,7 +89,7 @@ shift_in(const typename Vector<width>::Doubles& before, const typename Vector<wi
 }
 
 template <int width>
-[[gnu::always_inline]] inline Survey survey(const EdgeColumns& edges, double z, double* x, double* y) {
+[[gnu::always_inline]] inline CutSurvey survey(const EdgeColumns& edges, double z, double* x, double* y) {
     using V = typename Vector<width>::Doubles;
     constexpr auto lanes = std::make_index_sequence<width>{};
     const std::size_t n = edges.size;
@@ -118,7 +118,7 @@ template <int width>
         x_before = px;
         y_before = py;
     }
-    Survey result{std::numeric_limits<double>::infinity(), false};
+    CutSurvey result{std::numeric_limits<double>::infinity(), false};
     for (int k = 0; k < width; ++k) {
         result.least_x = least[k] < result.least_x ? least[k] : result.least_x;
         result.repeats |= !(closest[k] > 0);
@@ -237,7 +237,7 @@ template <int width>
 #define LAMELLA_POINT_KERNELS(name, target, width)                                                           \
     struct name {                                                                                            \
         target static void prepare(EdgeColumns edges) { lamella::prepare<width>(edges); }                    \
-        target static Survey survey(EdgeColumns edges, double z, double* x, double* y) {                     \
+        target static CutSurvey survey(EdgeColumns edges, double z, double* x, double* y) {                  \
             return lamella::survey<width>(edges, z, x, y);                                                   \
         }                                                                                                    \
         target static void cut(EdgeColumns edges, std::size_t begin, std::size_t end, double z,              \

@@ -28,7 +28,7 @@ struct EdgeColumns {
 };
 
 /// What is learnt of a contour on one plane while its points are computed.
-struct Survey {
+struct CutSurvey {
     double least_x;
     /// Some point equals the one before it, or is nearer than 1e-150 mm (the last and the first are not
     /// compared).
@@ -41,7 +41,7 @@ struct PointKernels {
     void (*prepare)(EdgeColumns edges);
     /// x[i], y[i] = the cut of edge i with the plane z, for i < edges.size; up to padded(size) values are
     /// written. x and y start at multiples of 64 bytes. edges.size >= 1.
-    Survey (*survey)(EdgeColumns edges, double z, double* x, double* y);
+    CutSurvey (*survey)(EdgeColumns edges, double z, double* x, double* y);
     /// to[i - begin] = the cut of edge i with the plane z, for begin <= i < end.
     void (*cut)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
     /// The same for places that are not in the cache and are not read soon: where the processor can, it

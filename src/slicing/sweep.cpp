@@ -422,7 +422,7 @@ class SlabSweep {
         Scratch& scratch = bench.scratch;
         std::size_t n = run.size;
         scratch.reserve(EdgeColumns::padded(n));
-        const Survey survey = kernels_.survey(edges, ranks_.z(plane), scratch.x(), scratch.y());
+        const CutSurvey survey = kernels_.survey(edges, ranks_.z(plane), scratch.x(), scratch.y());
         const bool repeats = survey.repeats || (run.closed && scratch.point(0) == scratch.point(n - 1));
         if (repeats)
             n = scratch.drop_repeats(n, run.closed);

@@ -53,6 +53,17 @@ class CheckFloors(unittest.TestCase):
         self.assertEqual(self.findings({"src/core/a.cpp": '// #include "slicing/sweep.hpp"\n/*\n#include <zlib.h>\n*/\n'}),
                          [])
 
+    def test_finds_types_of_one_name(self):
+        for other in ("struct Grid {", "class Grid final {", "template <class T>\nclass Grid : public Base {",
+                      "enum class Grid {"):
+            self.assert_found({"src/polygon/grid.hpp": "namespace lamella {\nclass Grid {\n};\n}\n",
+                               "src/slicing/cut_graph.hpp": f"namespace lamella {{\n{other}\n}};\n}}\n"},
+                              "src/slicing/cut_graph.hpp", "Grid is the name of a type in src/polygon/grid.hpp")
+        # Members and what is only announced are something else.
+        self.assertEqual(self.findings({"src/polygon/grid.hpp": "class Grid {\n};\n",
+                                        "src/slicing/cut_graph.hpp": "class Grid;\nclass Other {\n    struct Grid {\n    };\n};\n"}),
+                         [])
+
     def test_finds_a_room_that_includes_a_floor_above(self):
         self.assert_found({"src/mesh/a.cpp": '\n#include "slicing/cut_graph.hpp"\n'}, "src/mesh/a.cpp:2:",
                           "slicing is not below it")

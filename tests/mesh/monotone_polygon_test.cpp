@@ -9,21 +9,21 @@
 namespace lamella {
 namespace {
 
-using Chain = std::vector<GridPoint>;
+using Chain = std::vector<NamedPoint>;
 
-std::int64_t twice_area(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
+std::int64_t twice_area(const NamedPoint& a, const NamedPoint& b, const NamedPoint& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 /// Every triangle has a positive area, their number is right and their areas add up to the polygon's: then
 /// they cover it exactly once.
 void expect_triangulation(const Chain& lower, const Chain& upper) {
-    std::map<std::uint32_t, GridPoint> points;
+    std::map<std::uint32_t, NamedPoint> points;
     Chain ring = lower;
     for (std::size_t i = upper.size(); i-- > 0;)
         if (!(upper[i] == ring.back()) && !(upper[i] == ring.front()))
             ring.push_back(upper[i]);
-    for (const GridPoint& p : ring)
+    for (const NamedPoint& p : ring)
         points[p.id] = p;
     std::int64_t expected = 0;
     for (std::size_t i = 0; i < ring.size(); ++i)
@@ -75,16 +75,16 @@ TEST(MonotonePolygon, TriangulatesRandomZigzags) {
         Chain lower = chain(-1000, 0, 0);
         Chain upper = chain(1, 1000, 1000);
         if (round % 2 == 0) { // common ends
-            const GridPoint first{-1, static_cast<std::int64_t>(random() % 100), 2000};
-            const GridPoint last{1000, static_cast<std::int64_t>(random() % 100), 2001};
+            const NamedPoint first{-1, static_cast<std::int64_t>(random() % 100), 2000};
+            const NamedPoint last{1000, static_cast<std::int64_t>(random() % 100), 2001};
             for (Chain* c : {&lower, &upper}) {
                 c->insert(c->begin(), first);
                 c->push_back(last);
             }
             // Common ends may lie beyond the other chain's first edge: keep the polygon simple.
-            for (GridPoint& p : lower)
+            for (NamedPoint& p : lower)
                 p.y = p.id < 1000 ? p.y - 200000 : p.y;
-            for (GridPoint& p : upper)
+            for (NamedPoint& p : upper)
                 p.y = p.id < 2000 ? p.y + 200000 : p.y;
         } else { // ends that are vertical edges
             lower.front().x = upper.front().x = -1;

@@ -87,13 +87,13 @@ class PointKernelsTest : public testing::TestWithParam<PointKernelSet> {
   protected:
     const PointKernels& kernels_ = *GetParam().kernels;
 
-    Survey survey(const Edges& edges, double z, PageArray<double>& x, PageArray<double>& y) const {
+    CutSurvey survey(const Edges& edges, double z, PageArray<double>& x, PageArray<double>& y) const {
         const std::size_t room = EdgeColumns::padded(edges.size());
         x = PageArray<double>(room + EdgeColumns::lanes);
         y = PageArray<double>(room + EdgeColumns::lanes);
         for (std::size_t i = 0; i < x.size(); ++i)
             x[i] = y[i] = 4711;
-        const Survey result = kernels_.survey(edges.columns(), z, x.data(), y.data());
+        const CutSurvey result = kernels_.survey(edges.columns(), z, x.data(), y.data());
         for (std::size_t i = room; i < x.size(); ++i) {
             EXPECT_EQ(x[i], 4711) << "written beyond the padding";
             EXPECT_EQ(y[i], 4711) << "written beyond the padding";
@@ -101,7 +101,7 @@ class PointKernelsTest : public testing::TestWithParam<PointKernelSet> {
         return result;
     }
 
-    Survey survey(const Edges& edges, double z) const {
+    CutSurvey survey(const Edges& edges, double z) const {
         PageArray<double> x;
         PageArray<double> y;
         return survey(edges, z, x, y);
@@ -116,7 +116,7 @@ TEST_P(PointKernelsTest, SurveyGivesTheBitsOfTheFormula) {
             const double z = random.real(1, 9);
             PageArray<double> x;
             PageArray<double> y;
-            const Survey result = survey(edges, z, x, y);
+            const CutSurvey result = survey(edges, z, x, y);
             double least = std::numeric_limits<double>::infinity();
             bool repeats = false;
             for (std::size_t i = 0; i < n; ++i) {

@@ -7,17 +7,17 @@ namespace lamella {
 namespace {
 
 /// Positive when a, b, c turn left.
-std::int64_t turn(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
+std::int64_t turn(const NamedPoint& a, const NamedPoint& b, const NamedPoint& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 struct Corner {
-    GridPoint at;
+    NamedPoint at;
     bool upper;
 };
 
 /// Both chains as one sequence of ascending x; a corner that both list comes once.
-std::vector<Corner> merge(std::span<const GridPoint> lower, std::span<const GridPoint> upper) {
+std::vector<Corner> merge(std::span<const NamedPoint> lower, std::span<const NamedPoint> upper) {
     std::vector<Corner> out;
     out.reserve(lower.size() + upper.size());
     std::size_t l = 0;
@@ -37,8 +37,8 @@ std::vector<Corner> merge(std::span<const GridPoint> lower, std::span<const Grid
 
 } // namespace
 
-std::vector<std::array<std::uint32_t, 3>> triangulate_monotone(std::span<const GridPoint> lower,
-                                                               std::span<const GridPoint> upper) {
+std::vector<std::array<std::uint32_t, 3>> triangulate_monotone(std::span<const NamedPoint> lower,
+                                                               std::span<const NamedPoint> upper) {
     std::vector<std::array<std::uint32_t, 3>> out;
     const std::vector<Corner> corners = merge(lower, upper);
     if (corners.size() < 3)

@@ -11,17 +11,17 @@
 namespace lamella {
 
 /// A corner on an integer grid, below 2^30 in absolute value so that every test is exact.
-struct GridPoint {
+struct NamedPoint {
     std::int64_t x = 0;
     std::int64_t y = 0;
     std::uint32_t id = 0; ///< the caller's name for it
 
-    friend bool operator==(const GridPoint&, const GridPoint&) = default;
+    friend bool operator==(const NamedPoint&, const NamedPoint&) = default;
 };
 
 /// Triangles by id, counter-clockwise, of the polygon between two chains of strictly ascending x. Where both
 /// chains start (or end) in the same corner, both list it; else the polygon has an edge there.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>>
-triangulate_monotone(std::span<const GridPoint> lower, std::span<const GridPoint> upper);
+triangulate_monotone(std::span<const NamedPoint> lower, std::span<const NamedPoint> upper);
 
 } // namespace lamella

@@ -31,8 +31,8 @@ constexpr double hole_width = 0.7;
 
 /// One hole about its centre, counter-clockwise, strictly convex, no two corners with the same x or y.
 struct Hole {
-    std::vector<GridPoint> corners; ///< id: the corner's number
-    std::uint32_t right = 0;        ///< the corner with the largest x, and so on
+    std::vector<NamedPoint> corners; ///< id: the corner's number
+    std::uint32_t right = 0;         ///< the corner with the largest x, and so on
     std::uint32_t top = 0;
     std::uint32_t left = 0;
     std::uint32_t bottom = 0;
@@ -48,10 +48,10 @@ Hole make_hole(double radius_in_units, unsigned segments) {
         hole.corners[i] = {std::llround(radius_in_units * at.cos), std::llround(radius_in_units * at.sin), i};
     }
     const auto& c = hole.corners;
-    const auto x_order = [](const GridPoint& a, const GridPoint& b) {
+    const auto x_order = [](const NamedPoint& a, const NamedPoint& b) {
         return a.x < b.x;
     };
-    const auto y_order = [](const GridPoint& a, const GridPoint& b) {
+    const auto y_order = [](const NamedPoint& a, const NamedPoint& b) {
         return a.y < b.y;
     };
     hole.left = std::min_element(c.begin(), c.end(), x_order)->id;
@@ -59,16 +59,16 @@ Hole make_hole(double radius_in_units, unsigned segments) {
     hole.bottom = std::min_element(c.begin(), c.end(), y_order)->id;
     hole.top = std::max_element(c.begin(), c.end(), y_order)->id;
 
-    const auto distinct = [](std::vector<GridPoint> points, auto order) {
+    const auto distinct = [](std::vector<NamedPoint> points, auto order) {
         std::sort(points.begin(), points.end(), order);
         return std::adjacent_find(points.begin(), points.end(),
                                   [&](const auto& a, const auto& b) { return !order(a, b); }) == points.end();
     };
     bool good = distinct(c, x_order) && distinct(c, y_order);
     for (unsigned i = 0; i < segments && good; ++i) {
-        const GridPoint& p = c[i];
-        const GridPoint& q = c[(i + 1) % segments];
-        const GridPoint& r = c[(i + 2) % segments];
+        const NamedPoint& p = c[i];
+        const NamedPoint& q = c[(i + 1) % segments];
+        const NamedPoint& r = c[(i + 2) % segments];
         good = (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x) > 0;
     }
     if (!good)
@@ -98,7 +98,7 @@ class SheetMaker {
         };
         for (unsigned row = 0; row < side; ++row)
             for (unsigned column = 0; column < side; ++column)
-                for (const GridPoint& p : hole_.corners)
+                for (const NamedPoint& p : hole_.corners)
                     add(margin + pitch * column + p.x, margin + pitch * row + p.y);
         add(0, 0);
         add(edge_, 0);
@@ -141,9 +141,9 @@ class SheetMaker {
         return static_cast<std::uint32_t>(holes() * segments_ + i);
     }
 
-    [[nodiscard]] const GridPoint& at(std::uint32_t id) const { return corners_[id]; }
+    [[nodiscard]] const NamedPoint& at(std::uint32_t id) const { return corners_[id]; }
     [[nodiscard]] Point3f point(std::uint32_t id, float z) const {
-        const GridPoint& p = at(id);
+        const NamedPoint& p = at(id);
         return {std::ldexp(static_cast<float>(p.x), unit_exponent_),
                 std::ldexp(static_cast<float>(p.y), unit_exponent_), z};
     }
@@ -157,7 +157,7 @@ class SheetMaker {
 
     /// Appends the corners of a hole from one to another, in counter-clockwise (step 1) or clockwise (step
     /// -1) order.
-    void arc(std::vector<GridPoint>& chain, std::size_t hole, std::uint32_t from, std::uint32_t to,
+    void arc(std::vector<NamedPoint>& chain, std::size_t hole, std::uint32_t from, std::uint32_t to,
              int step) const {
         for (std::uint32_t s = from;; s = static_cast<std::uint32_t>((s + segments_ + step) % segments_)) {
             chain.push_back(at(corner(hole, s)));
@@ -172,15 +172,15 @@ class SheetMaker {
     int unit_exponent_ = 0;
     std::int64_t edge_ = 0;
     Hole hole_;
-    std::vector<GridPoint>
+    std::vector<NamedPoint>
         corners_; ///< of hole 0, of hole 1, ..., then the four of the sheet, counter-clockwise
 };
 
 using Ids = std::vector<std::array<std::uint32_t, 3>>;
 
 /// A quarter turn clockwise: what was monotone upwards is monotone to the right.
-std::vector<GridPoint> lying(std::vector<GridPoint> chain) {
-    for (GridPoint& p : chain)
+std::vector<NamedPoint> lying(std::vector<NamedPoint> chain) {
+    for (NamedPoint& p : chain)
         p = {p.y, -p.x, p.id};
     return chain;
 }
@@ -197,10 +197,10 @@ Ids SheetMaker::cap() const {
     const unsigned last = side_ - 1;
     const std::array corners{at(outer(0)), at(outer(1)), at(outer(2)), at(outer(3))};
 
-    std::vector<GridPoint> bottom{corners[0]};
-    std::vector<GridPoint> top{corners[3]};
-    std::vector<GridPoint> left{corners[0]};
-    std::vector<GridPoint> right{corners[1]};
+    std::vector<NamedPoint> bottom{corners[0]};
+    std::vector<NamedPoint> top{corners[3]};
+    std::vector<NamedPoint> left{corners[0]};
+    std::vector<NamedPoint> right{corners[1]};
     for (unsigned i = 0; i < side_; ++i) {
         arc(bottom, hole_at(i, 0), i == 0 ? hole_.bottom : hole_.left, i == last ? hole_.bottom : hole_.right,
             1);
@@ -215,8 +215,8 @@ Ids SheetMaker::cap() const {
     add(triangulate_monotone(std::array{corners[0], corners[1]}, bottom));
 
     if (side_ > 1) {
-        std::vector<GridPoint> lower;
-        std::vector<GridPoint> upper;
+        std::vector<NamedPoint> lower;
+        std::vector<NamedPoint> upper;
         arc(lower, hole_at(0, 0), hole_.top, hole_.right, -1);
         arc(lower, hole_at(1, 0), hole_.left, hole_.top, -1);
         arc(upper, hole_at(0, 1), hole_.bottom, hole_.right, 1);
