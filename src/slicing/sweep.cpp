@@ -327,6 +327,7 @@ class SlabSweep {
             runs_.back().columns = columns_used_;
             columns_used_ += stride;
         }
+        executor_.check_cancelled(); // a run may serve thousands of planes
         measure(runs_.back(), plane, valid_until, benches_.front());
     }
 
