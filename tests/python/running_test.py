@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -160,8 +161,8 @@ def test_ctrl_c_stops_a_stream(rook):
 import os, sys, lamella
 layers = lamella.iter_layers(sys.argv[1], 0.00001)
 next(layers)
-print("ready", flush=True)
 try:
+    print("ready", flush=True)
     for layer in layers:
         pass
     print("finished")
@@ -220,7 +221,11 @@ def test_threads_may_share_a_stream(sheet):
         thread.start()
     for thread in threads:
         thread.join()
-    assert threads_of_this_process() == before
+    # Python joins a thread a moment before the system has done so.
+    deadline = time.monotonic() + 20
+    while threads_of_this_process() > before and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert threads_of_this_process() <= before
 
 
 def test_a_program_may_end_with_a_stream_open(sheet):
