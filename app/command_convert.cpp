@@ -70,10 +70,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
                     one_line(file.path), file.format, format.name);
     if (arguments.making.steps().any())
         text += fmt::format("  {}\n", changes_text(changes, "than before"));
-    if (arguments.output == "-")
-        context.messages.note(text);
-    else
-        context.messages.result(text);
+    context.messages.written(text, arguments.output);
     return 0;
 }
 

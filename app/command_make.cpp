@@ -254,10 +254,7 @@ int run_make(const MakeArguments& arguments, const Context& context) {
         fmt::format("{}: {}, {}, {} x {} x {} mm\n", output == "-" ? "standard output" : one_line(output),
                     arguments.body, counted(made.triangles, "triangle"), brief(extent.max.x - extent.min.x),
                     brief(extent.max.y - extent.min.y), brief(extent.max.z - extent.min.z));
-    if (output == "-")
-        context.messages.note(text);
-    else
-        context.messages.result(text);
+    context.messages.written(text, output);
     return 0;
 }
 

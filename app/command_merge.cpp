@@ -37,10 +37,7 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
         fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(arguments.output),
                     counted(result.layers, "layer"), brief(result.bottom), brief(result.top),
                     counted(arguments.shards.size(), "file"), byte_size(result.bytes));
-    if (arguments.output == "-")
-        context.messages.note(text);
-    else
-        context.messages.result(text);
+    context.messages.written(text, arguments.output);
     return 0;
 }
 

@@ -93,6 +93,13 @@ void Messages::note(const std::string& text) {
         put(text);
 }
 
+void Messages::written(const std::string& text, std::string_view output) {
+    if (output == "-")
+        note(text);
+    else
+        result(text);
+}
+
 void Messages::sum_up(const std::string& text, const std::string& json) {
     clear_bar();
     put(style_ == ProgressStyle::json ? json + "\n" : text);

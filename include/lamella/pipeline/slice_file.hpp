@@ -188,9 +188,9 @@ struct FileResult {
 /// for one that misses every part.
 [[nodiscard]] Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution = {});
 
-/// Slices files into a file. The layers of a single part are written while slicing goes on, so that memory
-/// holds a bounded number of them; of several parts, all layers are held (of a slab, where there are slabs).
-/// Nothing appears at the output path before all went well.
+/// Slices files into a file. The layers of a single part are written while slicing goes on; several parts are
+/// sliced one after the other on so many planes at a time as memory is meant for. So memory holds a bounded
+/// number of layers. Nothing appears at the output path before all went well.
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
 /// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.
