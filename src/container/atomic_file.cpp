@@ -1,5 +1,7 @@
 #include "container/atomic_file.hpp"
 
+#include "container/nameless_file.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -63,6 +65,30 @@ std::string follow_links(const std::string& path) {
         current = current.parent_path() / next; // an absolute link replaces the folder
     }
     throw ELOOP;
+}
+
+// A name for what is not finished: hidden, beside the target, of one process.
+std::string temporary_name(const fs::path& target, int attempt) {
+    // Room for the rest of the name: most file systems end at 255 bytes.
+    const std::string stem = target.filename().string().substr(0, 200);
+    return (target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, getpid(), attempt)).string();
+}
+
+// The first name that `take` makes its own; "" and errno where it fails for another reason than that the name
+// is in use.
+template <class Take>
+std::string take_free_name(const fs::path& target, const Take& take) {
+    constexpr int most_attempts = 10'000;
+    for (int attempt = 0; attempt < most_attempts;) {
+        std::string name = temporary_name(target, attempt);
+        if (take(name.c_str()))
+            return name;
+        if (errno == EEXIST)
+            ++attempt;
+        else if (errno != EINTR)
+            break;
+    }
+    return {};
 }
 
 } // namespace
@@ -136,7 +162,7 @@ AtomicFile::AtomicFile(std::string path, Overwriting overwriting) : path_(std::m
         fail(system_error);
     }
     if (!target_.empty() && (!exists || S_ISREG(status.st_mode))) {
-        open_temporary();
+        open_unfinished();
         return;
     }
     open_in_place();
@@ -158,18 +184,16 @@ void AtomicFile::open_in_place() {
 
 void AtomicFile::spool() {
     std::error_code error;
-    std::string pattern = (fs::temp_directory_path(error) / "lamella-XXXXXX").string();
-    const int number = error ? -1 : ::mkostemp(pattern.data(), O_CLOEXEC);
-    if (number < 0) {
+    const std::string folder = fs::temp_directory_path(error).string();
+    spool_ = error ? -1 : create_scratch(folder);
+    if (spool_ < 0) {
         const int system_error = error ? error.value() : errno;
         discard();
-        throw output_error(pattern, system_error);
+        throw output_error(folder + '/', system_error);
     }
-    ::unlink(pattern.c_str());
-    spool_ = number;
 }
 
-void AtomicFile::open_temporary() {
+void AtomicFile::open_unfinished() {
     struct stat status {};
     const bool replaces = stat(target_.c_str(), &status) == 0;
     if (!replaces && errno == ENAMETOOLONG) // the temporary name may be shorter
@@ -185,26 +209,49 @@ void AtomicFile::open_temporary() {
                             path_));
         fail(error);
     }
-    const fs::path target = target_;
-    // Room for the rest of the name: most file systems end at 255 bytes.
-    const std::string stem = target.filename().string().substr(0, 200);
-    for (int attempt = 0; descriptor_ < 0; ++attempt) {
-        const fs::path candidate =
-            target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, getpid(), attempt);
-        descriptor_ = ::open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor_ >= 0)
-            temporary_ = candidate.string();
-        else if (errno != EINTR && (errno != EEXIST || attempt > 10'000))
-            fail(errno);
-    }
-    if (!unfinished_.announce(temporary_)) {
-        discard();
-        throw Error(ErrorKind::cancelled, "cancelled");
-    }
+    constexpr mode_t everybody = 0666; // less the umask
+    descriptor_ = create_nameless(folder_of(target_), everybody);
+    if (descriptor_ >= 0)
+        nameless_ = true;
+    else if (errno == EOPNOTSUPP)
+        open_named(everybody);
+    else
+        fail(errno);
     // The permissions of a new file are the umask's; those of a replaced one stay. When that is not ours to
     // set, the umask's do.
     if (replaces && fchmod(descriptor_, status.st_mode & 07777) != 0)
         errno = 0;
+}
+
+void AtomicFile::open_named(mode_t permissions) {
+    temporary_ = take_free_name(target_, [&](const char* name) {
+        descriptor_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions);
+        return descriptor_ >= 0;
+    });
+    if (temporary_.empty())
+        fail(errno);
+    announce();
+}
+
+void AtomicFile::give_temporary_name() {
+    temporary_ = take_free_name(target_, [this](const char* name) { return name_file(descriptor_, name); });
+    if (temporary_.empty())
+        fail(errno);
+    nameless_ = false;
+    announce();
+}
+
+void AtomicFile::announce() {
+    if (unfinished_.announce(temporary_))
+        return;
+    discard();
+    throw Error(ErrorKind::cancelled, "cancelled");
+}
+
+const std::string& AtomicFile::share() {
+    if (nameless_)
+        give_temporary_name();
+    return temporary_;
 }
 
 void AtomicFile::append(std::string_view bytes) {
@@ -285,6 +332,9 @@ void AtomicFile::commit() {
     flush();
     if (spool_ >= 0)
         copy_spool();
+    // A name that may be in use already can only be taken by renaming.
+    if (nameless_)
+        give_temporary_name();
     const int descriptor = std::exchange(descriptor_, -1);
     // An interrupted close has closed all the same on Linux.
     if (owns_descriptor_ && ::close(descriptor) != 0 && errno != EINTR)
@@ -306,6 +356,7 @@ void AtomicFile::discard() noexcept {
     if (!temporary_.empty())
         ::unlink(temporary_.c_str());
     temporary_.clear();
+    nameless_ = false;
     unfinished_.withdraw();
 }
 

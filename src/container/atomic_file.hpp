@@ -6,6 +6,8 @@
 
 #include "container/unfinished_name.hpp"
 
+#include <sys/types.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -22,9 +24,10 @@ namespace lamella {
 /// Whether bytes that were appended will be replaced by others later.
 enum class Overwriting : std::uint8_t { no, yes };
 
-/// A file that gets its name when it is complete. Until then its bytes are in a file with another name in the
-/// same folder, which is removed with this object. A file of that name that is there already is replaced (and
-/// keeps its permissions); through a symbolic link, the file that the link points to is.
+/// A file that gets its name when it is complete. Until then its bytes are in a file without a name, of which
+/// nothing is left however the process ends; where the file system has no such files, in one with another
+/// name in the same folder, which is removed with this object. A file of that name that is there already is
+/// replaced (and keeps its permissions); through a symbolic link, the file that the link points to is.
 ///
 /// "-" is standard output. That and what is not a regular file (pipes, devices) is written in place, since it
 /// can be neither renamed nor taken back.
@@ -51,15 +54,18 @@ class AtomicFile {
     /// Bytes appended so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
     /// Where the bytes are until `commit`, for other processes to write some of them; "" where they are
-    /// written in place.
-    [[nodiscard]] const std::string& working_path() const noexcept { return temporary_; }
+    /// written in place. From here on the file has a name, which stays when the process is killed.
+    [[nodiscard]] const std::string& share();
 
     /// As given.
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
   private:
     void open_in_place();
-    void open_temporary();
+    void open_unfinished();
+    void open_named(mode_t permissions);
+    void give_temporary_name();
+    void announce();
     void spool();
     void copy_spool();
     void write_out(std::string_view bytes);
@@ -69,7 +75,8 @@ class AtomicFile {
 
     std::string path_;
     std::string target_;    ///< path_ with symbolic links followed
-    std::string temporary_; ///< empty when written in place
+    std::string temporary_; ///< the name until `commit`; empty without one
+    bool nameless_ = false; ///< neither written in place nor named yet
     UnfinishedName unfinished_;
     int descriptor_ = -1;
     int spool_ = -1; ///< the nameless temporary file, when bytes wait in one

@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/nameless_file.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/statvfs.h>
@@ -23,19 +25,6 @@ std::string spill_folder() {
     return access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
 }
 
-/// A file that never has a name or has lost it already; -1 and errno where there can be none.
-int open_nameless(const std::string& folder) {
-    const int number = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    // Not every file system can do that, and what it says then differs.
-    if (number >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL))
-        return number;
-    std::string pattern = folder + "/lamella-XXXXXX";
-    const int named = mkostemp(pattern.data(), O_CLOEXEC);
-    if (named >= 0)
-        unlink(pattern.c_str());
-    return named;
-}
-
 /// "3.2 GB"; what is smaller than a gigabyte in MB.
 std::string amount(std::uint64_t bytes) {
     const double mb = static_cast<double>(bytes) / 1e6;
@@ -45,7 +34,7 @@ std::string amount(std::uint64_t bytes) {
 } // namespace
 
 SpillFile::SpillFile(std::uint64_t bytes) : folder_(spill_folder()), bytes_(bytes) {
-    descriptor_ = open_nameless(folder_);
+    descriptor_ = create_scratch(folder_);
     if (descriptor_ < 0)
         fail(errno);
     if (bytes == 0)

@@ -58,7 +58,7 @@ SharedFile::SharedFile(const std::string& path, Communicator& ranks) : path_(pat
         if (ranks.rank() == 0)
             file_.emplace(path);
     });
-    working_path_ = ranks.gather(file_ ? file_->working_path() : std::string()).front();
+    working_path_ = ranks.gather(file_ ? file_->share() : std::string()).front();
 }
 
 std::uint64_t SharedFile::write(const PieceBytes& mine, std::uint64_t most_bytes) {

@@ -45,7 +45,7 @@ class Interrupt(ProgramTest):
                                    stderr=error_write)
         self.addCleanup(process.kill)
         lines = self.enterContext(os.fdopen(error_read))
-        while not any(name.endswith(".tmp") for name in self.listing()):
+        while not self.has_unfinished_file(process):
             json.loads(lines.readline())
         self.fill(error_write)
         os.close(error_write)

@@ -60,6 +60,13 @@ class ProgramTest(unittest.TestCase):
     def listing(self):
         return sorted(p.relative_to(self.folder).as_posix() for p in self.folder.rglob("*"))
 
+    def has_unfinished_file(self, process):
+        """Whether the process is writing a file: one without a name in the folder, or one with a temporary name."""
+        descriptors = Path(f"/proc/{process.pid}/fd")
+        opened = [os.readlink(link) for link in descriptors.iterdir()] if descriptors.exists() else []
+        return any(name.startswith(str(self.folder)) and name.endswith(" (deleted)") for name in opened) or any(
+            name.endswith(".tmp") for name in self.listing())
+
     def path(self, name):
         return self.folder / name
 

@@ -1,5 +1,6 @@
 #include "container/atomic_file.hpp"
 #include "container/child_process.hpp"
+#include "container/nameless_file.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
@@ -64,9 +66,48 @@ TEST(AtomicFile, LeavesNothingBehindWhenItIsNotEnded) {
     {
         AtomicFile file(folder.file("a.cli"));
         file.append(std::string(3'000'000, 'x'));
-        EXPECT_EQ(folder.entries().size(), 1U);
+        EXPECT_LE(folder.entries().size(), 1U); // a temporary name, where there has to be one
     }
     EXPECT_EQ(folder.entries(), Names{});
+    {
+        AtomicFile file(folder.file("a.cli"));
+        file.append(std::string(3'000'000, 'x'));
+        const std::string shared = file.share();
+        ASSERT_EQ(folder.entries().size(), 1U);
+        EXPECT_EQ(shared, folder.file(folder.entries().front()));
+    }
+    EXPECT_EQ(folder.entries(), Names{});
+}
+
+TEST(AtomicFile, LeavesNothingBehindWhenTheProcessIsKilled) {
+    const TemporaryFolder folder;
+    if (const int nameless = create_nameless(folder.path().string(), 0600); nameless >= 0)
+        close(nameless);
+    else
+        GTEST_SKIP() << "the file system of temporary files has none without a name";
+    write_file(folder.file("a.cli"), "old");
+    const pid_t child = fork();
+    if (child == 0) {
+        AtomicFile file(folder.file("a.cli"));
+        file.append(std::string(3'000'000, 'x'));
+        kill(getpid(), SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(folder.entries(), Names{"a.cli"});
+    EXPECT_EQ(file_bytes(folder.file("a.cli")), "old");
+}
+
+TEST(AtomicFile, TakesBytesFromOthersOnceItIsShared) {
+    const TemporaryFolder folder;
+    AtomicFile file(folder.file("a.cli"));
+    std::ofstream(file.share(), std::ios::binary) << "theirs";
+    EXPECT_EQ(file.share(), folder.file(folder.entries().at(0)));
+    file.commit();
+    EXPECT_EQ(file_bytes(folder.file("a.cli")), "theirs");
+    EXPECT_EQ(folder.entries(), Names{"a.cli"});
+    EXPECT_EQ(AtomicFile("/dev/null").share(), "");
 }
 
 TEST(AtomicFile, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
@@ -79,13 +120,16 @@ TEST(AtomicFile, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
         for (int i = 0; i < 20; ++i) {
             files.push_back(std::make_unique<AtomicFile>(folder.file(std::to_string(i))));
             files.back()->append(std::string(300'000, 'x'));
+            if (i % 2 == 0)
+                static_cast<void>(files.back()->share());
             if (i % 3 == 0)
                 files.pop_back(); // its place in the list is used again
         }
         remove_unfinished();
         remove_unfinished();
         try {
-            const AtomicFile late(folder.file("late"));
+            AtomicFile late(folder.file("late"));
+            late.commit();
         } catch (const Error& error) {
             _exit(error.kind() == ErrorKind::cancelled ? 0 : 1); // before any destructor
         }

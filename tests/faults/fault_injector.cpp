@@ -181,8 +181,8 @@ int open(const char* path, int flags, ...) {
     va_start(list, flags);
     const mode_t mode = va_arg(list, mode_t);
     va_end(list);
-    return made(strikes((flags & O_CREAT) != 0 ? "create" : "open"), -1,
-                [&] { return real(path, flags, mode); });
+    const bool creates = (flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE;
+    return made(strikes(creates ? "create" : "open"), -1, [&] { return real(path, flags, mode); });
 }
 
 int close(int descriptor) {
@@ -204,6 +204,11 @@ int mkdir(const char* path, mode_t mode) noexcept {
 int rename(const char* from, const char* to) noexcept {
     ORIGINAL(rename);
     return made(strikes("rename"), -1, [&] { return real(from, to); });
+}
+
+int linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) noexcept {
+    ORIGINAL(linkat);
+    return made(strikes("link"), -1, [&] { return real(from_folder, from, to_folder, to, flags); });
 }
 
 int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {

@@ -26,6 +26,7 @@ OUTPUT_FAULTS = {
     "write": {"EIO": False, "ENOSPC": False, "EDQUOT": False, "short": True, "EINTR": True},
     "create": {"EACCES": False, "ENOSPC": False, "EROFS": False, "EMFILE": False, "EINTR": True},
     "mkdir": {"EACCES": False, "ENOSPC": False},
+    "link": {"EIO": False, "ENOSPC": False, "EACCES": False, "EINTR": True},
     "rename": {"EIO": False, "ENOSPC": False, "EACCES": False},
     "exchange": {"EIO": True},
     "close": {"EIO": False, "ENOSPC": False, "EINTR": True},

@@ -52,7 +52,8 @@ class Sandbox(ProgramTest):
             self.assertNotIn(call, ["connect", "bind"], line)
             if call == "socket":
                 self.fail(line)
-            for place in places:
+            # A file without a name gets one: the first path is only the way to it.
+            for place in places[1:] if call == "linkat" else places:
                 self.assertTrue((self.folder / place).resolve().is_relative_to(self.path("out").resolve()), line)
 
     def test_a_run_writes_only_its_outputs(self):
@@ -78,6 +79,7 @@ class Sandbox(ProgramTest):
         # These have to go back to their beginning: they wait in a temporary file without a name.
         result, found = self.changes("slice", "-", "-o", "-", "--format", "slc", stdin=data)
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([call for call, _, _ in found if not call.startswith(("open", "unlink"))], [])
 
     def test_checks_write_nothing(self):
         self.succeed("slice", "in/a.stl", "-o", "out/a.cli")

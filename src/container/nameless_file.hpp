@@ -1,0 +1,24 @@
+#pragma once
+
+// Files without a name: nothing of them is left however the process ends.
+
+#include <sys/types.h>
+
+#include <string>
+
+namespace lamella {
+
+/// Opens a new file without a name in `folder`, for reading and writing. It can be named later. The
+/// descriptor, which the caller closes; -1 and errno otherwise: EOPNOTSUPP where there are no such files or
+/// where they cannot be named.
+[[nodiscard]] int create_nameless(const std::string& folder, mode_t permissions);
+
+/// Gives a file of `create_nameless` its name, once. False and errno otherwise: EEXIST where the name is in
+/// use.
+[[nodiscard]] bool name_file(int descriptor, const char* name);
+
+/// Like create_nameless, for what nobody else is to read and never gets a name: where the file system has no
+/// files without one, it loses its own at once.
+[[nodiscard]] int create_scratch(const std::string& folder);
+
+} // namespace lamella
