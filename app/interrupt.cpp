@@ -76,6 +76,9 @@ Interrupt::Interrupt(const Messages& messages) : messages_(messages) {
     signals_ = checked(signalfd(-1, &set, SFD_CLOEXEC));
     ending_ = checked(eventfd(0, EFD_CLOEXEC));
     watcher_ = std::thread([this] { watch(); });
+    // A thread that is only starting may hold locks of the allocator; a copy of the process by fork would
+    // find them locked for ever.
+    watching_.wait();
 }
 
 Interrupt::~Interrupt() {
@@ -87,6 +90,7 @@ Interrupt::~Interrupt() {
 }
 
 void Interrupt::watch() {
+    watching_.count_down();
     std::array<pollfd, 2> awaited{pollfd{signals_, POLLIN, 0}, pollfd{ending_, POLLIN, 0}};
     wait_for(awaited, -1);
     if (awaited[1].revents != 0)

@@ -4,6 +4,7 @@
 
 #include "messages.hpp"
 
+#include <latch>
 #include <stop_token>
 #include <thread>
 
@@ -18,6 +19,9 @@ void block_interrupts();
 /// thread. Should the program be stuck (such as waiting for standard input) a short while after the signal,
 /// or should another signal come, its temporary files are removed for it and it is ended at once with exit
 /// code 130.
+///
+/// Its thread does nothing but wait, from the end of the constructor until a signal: the process may be
+/// forked.
 class Interrupt {
   public:
     explicit Interrupt(const Messages& messages);
@@ -34,6 +38,7 @@ class Interrupt {
     std::stop_source source_;
     int signals_ = -1; ///< becomes readable when a signal arrives
     int ending_ = -1;  ///< becomes readable when the watcher is no longer needed
+    std::latch watching_{1};
     std::thread watcher_;
 };
 
