@@ -2,6 +2,7 @@
 
 #include "fixtures/named_solids.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/rounds.hpp"
 #include "fixtures/shared_meshes.hpp"
 
 #include <gtest/gtest.h>
@@ -17,6 +18,7 @@ namespace lamella {
 namespace {
 
 using test::Random;
+using test::rounds_within_reason;
 using Soup = std::vector<Triangle3>;
 
 void add(Soup& soup, const TriangleSoup& part) {
@@ -101,7 +103,7 @@ double surface(const Soup& soup) {
 
 TEST(RepairedMeshes, TurnedAndRepeatedTrianglesLeaveNoTrace) {
     Random random(101);
-    for (int round = 0; round < 1000; ++round) {
+    for (int round = 0; round < rounds_within_reason(1000); ++round) {
         SCOPED_TRACE(round);
         const Soup sound = random_solids(random, false);
         Soup broken;
@@ -127,7 +129,7 @@ TEST(RepairedMeshes, TurnedAndRepeatedTrianglesLeaveNoTrace) {
 TEST(RepairedMeshes, HolesOfATriangleAreClosedWithTheirArea) {
     Random random(102);
     std::size_t joins = 0;
-    for (int round = 0; round < 1000; ++round) {
+    for (int round = 0; round < rounds_within_reason(1000); ++round) {
         SCOPED_TRACE(round);
         const Soup sound = random_solids(random, false);
         // Not two holes at one vertex: a plane could leave no chain between them.
@@ -158,12 +160,12 @@ TEST(RepairedMeshes, HolesOfATriangleAreClosedWithTheirArea) {
             ASSERT_EQ(closed.layer.points.size(), layers[i].points.size());
         }
     }
-    EXPECT_GT(joins, 500U);
+    EXPECT_GT(joins, static_cast<std::size_t>(rounds_within_reason(500)));
 }
 
 TEST(RepairedMeshes, CracksThatAreWeldedMoveTheVolumeByNoMoreThanTheirWidth) {
     Random random(103);
-    for (int round = 0; round < 1000; ++round) {
+    for (int round = 0; round < rounds_within_reason(1000); ++round) {
         SCOPED_TRACE(round);
         const Soup sound = random_solids(random, false);
         const double by = std::pow(10.0, random.real(-7, -4));
@@ -191,7 +193,7 @@ TEST(RepairedMeshes, CracksThatAreWeldedMoveTheVolumeByNoMoreThanTheirWidth) {
 
 TEST(RepairedMeshes, VerticesOnEdgesOfNeighboursLeaveGapsOfRoundingOnly) {
     Random random(104);
-    for (int round = 0; round < 500; ++round) {
+    for (int round = 0; round < rounds_within_reason(500); ++round) {
         SCOPED_TRACE(round);
         const Soup sound = random_solids(random, false);
         Soup broken;
@@ -327,7 +329,7 @@ TEST(RepairedMeshes, SeveralFaultsAtOnceMoveTheUnionByNoMoreThanTheirWidth) {
     int rounds = 0;
     std::size_t closed_layers = 0;
     std::size_t all_layers = 0;
-    for (int round = 0; round < 3000; ++round) {
+    for (int round = 0; round < rounds_within_reason(3000); ++round) {
         SCOPED_TRACE(round);
         // In a heap one of the solids has a hole: of two, ends could be closer to those of the other.
         const bool heap = round % 2 == 0;
@@ -365,7 +367,7 @@ TEST(RepairedMeshes, SeveralFaultsAtOnceMoveTheUnionByNoMoreThanTheirWidth) {
         // The surface moves by sqrt(3) times the jitter at most, and by less than the jitter on average.
         ASSERT_LE(off, by * surface(sound));
     }
-    EXPECT_GT(rounds, 2900);
+    EXPECT_GT(rounds, rounds_within_reason(2900));
     EXPECT_GT(closed_layers, all_layers * 95 / 100);
 }
 
