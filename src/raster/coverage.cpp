@@ -1,0 +1,167 @@
+#include "raster/coverage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lamella {
+
+// A row falls into places where one edge passes from its upper to its lower border, alone, and knots: pieces
+// of edges that lie side by side, where corners, crossings, the upper and lower ends of contours are. Between
+// these nothing begins or ends at any height of the row, so the winding number there is one, and each can be
+// drawn by itself. A knot is cut into slabs at its corners and crossings. Within a slab edges follow one
+// another in one order, and coverage rises (or falls) along each that is a border of the material: so it is
+// exact.
+
+namespace {
+
+/// A gap no wider than this (in pixels) between two bodies is the rounding of a border that they share.
+constexpr double most_rounding = 1e-6;
+
+void draw_border(const Edge& edge, double middle_column, double height, double weight, CoverageRow& out) {
+    const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
+    const double half =
+        std::min({0.5 * std::abs(height * edge.slope), middle_column - low, high - middle_column});
+    out.begin_along(middle_column - half, middle_column + half, weight);
+}
+
+} // namespace
+
+RowRange RowPiece::rows(const Edge& edge, std::uint32_t height) noexcept {
+    const auto row = [height](double v) {
+        return static_cast<std::uint32_t>(std::clamp(v, 0.0, static_cast<double>(height)));
+    };
+    return {row(std::floor(edge.upper.y)), row(std::ceil(edge.lower.y))};
+}
+
+RowPiece::RowPiece(const Edge& edge, std::uint32_t row) noexcept {
+    const bool begins = edge.upper.y >= row;
+    top = begins ? edge.upper.y : row;
+    reach(edge, row, begins ? edge.upper.x : edge.column(row));
+}
+
+void RowPiece::move_to(const Edge& edge, std::uint32_t row) noexcept {
+    top = row;
+    reach(edge, row, bottom == row ? bottom_column : edge.column(row));
+}
+
+void RowPiece::reach(const Edge& edge, std::uint32_t row, double top_column) noexcept {
+    const double border = row + 1.0;
+    const bool ends = edge.lower.y <= border;
+    bottom = ends ? edge.lower.y : border;
+    bottom_column = ends ? edge.lower.x : edge.column(border);
+    low = std::min(top_column, bottom_column);
+    high = std::max(top_column, bottom_column);
+    through = top == row && bottom == border;
+    if (low <= 0) {
+        low = left_of_picture;
+        high = std::max(high, low);
+    }
+}
+
+std::uint32_t CoverageRows::draw(std::uint32_t row, CoverageRow& out) {
+    if (pieces_.entries().empty() && pieces_.next_begin() > row)
+        return pieces_.next_begin() - row;
+    pieces_.advance(row);
+    const Pieces pieces = pieces_.entries();
+    int winding = 0;
+    bool upright = true;
+    std::size_t begin = 0;
+    while (begin < pieces.size() && pieces[begin].low < width_) {
+        double high = pieces[begin].high;
+        int right = winding;
+        std::size_t end = begin;
+        do {
+            const auto& piece = pieces[end];
+            high = std::max(high, piece.high);
+            if (piece.bottom == row + 1.0)
+                right += pieces_.edge(piece).winding;
+            upright = upright && piece.through && pieces_.edge(piece).slope == 0;
+        } while (++end < pieces.size() && pieces[end].low <= high + most_rounding);
+
+        const bool alone = end == begin + 1 && pieces[begin].through && pieces[begin].low > 0;
+        if (!alone)
+            draw_knot(pieces.subspan(begin, end - begin), winding, row, out);
+        else if ((winding == 0) != (right == 0))
+            out.begin_along(pieces[begin].low, pieces[begin].high, right != 0 ? 1 : -1);
+        winding = right;
+        begin = end;
+    }
+    upright = upright && begin == pieces.size(); // or else what is to the right may come nearer
+    return upright ? pieces_.same_edges_until() - row : 1;
+}
+
+void CoverageRows::draw_knot(Pieces knot, int left, std::uint32_t row, CoverageRow& out) {
+    if (find_slabs(knot, row)) {
+        for (std::size_t i = 1; i < heights_.size(); ++i)
+            draw_slab(knot, left, heights_[i - 1], heights_[i], out);
+        return;
+    }
+    const double strips = strips_;
+    for (unsigned i = 0; i < strips_; ++i)
+        draw_slab(knot, left, row + i / strips, row + (i + 1) / strips, out);
+}
+
+bool CoverageRows::find_slabs(Pieces knot, std::uint32_t row) {
+    const std::size_t most = std::size_t{strips_} + 2;
+    if (knot.size() > 2 * most)
+        return false;
+    heights_.assign({static_cast<double>(row), row + 1.0});
+    for (const auto& piece : knot) {
+        for (const double height : {piece.top, piece.bottom})
+            if (std::find(heights_.begin(), heights_.end(), height) == heights_.end())
+                heights_.push_back(height);
+    }
+    for (std::size_t a = 0; a < knot.size() && heights_.size() <= most; ++a)
+        for (std::size_t b = a + 1; b < knot.size() && knot[b].low <= knot[a].high; ++b)
+            add_crossing(knot[a], pieces_.edge(knot[a]), knot[b], pieces_.edge(knot[b]));
+    std::sort(heights_.begin(), heights_.end());
+    return heights_.size() <= most;
+}
+
+void CoverageRows::add_crossing(const RowPiece& a, const Edge& edge_a, const RowPiece& b,
+                                const Edge& edge_b) {
+    const double from = std::max(a.top, b.top);
+    const double to = std::min(a.bottom, b.bottom);
+    if (from >= to)
+        return;
+    const double above = edge_a.column(from) - edge_b.column(from);
+    const double below = edge_a.column(to) - edge_b.column(to);
+    if ((above < 0 && below > 0) || (above > 0 && below < 0))
+        heights_.push_back(from + (to - from) * (above / (above - below)));
+}
+
+void CoverageRows::draw_slab(Pieces knot, int left, double from, double to, CoverageRow& out) {
+    const double middle = 0.5 * (from + to);
+    borders_.clear();
+    for (const auto& piece : knot) {
+        if (piece.top <= middle && middle < piece.bottom) {
+            const Edge& edge = pieces_.edge(piece);
+            borders_.push_back({edge.column(middle), &edge});
+        }
+    }
+    std::sort(borders_.begin(), borders_.end(), [](const Border& a, const Border& b) {
+        return a.column != b.column ? a.column < b.column : a.edge < b.edge;
+    });
+    const double height = to - from;
+    int winding = left;
+    const Border* end = nullptr; // of material, if no more begins there
+    for (const Border& border : borders_) {
+        const int before = std::exchange(winding, winding + border.edge->winding);
+        if (before == 0) {
+            if (end != nullptr && border.column - end->column > most_rounding) {
+                draw_border(*end->edge, end->column, height, -height, out);
+                end = nullptr;
+            }
+            if (end == nullptr)
+                draw_border(*border.edge, border.column, height, height, out);
+            end = nullptr;
+        } else if (winding == 0) {
+            end = &border;
+        }
+    }
+    if (end != nullptr)
+        draw_border(*end->edge, end->column, height, -height, out);
+}
+
+} // namespace lamella

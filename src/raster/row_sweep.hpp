@@ -1,0 +1,144 @@
+#pragma once
+
+// Down a picture, row by row, with the edges that each row meets.
+
+#include "raster/edges.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// Rows from `first` up to `end`.
+struct RowRange {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+
+/// Keeps what the edges of one row are to an algorithm, its `Item`s, in order from row to row. An Item has
+///     static RowRange rows(const Edge&, std::uint32_t height);    the rows that it has to do with
+///     Item(const Edge&, std::uint32_t row);                       in the first of them
+///     void move_to(const Edge&, std::uint32_t row);               from one to the next, or further
+///     bool operator<(const Item&) const;                          a strict weak order along the row
+/// The result depends on the order of the edges only where items are neither less nor greater.
+template <class Item>
+class RowSweep {
+  public:
+    struct Entry : Item {
+        Entry(const Edge& e, std::uint32_t index, std::uint32_t row) : Item(e, row), edge(index) {}
+
+        std::uint32_t edge;
+    };
+
+    RowSweep(std::span<const Edge> edges, std::uint32_t height) : height_(height) {
+        sort_by_first_row(edges);
+    }
+
+    [[nodiscard]] std::span<const Entry> entries() const noexcept { return entries_; }
+    [[nodiscard]] const Edge& edge(const Entry& entry) const noexcept { return edges_[entry.edge]; }
+    /// The row where the next edge begins, or the height of the picture.
+    [[nodiscard]] std::uint32_t next_begin() const noexcept {
+        return begun_ < edges_.size() ? rows_[begun_].first : height_;
+    }
+    /// The row up to which all of the present edges go on and no other begins.
+    [[nodiscard]] std::uint32_t same_edges_until() const noexcept {
+        std::uint32_t until = next_begin();
+        for (const Entry& entry : entries_)
+            until = std::min(until, rows_[entry.edge].end);
+        return until;
+    }
+
+    /// To be called with ascending rows; those left out must not be one where an edge begins.
+    void advance(std::uint32_t row) {
+        std::size_t kept = 0;
+        for (Entry& entry : entries_) {
+            if (rows_[entry.edge].end <= row)
+                continue;
+            entry.move_to(edges_[entry.edge], row);
+            entries_[kept++] = entry;
+        }
+        entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(kept), entries_.end());
+        sort_again();
+        for (; next_begin() <= row && begun_ < edges_.size(); ++begun_)
+            entries_.emplace_back(edges_[begun_], static_cast<std::uint32_t>(begun_), row);
+        merge_from(kept);
+    }
+
+  private:
+    static bool before(const Entry& a, const Entry& b) noexcept {
+        return a < b || (!(b < a) && a.edge < b.edge);
+    }
+
+    void sort_by_first_row(std::span<const Edge> edges) {
+        std::vector<std::uint32_t> ends(std::size_t{height_} + 2);
+        const auto rows_of = [&](const Edge& edge) {
+            return Item::rows(edge, height_);
+        };
+        std::size_t used = 0;
+        for (const Edge& edge : edges) {
+            const RowRange rows = rows_of(edge);
+            if (rows.first < rows.end) {
+                ++ends[rows.first + 1];
+                ++used;
+            }
+        }
+        for (std::size_t i = 1; i < ends.size(); ++i)
+            ends[i] += ends[i - 1];
+        edges_.resize(used);
+        rows_.resize(used);
+        for (const Edge& edge : edges) {
+            const RowRange rows = rows_of(edge);
+            if (rows.first < rows.end) {
+                const std::uint32_t place = ends[rows.first]++;
+                edges_[place] = edge;
+                rows_[place] = rows;
+            }
+        }
+    }
+
+    /// From one row to the next few edges change places, unless very many cross.
+    void sort_again() {
+        std::size_t moves = 8 * entries_.size();
+        for (std::size_t i = 1; i < entries_.size(); ++i) {
+            if (!before(entries_[i], entries_[i - 1]))
+                continue;
+            const Entry entry = entries_[i];
+            std::size_t to = i;
+            for (; to > 0 && before(entry, entries_[to - 1]); --to)
+                entries_[to] = entries_[to - 1];
+            entries_[to] = entry;
+            if (i - to > moves) {
+                std::sort(entries_.begin(), entries_.end(), before);
+                return;
+            }
+            moves -= i - to;
+        }
+    }
+
+    /// Puts those from `kept` on, which are new, among the others.
+    void merge_from(std::size_t kept) {
+        if (kept == entries_.size())
+            return;
+        const auto begin = entries_.begin() + static_cast<std::ptrdiff_t>(kept);
+        std::sort(begin, entries_.end(), before);
+        fresh_.assign(begin, entries_.end());
+        std::size_t out = entries_.size();
+        for (std::size_t n = fresh_.size(); n > 0;) {
+            const bool old = kept > 0 && before(fresh_[n - 1], entries_[kept - 1]);
+            entries_[--out] = old ? entries_[--kept] : fresh_[--n];
+        }
+    }
+
+    std::uint32_t height_;
+    std::vector<Edge> edges_; ///< in the order of their first rows
+    std::vector<RowRange> rows_;
+    std::size_t begun_ = 0;
+    std::vector<Entry> entries_;
+    std::vector<Entry> fresh_;
+};
+
+} // namespace lamella
