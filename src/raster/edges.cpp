@@ -37,6 +37,10 @@ void add_edge(const Point2& from, const Point2& to, const PixelGrid& grid, std::
 
 std::vector<Edge> picture_edges(std::span<const Layer> parts, const PixelGrid& grid) {
     std::vector<Edge> edges;
+    std::size_t points = 0;
+    for (const Layer& layer : parts)
+        points += layer.points.size();
+    edges.reserve(points);
     for (const Layer& layer : parts) {
         for (std::size_t i = 0; i < layer.rings; ++i) {
             const std::span<const Point2> ring = layer.contour(i);

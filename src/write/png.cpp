@@ -36,10 +36,12 @@ void append_chunk(std::string_view name, std::string_view content, ByteBuffer& o
 
 } // namespace
 
-void PngEncoder::find_differences(std::span<const PixelRun> row) {
+bool PngEncoder::find_differences(std::span<const PixelRun> row) {
     differences_.clear();
     auto up = above_.begin();
     for (std::size_t i = 0; i < row.size();) {
+        if (differences_.size() >= row.size())
+            return false;
         const PixelRun both{std::min(row[i].end, up->end),
                             static_cast<std::uint8_t>(row[i].value - up->value)};
         if (!differences_.empty() && differences_.back().value == both.value)
@@ -49,17 +51,15 @@ void PngEncoder::find_differences(std::span<const PixelRun> row) {
         i += row[i].end == both.end ? 1 : 0;
         up += up->end == both.end ? 1 : 0;
     }
+    return differences_.size() < row.size();
 }
 
 void PngEncoder::add_row(std::span<const PixelRun> row) {
     std::span<const PixelRun> shown = row;
     std::uint8_t kind = as_it_is;
-    if (!above_.empty()) {
-        find_differences(row);
-        if (differences_.size() < row.size()) {
-            shown = differences_;
-            kind = more_than_above;
-        }
+    if (!above_.empty() && find_differences(row)) {
+        shown = differences_;
+        kind = more_than_above;
     }
     deflater_.put(kind, 1);
     std::uint32_t from = 0;

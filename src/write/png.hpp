@@ -28,7 +28,8 @@ class PngEncoder {
   private:
     /// One row, as it is or as its differences from the one above, whichever has fewer runs.
     void add_row(std::span<const PixelRun> row);
-    void find_differences(std::span<const PixelRun> row);
+    /// Says whether there are fewer runs of them than of the row; else they are not all found.
+    bool find_differences(std::span<const PixelRun> row);
 
     std::uint32_t width_;
     std::uint32_t height_;

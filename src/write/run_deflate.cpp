@@ -233,14 +233,11 @@ constexpr std::size_t most_head_bytes = 600; // 3 + 14 bits, 19 lengths, 287 len
 
 } // namespace
 
-// Adler-32 of n equal bytes v: the sum grows by n v, the sum of sums by n times the old sum and n (n + 1) / 2
-// times v.
-void RunDeflater::add_to_checksum(std::uint8_t value, std::uint64_t count) noexcept {
+void RunDeflater::reduce_checksum() noexcept {
     constexpr std::uint64_t prime = 65521;
-    const std::uint64_t n = count % (2 * prime); // so that half of n (n + 1) is right, too
-    sum_of_sums_ = static_cast<std::uint32_t>(
-        (sum_of_sums_ + n % prime * sum_ + n * (n + 1) / 2 % prime * value) % prime);
-    sum_ = static_cast<std::uint32_t>((sum_ + n * value) % prime);
+    sum_ %= prime;
+    sum_of_sums_ %= prime;
+    unreduced_ = 0;
 }
 
 void RunDeflater::begin_stream() {
@@ -302,7 +299,8 @@ std::string_view RunDeflater::finish() {
         const char byte = static_cast<char>(bits_ & 0xff);
         stream_.append({&byte, 1});
     }
-    const std::uint32_t checksum = sum_of_sums_ << 16 | sum_;
+    reduce_checksum();
+    const std::uint64_t checksum = sum_of_sums_ << 16 | sum_;
     std::array<char, 4> ending;
     for (unsigned i = 0; i < 4; ++i)
         ending[i] = static_cast<char>(checksum >> (24 - 8 * i) & 0xff);
