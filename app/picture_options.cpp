@@ -87,8 +87,8 @@ std::uint32_t limited(std::uint64_t value) {
 
 OptionGroup picture_options(PictureArguments& target) {
     Option antialias = count("antialias", "N",
-                             "strips per row of pixels, 1 to 64: how finely covered parts of pixels become "
-                             "grey; 1 is black and white, by the middles of pixels; 8 unless given",
+                             "1 is black and white, by the middles of pixels; 2 to 64: grey by the covered "
+                             "part of each pixel, exact for up to N corners close together; 8 unless given",
                              target.antialias);
     Option gamma = positive(
         "gamma", "G", "grey becomes 255 times the covered part to this power; 1 unless given", target.gamma);

@@ -5,8 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <ctime>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 #include <thread>
 
 namespace lamella::bench {
@@ -41,6 +43,19 @@ std::uint64_t run_in_child(const std::function<void(std::span<std::byte>)>& body
         std::exit(1);
     }
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+double processor_seconds() {
+    timespec used{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+Cost least(std::span<const Cost> costs) {
+    Cost result = costs.front();
+    for (const Cost& cost : costs)
+        result = {std::min(result.wall_s, cost.wall_s), std::min(result.cpu_s, cost.cpu_s)};
+    return result;
 }
 
 double median(std::vector<double> values) {
@@ -88,6 +103,14 @@ std::string option(int argc, char** argv, const char* name, const std::string& o
         if (std::string(argv[i]) == name)
             return argv[i + 1];
     return otherwise;
+}
+
+std::vector<std::string> list_option(int argc, char** argv, const char* name, const std::string& otherwise) {
+    std::vector<std::string> items;
+    std::istringstream text(option(argc, argv, name, otherwise));
+    for (std::string item; std::getline(text, item, ',');)
+        items.push_back(item);
+    return items;
 }
 
 } // namespace lamella::bench

@@ -20,6 +20,34 @@ inline double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// What a piece of work took. Seconds of processors are what to compare where others use the machine, too.
+struct Cost {
+    double wall_s = 0;
+    double cpu_s = 0; ///< of all threads, by the system for it, too
+};
+
+/// What the process has used of the processors so far.
+[[nodiscard]] double processor_seconds();
+
+template <class Work>
+Cost cost_of(const Work& work) {
+    const auto start = Clock::now();
+    const double used = processor_seconds();
+    work();
+    return {seconds_since(start), processor_seconds() - used};
+}
+
+/// The least of several, for each figure: what others on the machine do only adds.
+[[nodiscard]] Cost least(std::span<const Cost> costs);
+
+/// Calls `round` so many times, or until `seconds` are over, but once at least.
+template <class Round>
+void repeat(int rounds, double seconds, const Round& round) {
+    const auto start = Clock::now();
+    for (int i = 0; i < rounds && (i == 0 || seconds_since(start) < seconds); ++i)
+        round();
+}
+
 /// Runs `body` in a process of its own, so that no measurement inherits warm memory from the one before, and
 /// the peak memory is its own. Exits the program with a message when the process fails. Returns its peak
 /// resident memory in bytes; the bytes of the result are written to `result`.
@@ -63,5 +91,9 @@ class Table {
 
 /// `--name value` from the command line, or the default.
 [[nodiscard]] std::string option(int argc, char** argv, const char* name, const std::string& otherwise);
+
+/// The same, divided at its commas.
+[[nodiscard]] std::vector<std::string> list_option(int argc, char** argv, const char* name,
+                                                   const std::string& otherwise);
 
 } // namespace lamella::bench

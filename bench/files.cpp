@@ -1,7 +1,10 @@
-// What does a file cost? From STL file to slice file while slicing goes on, against slicing into memory and
-// against copying the finished file; and the peak memory of each. The files are read back and checked.
+// What does a file cost? Writing layers that are in memory, by one thread, against copying the finished file;
+// and from STL file to slice file while slicing goes on, with the peak memory of that, against slicing into
+// memory. The files are read back and checked.
 //
-//     files [--rounds 5] [--threads 2]
+//     files [--parts rook,lattice] [--formats cli,svg] [--rounds 3] [--seconds 20]
+//
+// A row takes so many rounds, or as many as fit into the seconds.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -17,46 +20,77 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <string_view>
-#include <thread>
 
 namespace lamella::bench {
 
 namespace {
 
-double into_file(const Part& part, const LayerFormat& format, const std::string& path, unsigned threads) {
-    const auto start = Clock::now();
-    const Execution execution{.threads = threads};
-    const OpenedPart opened = open_part(part, execution);
-    const auto writer = open_layer_writer(path, format,
-                                          {.box = opened.box,
-                                           .layers = opened.plan.layers.size(),
-                                           .bottom = opened.plan.layers.front().bottom});
-    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.mesh, opened.plan, execution);
+std::unique_ptr<LayerWriter> open_writer(const OpenedPart& opened, const LayerFormat& format,
+                                         const std::string& path) {
+    return open_layer_writer(path, format,
+                             {.box = opened.box,
+                              .layers = opened.plan.layers.size(),
+                              .bottom = opened.plan.layers.front().bottom});
+}
+
+/// From the STL file, on as many threads as there are.
+void into_file(const Part& part, const LayerFormat& format, const std::string& path) {
+    const OpenedPart opened = open_part(part, {});
+    const auto writer = open_writer(opened, format, path);
+    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.mesh, opened.plan, {});
     writer->finish();
-    return seconds_since(start);
 }
 
 /// A copy as a program makes it that has the bytes in memory already.
-double copy_of(const std::string& path) {
+Cost copy_of(const std::string& path) {
     const int from = open(path.c_str(), O_RDONLY);
     struct stat status {};
     fstat(from, &status);
     const auto bytes = static_cast<std::size_t>(status.st_size);
     auto* data = static_cast<char*>(mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_POPULATE, from, 0));
     const std::string copy = path + ".copy";
-    const auto start = Clock::now();
-    const int to = open(copy.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    for (std::size_t done = 0; done < bytes;) {
-        const ssize_t n = write(to, data + done, std::min<std::size_t>(bytes - done, std::size_t{1} << 22));
-        if (n <= 0)
-            throw std::runtime_error("the copy failed");
-        done += static_cast<std::size_t>(n);
-    }
-    close(to);
-    const double seconds = seconds_since(start);
+    const Cost cost = cost_of([&] {
+        const int to = open(copy.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        for (std::size_t done = 0; done < bytes;) {
+            const ssize_t n =
+                write(to, data + done, std::min<std::size_t>(bytes - done, std::size_t{1} << 22));
+            if (n <= 0)
+                throw std::runtime_error("the copy failed");
+            done += static_cast<std::size_t>(n);
+        }
+        close(to);
+    });
+    munmap(data, bytes);
+    close(from);
     std::filesystem::remove(copy);
-    return seconds;
+    return cost;
+}
+
+struct Steps {
+    Cost slicing; ///< into memory, on as many threads as there are
+    Cost writing; ///< by one thread
+    Cost copying;
+};
+
+Steps steps_of(const Part& part, const LayerFormat& format, const std::string& path) {
+    Steps steps{};
+    OpenedPart opened;
+    LayerStack layers;
+    steps.slicing = cost_of([&] {
+        opened = open_part(part, {});
+        layers = slice(opened.mesh, opened.plan);
+    });
+    std::filesystem::remove(path); // to free the last one's blocks is no part of writing the next
+    steps.writing = cost_of([&] {
+        const auto writer = open_writer(opened, format, path);
+        for (const Layer& layer : layers)
+            writer->prepare(layer)();
+        writer->finish();
+    });
+    steps.copying = copy_of(path);
+    return steps;
 }
 
 /// Whether the file, read back, has the layers of the part: as many, closed, of the right area at its
@@ -76,36 +110,44 @@ bool right(const Part& part, const std::string& path) {
     return true;
 }
 
-int report(int argc, char** argv) {
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "5"));
-    const auto threads = static_cast<unsigned>(
-        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
-    std::cout << machine() << "; medians of " << rounds << " rounds, " << threads << " threads\n\n";
+struct Costs {
+    std::vector<Cost> slicing, writing, copying, file;
+    std::uint64_t peak_bytes = 0;
 
-    Table table({"part", "format", "file MB", "into memory s", "into file s", "copying the file s",
-                 "added / copying", "peak MB", "checked"});
+    void add(const Steps& steps) {
+        slicing.push_back(steps.slicing);
+        writing.push_back(steps.writing);
+        copying.push_back(steps.copying);
+    }
+};
+
+std::string seconds(double s) {
+    return fmt::format("{:.4f}", s);
+}
+
+int report(int argc, char** argv) {
+    const int rounds = std::stoi(option(argc, argv, "--rounds", "3"));
+    const double limit = std::stod(option(argc, argv, "--seconds", "20"));
+    const std::vector<std::string> formats =
+        list_option(argc, argv, "--formats", "cli,cli-ascii,svg,slc,json,npz,3mf,dxf,geojson,wkt");
+    std::cout << machine() << "; least of " << rounds << " rounds\n\n";
+
     bool all_right = true;
-    for (const Part& part : standard_parts()) {
-        for (const char* name :
-             {"cli", "cli-ascii", "svg", "slc", "json", "npz", "3mf", "dxf", "geojson", "wkt"}) {
+    for (const Part& part : chosen_parts(argc, argv)) {
+        Table table({part.name, "file MB", "slicing s", "into file s", "peak MB", "writing CPU s",
+                     "MB/s a core", "copying CPU s", "writing / copying", "checked"});
+        for (const std::string& name : formats) {
             const LayerFormat& format = layer_format(name, "");
             const std::string path = part.path + "." + name;
-            std::vector<double> memory;
-            std::vector<double> file;
-            std::vector<double> copy;
-            std::vector<double> added;
-            std::uint64_t peak = 0;
-            for (int round = 0; round < rounds; ++round) {
-                memory.push_back(
-                    measure_in_child<double>([&] { return seconds_into_memory(part, threads); }).result);
-                std::filesystem::remove(path); // to free the last one's blocks is no part of writing the next
+            Costs costs;
+            repeat(rounds, limit, [&] {
+                costs.add(measure_in_child<Steps>([&] { return steps_of(part, format, path); }).result);
+                std::filesystem::remove(path);
                 const auto run =
-                    measure_in_child<double>([&] { return into_file(part, format, path, threads); });
-                file.push_back(run.result);
-                peak = std::max(peak, run.peak_bytes);
-                copy.push_back(measure_in_child<double>([&] { return copy_of(path); }).result);
-                added.push_back(file.back() - memory.back());
-            }
+                    measure_in_child<Cost>([&] { return cost_of([&] { into_file(part, format, path); }); });
+                costs.file.push_back(run.result);
+                costs.peak_bytes = std::max(costs.peak_bytes, run.peak_bytes);
+            });
             // The others are read by programs that are not ours (tests/agreement/foreign_readers_test.py).
             constexpr std::array<std::string_view, 6> read_back{"cli", "cli-ascii", "svg",
                                                                 "slc", "json",      "npz"};
@@ -113,19 +155,21 @@ int report(int argc, char** argv) {
             const bool is_right =
                 !checked || measure_in_child<bool>([&] { return right(part, path); }).result;
             all_right = all_right && is_right;
-            table.add({part.name, name,
-                       fmt::format("{:.1f}", static_cast<double>(std::filesystem::file_size(path)) / 1e6),
-                       fmt::format("{:.4f}", median(memory)), fmt::format("{:.4f}", median(file)),
-                       fmt::format("{:.4f}", median(copy)),
-                       fmt::format("{:.2f}", median(added) / median(copy)),
-                       fmt::format("{:.0f}", static_cast<double>(peak) / 1e6),
+            const double megabytes = static_cast<double>(std::filesystem::file_size(path)) / 1e6;
+            const double writing = least(costs.writing).cpu_s;
+            const double copying = least(costs.copying).cpu_s;
+            table.add({name, fmt::format("{:.1f}", megabytes), seconds(least(costs.slicing).wall_s),
+                       seconds(least(costs.file).wall_s),
+                       fmt::format("{:.0f}", static_cast<double>(costs.peak_bytes) / 1e6), seconds(writing),
+                       fmt::format("{:.0f}", megabytes / writing), seconds(copying),
+                       fmt::format("{:.2f}", writing / copying),
                        !is_right ? "WRONG"
                        : checked ? "yes"
                                  : "elsewhere"});
             std::filesystem::remove(path);
         }
+        std::cout << table.text() << std::endl;
     }
-    std::cout << table.text();
     return all_right ? 0 : 1;
 }
 

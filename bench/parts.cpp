@@ -3,7 +3,9 @@
 #include "experiment.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <iostream>
 
 namespace lamella::bench {
 
@@ -29,6 +31,23 @@ std::vector<Part> standard_parts() {
         make_part("rook", 0.1, [] { return make_rook(); }),
         make_part("lattice", 0.1, [] { return make_lattice({}); }),
     };
+}
+
+std::vector<Part> chosen_parts(int argc, char** argv) {
+    std::vector<Part> parts = standard_parts();
+    const std::vector<std::string> names = list_option(argc, argv, "--parts", "");
+    if (names.empty())
+        return parts;
+    std::erase_if(parts, [&](const Part& part) {
+        std::string name = part.name;
+        std::replace(name.begin(), name.end(), ' ', '-');
+        return std::find(names.begin(), names.end(), name) == names.end();
+    });
+    if (parts.empty()) {
+        std::cerr << "--parts names none of the standard parts\n";
+        std::exit(2);
+    }
+    return parts;
 }
 
 OpenedPart open_part(const Part& part, const Execution& execution) {

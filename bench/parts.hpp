@@ -19,6 +19,10 @@ struct Part {
 /// the first call, reused as long as the files are there.
 [[nodiscard]] std::vector<Part> standard_parts();
 
+/// Those of them that `--parts rook,lattice` names, blanks as hyphens, or else all. Exits the program with a
+/// message when there is none.
+[[nodiscard]] std::vector<Part> chosen_parts(int argc, char** argv);
+
 /// A part as an experiment slices it: one plan for all measurements.
 struct OpenedPart {
     Mesh mesh;

@@ -1,8 +1,10 @@
-// What do pictures cost? From STL file to a job of pictures with 2560 x 1620 pixels, against slicing into
-// memory and against touching every one of these pixels once (memset). The covered areas are compared with
-// those of the sections.
+// What do pictures cost? Of a job of pictures with 2560 x 1620 pixels: slicing, the raster, the pictures'
+// files, and the whole job from an STL file, in seconds of processors, beside touching every pixel once
+// (memset). The covered areas are compared with those of the sections.
 //
-//     raster [--rounds 5] [--threads 2]
+//     raster [--parts rook,lattice] [--antialias 1,4,16] [--rounds 3] [--seconds 60]
+//
+// A row takes so many rounds, or as many as fit into the seconds.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -15,7 +17,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <thread>
 
 namespace lamella::bench {
 
@@ -29,47 +30,84 @@ double pixel_mm(const Box3& box) {
     return std::max((box.max.x - box.min.x) / width, (box.max.y - box.min.y) / height);
 }
 
-double into_job(const Part& part, const std::string& path, unsigned antialias, unsigned threads) {
-    const auto start = Clock::now();
-    const Execution execution{.threads = threads};
-    const OpenedPart opened = open_part(part, execution);
-    const double mm = pixel_mm(opened.box);
-    const LayerFileInfo info{
-        .box = opened.box, .layers = opened.plan.layers.size(), .bottom = opened.plan.layers.front().bottom};
-    const auto writer = open_layer_writer(path, layer_format("sl1s", ""), info,
-                                          {.picture = {.pixel_mm = {{mm, mm}},
-                                                       .pixels = {{width, height}},
-                                                       .portrait = false,
-                                                       .raster = {.antialias = antialias}}});
-    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.mesh, opened.plan, execution);
-    writer->finish();
-    return seconds_since(start);
+PictureOptions pictures(const Box3& box, unsigned antialias) {
+    const double mm = pixel_mm(box);
+    return {.pixel_mm = {{mm, mm}},
+            .pixels = {{width, height}},
+            .portrait = false,
+            .raster = {.antialias = antialias}};
 }
 
-/// Touching the pixels of all layers once, by one thread in a picture that is used again.
-double touching(std::size_t layers) {
+std::unique_ptr<LayerWriter> open_job(const OpenedPart& opened, const std::string& path, unsigned antialias) {
+    return open_layer_writer(
+        path, layer_format("sl1s", ""),
+        {.box = opened.box, .layers = opened.plan.layers.size(), .bottom = opened.plan.layers.front().bottom},
+        {.picture = pictures(opened.box, antialias)});
+}
+
+/// From the STL file, on as many threads as there are.
+void into_job(const Part& part, const std::string& path, unsigned antialias) {
+    const OpenedPart opened = open_part(part, {});
+    const auto writer = open_job(opened, path, antialias);
+    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.mesh, opened.plan, {});
+    writer->finish();
+}
+
+PixelGrid grid_of(const Box3& box) {
+    const double mm = pixel_mm(box);
+    return {.width = width,
+            .height = height,
+            .ux = 1 / mm,
+            .u0 = -box.min.x / mm,
+            .vy = 1 / mm,
+            .v0 = -box.min.y / mm};
+}
+
+/// On one thread, one step after the other.
+struct Steps {
+    Cost slicing;
+    Cost raster;
+    Cost pictures; ///< the raster and the pictures' files in memory
+};
+
+Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
+    const Execution alone{.threads = 1};
+    Steps steps{};
+    OpenedPart opened;
+    LayerStack layers;
+    steps.slicing = cost_of([&] {
+        opened = open_part(part, alone);
+        layers = slice(opened.mesh, opened.plan, alone);
+    });
+    const PixelGrid grid = grid_of(opened.box);
+    steps.raster = cost_of([&] {
+        for (const Layer& layer : layers)
+            rasterise({&layer, 1}, grid, {.antialias = antialias}, [](auto, auto) {});
+    });
+    const auto writer = open_job(opened, path, antialias);
+    steps.pictures = cost_of([&] {
+        for (const Layer& layer : layers)
+            static_cast<void>(writer->prepare(layer)); // makes the picture; what comes back would write it
+    });
+    return steps;
+}
+
+/// Touching the pixels of all layers once, in a picture that is used again.
+void touch(std::size_t layers) {
     const auto pixels = std::make_unique<unsigned char[]>(std::size_t{width} * height);
-    std::memset(pixels.get(), 1, std::size_t{width} * height);
-    const auto start = Clock::now();
     for (std::size_t i = 0; i < layers; ++i) {
         std::memset(pixels.get(), static_cast<int>(i), std::size_t{width} * height);
         const volatile unsigned char seen = pixels[i % width]; // so that it happens
         static_cast<void>(seen);
     }
-    return seconds_since(start);
 }
 
-/// Whether each layer's picture covers the area of the section: the middles of strips speak for them, so
-/// each point of a contour may be wrong by a strip of a pixel or two.
+/// Whether each layer's picture covers the area of the section: exactly but for stretches of rows where very
+/// much lies close together, of which each point of a contour may be one.
 bool right(const Part& part, unsigned antialias) {
     const OpenedPart opened = open_part(part, {});
     const double mm = pixel_mm(opened.box);
-    const PixelGrid grid{.width = width,
-                         .height = height,
-                         .ux = 1 / mm,
-                         .u0 = -opened.box.min.x / mm,
-                         .vy = 1 / mm,
-                         .v0 = -opened.box.min.y / mm};
+    const PixelGrid grid = grid_of(opened.box);
     const std::vector<double> areas = section_areas(opened.mesh, opened.plan);
     const LayerStack layers = slice(opened.mesh, opened.plan);
     for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -84,52 +122,59 @@ bool right(const Part& part, unsigned antialias) {
     return true;
 }
 
-int report(int argc, char** argv) {
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "5"));
-    const auto threads = static_cast<unsigned>(
-        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
-    std::cout << machine() << "; medians of " << rounds << " rounds, " << threads << " threads\n\n";
+struct Costs {
+    std::vector<Cost> slicing, raster, pictures, job, touching;
 
-    Table table({"part", "layers", "antialias", "file MB", "into memory s", "into job s", "added Gpixel/s",
-                 "touching all s", "added / touching", "peak MB", "checked"});
+    void add(const Steps& steps) {
+        slicing.push_back(steps.slicing);
+        raster.push_back(steps.raster);
+        pictures.push_back(steps.pictures);
+    }
+};
+
+std::string seconds(double s) {
+    return fmt::format("{:.3f}", s);
+}
+
+int report(int argc, char** argv) {
+    const int rounds = std::stoi(option(argc, argv, "--rounds", "3"));
+    const double limit = std::stod(option(argc, argv, "--seconds", "60"));
+    std::cout << machine() << "; least of " << rounds << " rounds\n\n";
+
     bool all_right = true;
-    for (const Part& part : standard_parts()) {
+    for (const Part& part : chosen_parts(argc, argv)) {
         if (part.name.ends_with("shuffled"))
             continue; // the same pictures
+        Table table({part.name, "layers", "file MB", "slicing CPU s", "raster CPU s", "PNG CPU s",
+                     "job CPU s", "job s", "touching all s", "checked"});
         const auto layers =
-            measure_in_child<std::size_t>([&] { return open_part(part, {}).plan.layers.size(); });
-        const double pixels = static_cast<double>(layers.result) * width * height;
-        for (const unsigned antialias : {1U, 4U, 16U}) {
+            measure_in_child<std::size_t>([&] { return open_part(part, {}).plan.layers.size(); }).result;
+        for (const std::string& level : list_option(argc, argv, "--antialias", "1,4,16")) {
+            const auto antialias = static_cast<unsigned>(std::stoul(level));
             const std::string path = part.path + ".sl1s";
-            std::vector<double> memory;
-            std::vector<double> job;
-            std::vector<double> touch;
-            std::vector<double> added;
-            std::uint64_t peak = 0;
-            for (int round = 0; round < rounds; ++round) {
-                memory.push_back(
-                    measure_in_child<double>([&] { return seconds_into_memory(part, threads); }).result);
-                std::filesystem::remove(path);
-                const auto run =
-                    measure_in_child<double>([&] { return into_job(part, path, antialias, threads); });
-                job.push_back(run.result);
-                peak = std::max(peak, run.peak_bytes);
-                touch.push_back(measure_in_child<double>([&] { return touching(layers.result); }).result);
-                added.push_back(job.back() - memory.back());
-            }
+            Costs costs;
+            repeat(rounds, limit, [&] {
+                costs.add(measure_in_child<Steps>([&] { return steps_of(part, path, antialias); }).result);
+                std::filesystem::remove(path); // to free the last one's blocks is no part of writing the next
+                costs.job.push_back(measure_in_child<Cost>([&] {
+                                        return cost_of([&] { into_job(part, path, antialias); });
+                                    }).result);
+                costs.touching.push_back(
+                    measure_in_child<Cost>([&] { return cost_of([&] { touch(layers); }); }).result);
+            });
             const bool is_right = measure_in_child<bool>([&] { return right(part, antialias); }).result;
             all_right = all_right && is_right;
-            table.add({part.name, fmt::to_string(layers.result), fmt::to_string(antialias),
+            const double raster = least(costs.raster).cpu_s;
+            table.add({"antialias " + level, fmt::to_string(layers),
                        fmt::format("{:.1f}", static_cast<double>(std::filesystem::file_size(path)) / 1e6),
-                       fmt::format("{:.4f}", median(memory)), fmt::format("{:.4f}", median(job)),
-                       fmt::format("{:.1f}", pixels / median(added) / 1e9),
-                       fmt::format("{:.4f}", median(touch)),
-                       fmt::format("{:.2f}", median(added) / median(touch)),
-                       fmt::format("{:.0f}", static_cast<double>(peak) / 1e6), is_right ? "yes" : "WRONG"});
+                       seconds(least(costs.slicing).cpu_s), seconds(raster),
+                       seconds(least(costs.pictures).cpu_s - raster), seconds(least(costs.job).cpu_s),
+                       seconds(least(costs.job).wall_s), seconds(least(costs.touching).cpu_s),
+                       is_right ? "yes" : "WRONG"});
             std::filesystem::remove(path);
         }
+        std::cout << table.text() << std::endl;
     }
-    std::cout << table.text();
     return all_right ? 0 : 1;
 }
 

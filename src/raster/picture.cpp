@@ -29,7 +29,7 @@ void check(const PixelGrid& grid, const RasterOptions& options) {
         !std::isfinite(scale) || scale == 0)
         throw Error(ErrorKind::usage, "the pixels of a picture must have a size that is finite and not zero");
     if (options.antialias < 1 || options.antialias > most_antialias)
-        throw Error(ErrorKind::usage, fmt::format("anti-aliasing in {} strips: choose 1 (none) to {}",
+        throw Error(ErrorKind::usage, fmt::format("anti-aliasing of level {}: choose 1 (none) to {}",
                                                   options.antialias, most_antialias));
     if (!(options.gamma > 0) || !std::isfinite(options.gamma))
         throw Error(ErrorKind::usage,

@@ -132,7 +132,7 @@ class Pictures(ProgramTest):
                 (["--resolution", "70000x5"], "up to 65535"),
                 (["--display-size", "-1,1"], "not a length or two"),
                 (["--antialias", "0"], "choose 1"),
-                (["--antialias", "65"], "65 strips"),
+                (["--antialias", "65"], "level 65"),
                 (["--antialias", "5000000000"], "strips"),
                 (["--gamma", "0"], "above 0"),
                 (["--mirror", "z"], "--mirror"),

@@ -21,15 +21,15 @@ struct PixelGrid {
     double vx = 0, vy = 1, v0 = 0;
 };
 
-/// Pixels along each side of a picture, and strips in a row of them.
+/// Pixels along each side of a picture, and levels of anti-aliasing.
 inline constexpr std::uint32_t most_pixels = 65535;
 inline constexpr unsigned most_antialias = 64;
 
 struct RasterOptions {
-    /// Into how many strips a row is cut. A pixel's coverage is the part of its area where the winding number
-    /// is not zero: exact where no contour begins, ends, bends or crosses another one within a strip, and
-    /// otherwise decided in the middle of that strip, so that each such strip is wrong by less than
-    /// 1/antialias.
+    /// A pixel's coverage is the part of its area where the winding number is not zero: exact, but where more
+    /// than so many corners and crossings of contours, or twice as many edges, lie side by side in a row
+    /// without a gap between them. Such a stretch of a row is cut into so many strips; each is decided in its
+    /// middle, and wrong by less than its share where contours begin, end, bend or cross within it.
     ///
     /// 1 is no anti-aliasing: a pixel is covered, or not, as its centre is. A centre on a contour counts when
     /// the material lies to its right or, on a level line, below it: bodies side by side share no pixel.
@@ -54,8 +54,8 @@ using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t 
 /// covered once. Open chains have no area and leave no trace; what lies beyond the picture is cut off.
 /// Returns the covered area in pixels, before it was rounded to values.
 ///
-/// O(p + c log c + r) for p points, r rows of strips and c crossings of contours with their middles, in
-/// memory for the points and one row. Throws Error{usage} for a grid or options that make no picture.
+/// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (with strips, where rows are
+/// cut into them), in memory for the points and one row. Throws Error{usage} for a grid or options that make no picture.
 double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
                  const RowSink& sink);
 
