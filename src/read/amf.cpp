@@ -32,6 +32,7 @@ constexpr std::size_t longest_preface = 1U << 16;
 constexpr std::size_t longest_name = 200;
 constexpr std::size_t longest_title = 1000;
 constexpr std::size_t longest_text = 1U << 16; ///< that anybody reads
+constexpr std::uint64_t node_bytes = 80;       ///< of a map, about
 
 struct Unit {
     std::string_view name; ///< in lower case
@@ -180,7 +181,8 @@ constexpr std::array<std::string_view, 14> instance_numbers = {
 
 class DocumentReader {
   public:
-    DocumentReader(const std::string& name, bool skim) : name_(name), skim_(skim) {}
+    DocumentReader(const std::string& name, bool skim, ReadLimits& limits)
+        : name_(name), skim_(skim), count_(limits) {}
 
     AmfDocument read(std::string_view document, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
@@ -203,6 +205,7 @@ class DocumentReader {
             };
         }
         parse_xml(document, name_, handlers);
+        count_.keep(here());
         return std::move(result_);
     }
 
@@ -227,6 +230,13 @@ class DocumentReader {
         throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", name_, line_, what));
     }
 
+    [[nodiscard]] std::string here() const { return fmt::format("line {}", line_); }
+
+    /// To be called before memory is taken.
+    void count(std::uint64_t triangles, std::uint64_t bytes) {
+        count_.add(triangles, bytes, [this] { return here(); });
+    }
+
     Where start(std::string_view element, const XmlAttributes& attributes) {
         if (where_.empty())
             return start_file(element, attributes);
@@ -238,6 +248,7 @@ class DocumentReader {
             if (element == "object")
                 return start_object(attributes);
             if (element == "constellation") {
+                count(0, sizeof(AmfConstellation));
                 result_.constellations.push_back({std::string(required(attributes, "id")), {}, line_, {}});
                 return Where::constellation;
             }
@@ -290,6 +301,7 @@ class DocumentReader {
             break;
         case Where::constellation:
             if (element == "instance") {
+                count(0, sizeof(AmfInstance));
                 result_.constellations.back().instances.push_back(
                     {std::string(required(attributes, "objectid")), line_, {}});
                 return Where::instance;
@@ -319,11 +331,13 @@ class DocumentReader {
         case Where::vertex:
             if (seen_ != all_three)
                 fail("found a vertex without all of x, y and z");
+            count(0, sizeof(Point3));
             object().mesh.vertices.push_back({point_[0], point_[1], point_[2]});
             break;
         case Where::triangle:
             if (seen_ != all_three)
                 fail("found a triangle without all of v1, v2 and v3");
+            count(1, sizeof(TriangleIndices));
             object().mesh.triangles.push_back(corners_);
             break;
         default:
@@ -347,6 +361,7 @@ class DocumentReader {
     }
 
     Where start_object(const XmlAttributes& attributes) {
+        count(0, sizeof(AmfObject));
         result_.objects.push_back({std::string(required(attributes, "id")), {}, line_, false, {}, {}});
         return Where::object;
     }
@@ -413,6 +428,7 @@ class DocumentReader {
             point_[axis] = number;
             see(axis);
         } else {
+            count(0, node_bytes);
             result_.constellations.back().instances.back().numbers[kind_] = number;
         }
     }
@@ -441,6 +457,7 @@ class DocumentReader {
         if (in != Where::vertices && in != Where::volume)
             return 0;
         MeshText& text = object().text;
+        text.place = here();
         return in == Where::vertices ? take_run(document, place, "</vertices", text.vertices)
                                      : take_run(document, place, "</volume", text.triangles);
     }
@@ -457,6 +474,7 @@ class DocumentReader {
 
     const std::string& name_;
     bool skim_;
+    GrowingMeshCount count_;
     AmfDocument result_;
     std::size_t line_ = 1;
     std::vector<Where> where_;
@@ -525,7 +543,7 @@ class AmfReader {
         const std::string_view text = view(source_);
         ProgressMeter progress(execution_, Stage::read, text.size());
         try {
-            document_ = DocumentReader(source_.name, true).read(text, [&](std::size_t read) {
+            document_ = DocumentReader(source_.name, true, limits_).read(text, [&](std::size_t read) {
                 executor_.check_cancelled();
                 progress.add(read);
             });
@@ -549,6 +567,9 @@ class AmfReader {
             for (std::size_t i = 0; i < meshes.size(); ++i)
                 owners[i]->mesh = std::move(*meshes[i]);
         } else {
+            for (const std::optional<IndexedMesh>& mesh : meshes)
+                if (mesh)
+                    give_back(*mesh, limits_);
             meshes.clear();
             read_by_parser();
         }
@@ -557,7 +578,7 @@ class AmfReader {
     }
 
     void read_by_parser() {
-        document_ = DocumentReader(source_.name, false).read(view(source_), [&](std::size_t) {
+        document_ = DocumentReader(source_.name, false, limits_).read(view(source_), [&](std::size_t) {
             executor_.check_cancelled();
         });
     }

@@ -43,7 +43,7 @@ class Placer {
                         fmt::format("{}: puts {}{} meshes on the plate, at most {} are taken", file_name_,
                                     all.instances + 1 == 0 ? "more than " : "", all.instances,
                                     most_instances));
-        limits_.add_triangles(all.triangles);
+        limits_.check_triangles(all.triangles);
         limits_.add_bytes(all.instances * sizeof(MeshInstance));
         instances_.reserve(all.instances);
         reaches_.resize(objects_.size());

@@ -134,7 +134,12 @@ void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t 
         triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
-FaceMesh join(std::vector<FacePiece>& pieces, ReadLimits& limits, Executor& executor) {
+void count_piece(const FacePiece& piece, ReadLimits& limits) {
+    limits.add_triangles(piece.triangles.size());
+    limits.add_bytes(piece.vertices.size() * sizeof(Point3) + piece.triangles.size() * sizeof(Corners));
+}
+
+FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor) {
     struct Begin {
         std::uint64_t vertex = 0;
         std::uint64_t triangle = 0;
@@ -153,7 +158,6 @@ FaceMesh join(std::vector<FacePiece>& pieces, ReadLimits& limits, Executor& exec
         throw Error(ErrorKind::limit,
                     fmt::format("{} vertices and {} triangles are too many: at most {} of each", sum.vertex,
                                 sum.triangle, most));
-    limits.add_bytes(sum.vertex * sizeof(Point3) + sum.triangle * sizeof(Corners));
 
     FaceMesh faces;
     resize_in_huge_pages(executor, faces.mesh.vertices, sum.vertex);

@@ -57,8 +57,11 @@ struct FaceMesh {
     std::vector<FaceFan> polygons;
 };
 
+/// Counts a piece as soon as it is there, before the next ones are read.
+void count_piece(const FacePiece& piece, ReadLimits& limits);
+
 /// All pieces, in order. Empties them.
-[[nodiscard]] FaceMesh join(std::vector<FacePiece>& pieces, ReadLimits& limits, Executor& executor);
+[[nodiscard]] FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor);
 
 /// How a reader tells where triangle t came from, such as "line 7".
 using TrianglePlace = std::function<std::string(std::uint64_t triangle)>;

@@ -220,7 +220,7 @@ MeshFile read_face_rows(const ByteSource& source, const FaceRows& rows, Remarks&
         for (std::uint64_t i = begin; i < end; ++i) {
             if (first_row[i] < rows.rows)
                 read_piece(text, cuts[i], cuts[i + 1], first_row[i], rows, pieces[i]);
-            limits.add_triangles(pieces[i].triangles.size());
+            count_piece(pieces[i], limits);
             progress.add(cuts[i + 1] - cuts[i]);
         }
     });
@@ -254,7 +254,7 @@ MeshFile read_face_rows(const ByteSource& source, const FaceRows& rows, Remarks&
                                               triangle - (i == 0 ? 0 : ends[i - 1]));
         return fmt::format("line {}", line_at(text, offset));
     };
-    MeshFile file = make_mesh_file(join(pieces, limits, executor), source.name, 0, place, remarks, executor);
+    MeshFile file = make_mesh_file(join(pieces, executor), source.name, 0, place, remarks, executor);
     progress.finish();
     return file;
 }

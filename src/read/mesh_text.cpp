@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace lamella {
 
@@ -109,7 +110,31 @@ class Elements {
     std::vector<std::optional<std::size_t>> counts_;
 };
 
+std::uint64_t mesh_bytes(std::uint64_t vertices, std::uint64_t triangles) {
+    return vertices * sizeof(Point3) + triangles * sizeof(TriangleIndices);
+}
+
 } // namespace
+
+GrowingMeshCount::~GrowingMeshCount() {
+    limits_.give_back(triangles_, bytes_);
+}
+
+void GrowingMeshCount::count(const std::string& place) {
+    triangles_ += open_triangles_;
+    bytes_ += open_bytes_;
+    limits_.add_triangles(std::exchange(open_triangles_, 0), place);
+    limits_.add_bytes(std::exchange(open_bytes_, 0), place);
+}
+
+void GrowingMeshCount::keep(const std::string& place) {
+    count(place);
+    triangles_ = bytes_ = 0;
+}
+
+void give_back(const IndexedMesh& mesh, ReadLimits& limits) {
+    limits.give_back(mesh.triangles.size(), mesh_bytes(mesh.vertices.size(), mesh.triangles.size()));
+}
 
 std::size_t take_run(std::string_view document, std::size_t place, std::string_view end_tag,
                      std::vector<std::string_view>& runs) {
@@ -135,17 +160,15 @@ std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText
     triangles.count(executor);
 
     std::vector<bool> plain(texts.size());
-    std::uint64_t all_bytes = 0;
     constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
     for (std::size_t i = 0; i < texts.size(); ++i) {
         plain[i] = vertices.count_of(i) && triangles.count_of(i) && *vertices.count_of(i) <= most &&
                    *triangles.count_of(i) <= most;
         if (!plain[i])
             continue;
-        all_bytes +=
-            *vertices.count_of(i) * sizeof(Point3) + *triangles.count_of(i) * sizeof(TriangleIndices);
+        limits.add_triangles(*triangles.count_of(i), texts[i].place);
+        limits.add_bytes(mesh_bytes(*vertices.count_of(i), *triangles.count_of(i)), texts[i].place);
     }
-    limits.add_bytes(all_bytes);
 
     std::vector<std::optional<IndexedMesh>> meshes(texts.size());
     for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -168,9 +191,12 @@ std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText
         });
     vertices.drop_odd(plain);
     triangles.drop_odd(plain);
-    for (std::size_t i = 0; i < texts.size(); ++i)
-        if (!plain[i])
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        if (!plain[i] && meshes[i]) {
+            give_back(*meshes[i], limits);
             meshes[i].reset();
+        }
+    }
     return meshes;
 }
 

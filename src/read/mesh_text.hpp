@@ -12,6 +12,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct MeshText {
     std::vector<std::string_view> triangles;
     /// Prefixes of namespaces that attributes may have.
     std::span<const std::string> prefixes;
+    std::string place; ///< as errors call it
 };
 
 /// Takes down the run that begins at `place` of a document and goes up to `end_tag`, and says how long it is;
@@ -54,10 +56,46 @@ struct MeshTextForm {
 inline constexpr double farthest_coordinate = 1e38;
 
 /// The meshes, each empty where it is not plain: some element has another form, or an index is out of range.
-/// Memory is taken for elements that the text has room for only, and after the limits agreed.
+/// Memory is taken for elements that the text has room for only, and after the limits agreed; they count what
+/// is returned.
 [[nodiscard]] std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText> texts,
                                                                       const MeshTextForm& form,
                                                                       ReadLimits& limits, Executor& executor);
+
+/// Counts a mesh that grows while a parser reads it, stretch by stretch. What was counted by the time that it
+/// is destroyed is given back, unless it is kept.
+class GrowingMeshCount {
+  public:
+    explicit GrowingMeshCount(ReadLimits& limits) : limits_(limits) {}
+    GrowingMeshCount(const GrowingMeshCount&) = delete;
+    GrowingMeshCount& operator=(const GrowingMeshCount&) = delete;
+    ~GrowingMeshCount();
+
+    /// What is about to be added; `place` says where, as errors call it.
+    template <class Place>
+    void add(std::uint64_t triangles, std::uint64_t bytes, const Place& place) {
+        open_triangles_ += triangles;
+        open_bytes_ += bytes;
+        if (open_bytes_ >= stretch_bytes)
+            count(place());
+    }
+    /// Counts what is left, and keeps it counted.
+    void keep(const std::string& place);
+
+  private:
+    static constexpr std::uint64_t stretch_bytes = 1 << 16;
+
+    void count(const std::string& place);
+
+    ReadLimits& limits_;
+    std::uint64_t open_triangles_ = 0; ///< not yet counted
+    std::uint64_t open_bytes_ = 0;
+    std::uint64_t triangles_ = 0;
+    std::uint64_t bytes_ = 0;
+};
+
+/// Gives back what the limits counted of a mesh.
+void give_back(const IndexedMesh& mesh, ReadLimits& limits);
 
 /// Triangles that use a vertex twice.
 [[nodiscard]] std::size_t degenerate_triangles(const IndexedMesh& mesh);

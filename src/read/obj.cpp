@@ -236,7 +236,7 @@ MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, cons
             pieces[i].begin = cuts[i];
             pieces[i].end = cuts[i + 1];
             PieceReader(text, pieces[i]).run();
-            limits.add_triangles(pieces[i].faces.triangles.size());
+            count_piece(pieces[i].faces, limits);
             progress.add(cuts[i + 1] - cuts[i]);
         }
     });
@@ -272,7 +272,7 @@ MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, cons
         const std::uint64_t before = piece == 0 ? 0 : ends[piece - 1];
         return fmt::format("line {}", line_at(text, PieceReader(text, again, triangle - before).run()));
     };
-    MeshFile file = make_mesh_file(join(faces, limits, executor), source.name, 1, place, remarks, executor);
+    MeshFile file = make_mesh_file(join(faces, executor), source.name, 1, place, remarks, executor);
     file.format = MeshFormat::obj;
     if (name != FacePiece::nowhere)
         file.name = first_line(text, name);

@@ -28,6 +28,8 @@ constexpr std::size_t nowhere = std::string_view::npos;
 
 /// Pieces are parsed in parallel; about as much text as 4,000 facets.
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+/// What is parsed before triangles are counted again.
+constexpr std::size_t stretch_bytes = 32 * piece_bytes;
 
 char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
@@ -156,8 +158,10 @@ struct Piece {
 /// Parses one piece.
 class PieceParser {
   public:
-    PieceParser(std::string_view text, Piece& piece)
-        : words_(text, piece.begin), piece_(piece), in_solid_(piece.begins_in_solid) {}
+    /// Stops before the facet that would be one more than `most`.
+    PieceParser(std::string_view text, Piece& piece,
+                std::uint64_t most = std::numeric_limits<std::uint64_t>::max())
+        : words_(text, piece.begin), piece_(piece), most_(most), in_solid_(piece.begins_in_solid) {}
 
     void run() {
         try {
@@ -180,6 +184,8 @@ class PieceParser {
         if (words_.at_end() || words_.offset() >= piece_.limit)
             return false;
         const std::size_t here = words_.offset();
+        if (piece_.stored == most_ && matches(words_.peek(), "facet"))
+            return false;
         if (words_.take("facet")) {
             facet_ = here;
             in_solid_ = true;
@@ -306,6 +312,7 @@ class PieceParser {
 
     Words words_;
     Piece& piece_;
+    std::uint64_t most_;
     bool in_solid_;
     std::size_t facet_ = nowhere;
 };
@@ -446,6 +453,22 @@ std::uint64_t line_of(const ByteSource& source, std::size_t offset) {
     return line;
 }
 
+void count_triangles(const ByteSource& source, const Piece& piece, ReadLimits& limits) {
+    if (piece.stored <= limits.triangles_left()) {
+        limits.add_triangles(piece.stored);
+        return;
+    }
+    Piece taken{.begin = piece.begin, .begins_in_solid = piece.begins_in_solid, .limit = piece.limit};
+    PieceParser(text_of(source), taken, limits.triangles_left()).run();
+    limits.add_triangles(piece.stored, fmt::format("line {}", line_of(source, taken.end)));
+}
+
+/// The same, of what stays in memory.
+void count_piece(const ByteSource& source, const Piece& piece, ReadLimits& limits) {
+    count_triangles(source, piece, limits);
+    limits.add_bytes(piece.triangles.size() * sizeof(Triangle3f), fmt::format("byte {}", piece.end));
+}
+
 /// What is to be said of the text as a whole.
 MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOptions& options) {
     const std::string_view text = text_of(source);
@@ -528,31 +551,35 @@ bool is_stl_ascii(std::string_view text) {
 
 MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                         const Execution& execution) {
+    ReadLimits limits(source.name, options);
     const std::string_view text = text_of(source);
     Parser parser(text, execution);
-    std::vector<Piece> pieces = parser.next(text.size());
+    std::vector<Piece> pieces;
     Piece sum;
-    for (const Piece& piece : pieces)
-        add(sum, piece);
+    while (!parser.done()) {
+        for (Piece& piece : parser.next(limits.limited() ? stretch_bytes : text.size())) {
+            count_piece(source, piece, limits);
+            add(sum, piece);
+            pieces.push_back(std::move(piece));
+        }
+    }
     MeshFile file = describe(source, sum, options);
-    ReadLimits(source.name, options).add_triangles(sum.stored);
     file.objects.front().mesh = Mesh(join(pieces, parser.executor()));
     return file;
 }
 
 MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
                           const Execution& execution) {
-    constexpr std::size_t stretch = 32 * piece_bytes;
     ReadLimits limits(source.name, options);
     Parser parser(text_of(source), execution);
     Piece sum;
     std::uint64_t batches = 0;
     while (!parser.done()) {
         const std::size_t begin = parser.at();
-        std::vector<Piece> pieces = parser.next(stretch);
+        std::vector<Piece> pieces = parser.next(stretch_bytes);
         for (const Piece& piece : pieces) {
             add(sum, piece);
-            limits.add_triangles(piece.stored);
+            count_triangles(source, piece, limits);
         }
         parser.executor().for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             if (!pieces[i].triangles.empty())

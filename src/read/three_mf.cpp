@@ -191,17 +191,16 @@ class ThreeMfReader {
 
     const ZipEntry& entry_of(const Part& part) const { return *package_.zip().find(part.model.part); }
 
-    static ThreeMfModel load_model(const Part& part, bool is_root,
-                                   const std::function<void(std::size_t)>& advance) {
+    ThreeMfModel load_model(const Part& part, bool is_root, const std::function<void(std::size_t)>& advance) {
         const std::string name = part.model.part;
         try {
-            return read_three_mf_model(part.bytes, name, is_root, true, advance);
+            return read_three_mf_model(part.bytes, name, is_root, true, limits_, advance);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input)
                 throw;
         }
         // It may be at fault, or only be written in a way that is no good for skimming.
-        return read_three_mf_model(part.bytes, name, is_root, false, [](std::size_t) {});
+        return read_three_mf_model(part.bytes, name, is_root, false, limits_, [](std::size_t) {});
     }
 
     void read_meshes(std::size_t first) {
@@ -231,7 +230,9 @@ class ThreeMfReader {
             Part& part = parts_[i];
             if (odd[i]) {
                 const std::string name = part.model.part;
-                part.model = read_three_mf_model(part.bytes, name, i == 0, false,
+                for (const ThreeMfObject& object : part.model.objects)
+                    give_back(object.mesh, limits_);
+                part.model = read_three_mf_model(part.bytes, name, i == 0, false, limits_,
                                                  [&](std::size_t) { executor_.check_cancelled(); });
             }
             part.bytes = {};

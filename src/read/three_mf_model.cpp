@@ -8,6 +8,7 @@
 #include "container/xml.hpp"
 #include "read/decimal_text.hpp"
 #include "read/plain_elements.hpp"
+#include "read/read_limits.hpp"
 #include "read/three_mf_properties.hpp"
 
 #include <fmt/format.h>
@@ -62,6 +63,7 @@ constexpr std::uint32_t largest_id = 0x7FFFFFFF;
 constexpr std::size_t longest_name = 200;
 constexpr std::size_t longest_title = 1000;
 constexpr std::size_t most_remarks = 50;
+constexpr std::uint64_t node_bytes = 80; ///< of a set or map, about
 
 bool is_coordinate(double value) {
     return std::abs(value) <= farthest_coordinate;
@@ -69,8 +71,8 @@ bool is_coordinate(double value) {
 
 class ModelReader {
   public:
-    ModelReader(const ByteSource& source, std::string part, bool is_root, bool skim)
-        : is_root_(is_root), skim_(skim) {
+    ModelReader(const ByteSource& source, std::string part, bool is_root, bool skim, ReadLimits& limits)
+        : is_root_(is_root), skim_(skim), count_(limits) {
         model_.part = std::move(part);
         model_.source = source.name;
     }
@@ -109,6 +111,7 @@ class ModelReader {
         for (const auto& [prefix, space] : spaces_)
             if (!prefix.empty())
                 model_.prefixes.push_back(prefix);
+        count_.keep(here());
         return std::move(model_);
     }
 
@@ -130,11 +133,18 @@ class ModelReader {
         throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", model_.source, line_, what));
     }
 
+    [[nodiscard]] std::string here() const {
+        return fmt::format("part '{}', line {}", printable(model_.part, longest_name), line_);
+    }
+
     void remark(const std::string& what, bool offence = true) {
         if (model_.remarks.size() < most_remarks)
-            model_.remarks.push_back(
-                {fmt::format("part '{}', line {}: {}", printable(model_.part, longest_name), line_, what),
-                 offence});
+            model_.remarks.push_back({fmt::format("{}: {}", here(), what), offence});
+    }
+
+    /// To be called before memory is taken.
+    void count(std::uint64_t triangles, std::uint64_t bytes) {
+        count_.add(triangles, bytes, [this] { return here(); });
     }
 
     Where start(XmlName name, const XmlAttributes& attributes) {
@@ -270,6 +280,7 @@ class ModelReader {
 
     Where start_metadata(const XmlAttributes& attributes) {
         const std::string_view name = attributes.find("name");
+        count(0, node_bytes + name.size());
         if (name.data() == nullptr)
             remark("found metadata without a name");
         else if (!metadata_.emplace(name).second)
@@ -286,6 +297,7 @@ class ModelReader {
         const std::uint32_t id = number(attributes, "id");
         if (id == 0 || id > largest_id)
             fail(fmt::format("found id {}, expected 1 to {}", id, largest_id));
+        count(0, node_bytes + (is_object ? sizeof(ThreeMfObject) : 0));
         const auto [other, is_new] = ids_.emplace(id, is_object);
         if (is_new)
             return id;
@@ -351,18 +363,21 @@ class ModelReader {
         if (in != Where::vertices && in != Where::triangles)
             return 0;
         MeshText& text = object().text;
+        text.place = here();
         return in == Where::vertices ? take_run(document, place, "</vertices", text.vertices)
                                      : take_run(document, place, "</triangles", text.triangles);
     }
 
     void add_vertex(const XmlAttributes& attributes) {
         require_all_by_parser();
+        count(0, sizeof(Point3));
         object().mesh.vertices.push_back(
             {coordinate(attributes, "x"), coordinate(attributes, "y"), coordinate(attributes, "z")});
     }
 
     void add_triangle(const XmlAttributes& attributes) {
         require_all_by_parser();
+        count(1, sizeof(TriangleIndices));
         IndexedMesh& mesh = object().mesh;
         TriangleIndices corners;
         constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
@@ -382,6 +397,7 @@ class ModelReader {
     }
 
     ThreeMfUse use(const XmlAttributes& attributes) {
+        count(0, sizeof(ThreeMfUse));
         ThreeMfUse use;
         use.line = line_;
         use.object = number(attributes, "objectid");
@@ -456,6 +472,7 @@ class ModelReader {
     ThreeMfModel model_;
     bool is_root_;
     bool skim_;
+    GrowingMeshCount count_;
     std::size_t line_ = 1;
     std::vector<Where> where_;
     std::map<std::string, std::string> spaces_; ///< prefixes that the root element declares
@@ -511,9 +528,9 @@ const ThreeMfObject* ThreeMfModel::find(std::uint32_t id) const noexcept {
 }
 
 ThreeMfModel read_three_mf_model(const ByteSource& source, std::string part, bool is_root, bool skim,
-                                 const std::function<void(std::size_t)>& progress) {
+                                 ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
     const std::string_view document(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
-    return ModelReader(source, std::move(part), is_root, skim).read(document, progress);
+    return ModelReader(source, std::move(part), is_root, skim, limits).read(document, progress);
 }
 
 const MeshTextForm& three_mf_text_form() noexcept {

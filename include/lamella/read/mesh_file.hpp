@@ -24,7 +24,8 @@ struct MeshReadOptions {
     /// Makes Error{defect} of what is otherwise a warning: wrong counts, truncation, corners that are not
     /// finite.
     bool strict = false;
-    /// More triangles than this, over all instances, are Error{limit}; 0: as many as can be held.
+    /// More triangles than this, in the file or over all instances, are Error{limit}; 0: as many as can be
+    /// held. They are counted while a file is read, before there is memory for the rest.
     std::uint64_t max_triangles = 0;
     /// So are more bytes than this, of what a compressed file unpacks to and of the meshes; 0: any number.
     std::uint64_t max_memory = 0;
