@@ -4,48 +4,72 @@
 
 namespace lamella {
 
-namespace {
-
-ChainBox box_of(const MonotoneChains& chains, const Chain& chain) noexcept {
-    return ChainBox::of(chains.front(chain), chains.back(chain));
-}
-
-} // namespace
-
 std::optional<ChainGrid> ChainGrid::of(const MonotoneChains& chains) {
     if (chains.all().empty())
         return std::nullopt;
-    std::optional<ChainGrid> grid(std::in_place);
-    grid->take_chains(chains);
+    std::optional<ChainGrid> grid(ChainGrid{chains});
+    grid->take_rings();
     if (!grid->lay_out())
         return std::nullopt;
     grid->fill();
     return grid;
 }
 
-void ChainGrid::take_chains(const MonotoneChains& chains) {
-    all_ = box_of(chains, chains.all().front());
-    for (const Chain& chain : chains.all())
-        all_.add(box_of(chains, chain));
-    const std::size_t n = chains.all().size();
-    pieces_.reserve(n + n / 8);
+void ChainGrid::take_rings() {
+    const MonotoneChains& chains = *all_chains_;
+    all_ = chains.box(chains.all().front().ring);
+    std::size_t expected = 0;
+    for (std::size_t ring = 0; ring < chains.rings(); ++ring) {
+        const std::size_t n = chains.of_ring(ring).size();
+        if (n == 0)
+            continue;
+        all_.add(chains.box(ring));
+        expected += n <= few_chains ? 1 : n;
+    }
+    pieces_.reserve(expected + expected / 4);
     boxes_.reserve(pieces_.capacity());
     const double longest =
-        4 * std::max(all_.x1 - all_.x0, all_.y1 - all_.y0) / std::sqrt(static_cast<double>(n));
-    for (const Chain& chain : chains.all())
-        take(chains, chain, longest);
+        4 * std::max(all_.x1 - all_.x0, all_.y1 - all_.y0) / std::sqrt(static_cast<double>(expected));
+    for (std::uint32_t ring = 0; ring < chains.rings(); ++ring) {
+        const std::span<const Chain> here = chains.of_ring(ring);
+        if (here.empty())
+            continue;
+        const ChainBox& box = chains.box(ring);
+        if (here.size() <= few_chains && std::max(box.x1 - box.x0, box.y1 - box.y0) <= longest) {
+            pieces_.push_back({here.front().first, ring, 0, way::all, {}, {}});
+            boxes_.push_back(box);
+        } else {
+            large_rings_.push_back(ring);
+            for (const Chain& chain : here)
+                take(chain, longest);
+        }
+    }
 }
 
-void ChainGrid::take(const MonotoneChains& chains, const Chain& chain, double longest) {
-    const ChainBox box = box_of(chains, chain);
+void ChainGrid::take(const Chain& chain, double longest) {
+    const ChainBox box = chain.box();
     if (chain.segments > 1 && std::max(box.x1 - box.x0, box.y1 - box.y0) > longest) {
         const std::uint32_t half = chain.segments / 2;
-        take(chains, {chain.first, chain.ring, half, chain.ways}, longest);
-        take(chains, {chain.first + half, chain.ring, chain.segments - half, chain.ways}, longest);
+        const Point2& middle = all_chains_->point(chain, half);
+        take({chain.first, chain.ring, half, chain.ways, chain.front, middle}, longest);
+        take({chain.first + half, chain.ring, chain.segments - half, chain.ways, middle, chain.back},
+             longest);
     } else {
         pieces_.push_back(chain);
         boxes_.push_back(box);
     }
+}
+
+bool ChainGrid::surrounded(const Point2& p, std::uint32_t ring) const noexcept {
+    const auto around = [&](const ChainBox& box) {
+        return box.x0 <= p.x && p.x <= box.x1 && box.y0 <= p.y && p.y <= box.y1;
+    };
+    const auto here = in_cell(cell(p.x, p.y));
+    return large_rings_.size() > few_large_rings ||
+           std::ranges::any_of(large_rings_,
+                               [&](std::uint32_t i) { return i != ring && around(all_chains_->box(i)); }) ||
+           std::ranges::any_of(here,
+                               [&](std::uint32_t i) { return pieces_[i].ring != ring && around(boxes_[i]); });
 }
 
 /// False where the pieces reach into too many cells.

@@ -13,36 +13,22 @@
 
 namespace lamella {
 
-struct ChainBox {
-    double x0;
-    double y0;
-    double x1;
-    double y1;
-
-    static ChainBox of(const Point2& a, const Point2& b) noexcept {
-        return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
-    }
-    void add(const ChainBox& other) noexcept {
-        x0 = std::min(x0, other.x0);
-        y0 = std::min(y0, other.y0);
-        x1 = std::max(x1, other.x1);
-        y1 = std::max(y1, other.y1);
-    }
-    [[nodiscard]] bool meets(const ChainBox& other) const noexcept {
-        return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
-    }
-};
-
-/// The chains of a layer in pieces of about the size of the cells of a grid, and for each cell the pieces
-/// whose boxes reach into it. A chain is only cut where it is long for the layer: one around its corner would
-/// have all of it in its box.
+/// The rings of a layer in pieces of about the size of the cells of a grid, and for each cell the pieces
+/// whose boxes reach into it. A small ring of few chains is one piece, with all ways; of others, each chain
+/// is one, cut only where it is long for the layer: one around its corner would have all of it in its box.
 class ChainGrid {
   public:
     /// None for layers that have no chains or defeat a grid: extents beyond numbers, many long pieces aslant.
     /// O(chains).
+    /// The chains are to outlive the grid.
     [[nodiscard]] static std::optional<ChainGrid> of(const MonotoneChains& chains);
 
     [[nodiscard]] std::span<const Chain> pieces() const noexcept { return pieces_; }
+    [[nodiscard]] static bool whole_ring(const Chain& piece) noexcept { return way::turns(piece.ways); }
+    /// What a piece consists of: all chains of its ring, or itself.
+    [[nodiscard]] std::span<const Chain> chains(const Chain& piece) const noexcept {
+        return whole_ring(piece) ? all_chains_->of_ring(piece.ring) : std::span(&piece, 1);
+    }
     [[nodiscard]] const ChainBox& box(std::uint32_t piece) const noexcept { return boxes_[piece]; }
 
     [[nodiscard]] std::size_t cells() const noexcept { return ends_.size() - 1; }
@@ -60,10 +46,14 @@ class ChainGrid {
     [[nodiscard]] std::span<const std::uint32_t> in_cell(std::size_t cell) const noexcept {
         return std::span(sorted_).subspan(ends_[cell], ends_[cell + 1] - ends_[cell]);
     }
+    /// Whether p, a point of the ring, may lie in another one: it is in the box of another one, or there are
+    /// too many large rings to look. Takes a look at one cell.
+    [[nodiscard]] bool surrounded(const Point2& p, std::uint32_t ring) const noexcept;
 
   private:
-    void take_chains(const MonotoneChains& chains);
-    void take(const MonotoneChains& chains, const Chain& chain, double longest);
+    explicit ChainGrid(const MonotoneChains& chains) : all_chains_(&chains) {}
+    void take_rings();
+    void take(const Chain& chain, double longest);
     bool lay_out();
     void fill();
     [[nodiscard]] std::size_t along(double distance, std::size_t cells) const noexcept {
@@ -72,8 +62,13 @@ class ChainGrid {
     template <class Visit>
     void for_cells(const ChainBox& box, Visit visit) const;
 
+    static constexpr std::size_t few_chains = 32; ///< of a ring that is one piece
+    static constexpr std::size_t few_large_rings = 16;
+
+    const MonotoneChains* all_chains_;
     std::vector<Chain> pieces_;
     std::vector<ChainBox> boxes_;
+    std::vector<std::uint32_t> large_rings_; ///< those in several pieces
     ChainBox all_{};
     double scale_ = 0;
     std::size_t columns_ = 0;

@@ -88,7 +88,10 @@ class Search {
   private:
     /// False when it would take too long.
     bool search(const ChainGrid& grid) {
-        patience_ = 64 * grid.pieces().size() + 4096;
+        patience_ = 64 * grid.pieces().size() + 16 * all_.all().size() + 4096;
+        for (const Chain& piece : grid.pieces())
+            if (ChainGrid::whole_ring(piece))
+                look_into(piece.ring);
         for (std::size_t i = 0; i < grid.cells(); ++i) {
             const std::span<const std::uint32_t> here = grid.in_cell(i);
             const std::uint64_t pairs = here.size() * here.size() / 16;
@@ -101,24 +104,46 @@ class Search {
                     const ChainBox& t = grid.box(here[b]);
                     // Boxes may meet in many cells: one of them will do.
                     if (s.meets(t) && i == grid.cell(std::max(s.x0, t.x0), std::max(s.y0, t.y0)))
-                        look_into(grid.pieces()[here[a]], grid.pieces()[here[b]]);
+                        look_into(grid, here[a], here[b]);
                 }
         }
         return patience_ > 0;
     }
 
+    /// Of a ring of few chains each with each.
+    void look_into(std::uint32_t ring) {
+        const std::span<const Chain> chains = all_.of_ring(ring);
+        for (std::size_t a = 0; a < chains.size(); ++a)
+            for (std::size_t b = a + 1; b < chains.size(); ++b)
+                look_into(chains[a], chains[b]);
+    }
+
+    /// Piece a comes before piece b.
+    void look_into(const ChainGrid& grid, std::uint32_t a, std::uint32_t b) {
+        const std::span<const Chain> chains = grid.chains(grid.pieces()[a]);
+        const std::span<const Chain> others = grid.chains(grid.pieces()[b]);
+        patience_ -= std::min<std::uint64_t>(patience_, chains.size() * others.size() / 16);
+        for (const Chain& s : chains) {
+            if (patience_ == 0)
+                return;
+            if (s.box().meets(grid.box(b)))
+                for (const Chain& t : others)
+                    look_into(s, t);
+        }
+    }
+
     /// a comes before b in the layer.
     void look_into(const Chain& a, const Chain& b) {
-        if (patience_ == 0 || !groups_.open(a.ring, b.ring))
+        if (patience_ == 0 || !groups_.open(a.ring, b.ring) || !a.box().meets(b.box()))
             return;
-        if (in_contact(a, b)) {
+        if (goes_on(b, a) && !goes_on(a, b) ? in_contact(b, a) : in_contact(a, b)) {
             groups_.connect(a.ring, b.ring);
             found_ = true;
         }
     }
 
     bool in_contact(const Chain& a, const Chain& b) {
-        if (a.ring == b.ring && a.first + a.segments == b.first) {
+        if (goes_on(a, b)) {
             // The one goes on where the other one ends. If it does so the same way, they meet nowhere else.
             // If it turns in x alone, one lies above that point and the other one below it, but for level
             // pieces right beside it: these fold. The same for y.
@@ -131,18 +156,25 @@ class Search {
         return in_contact(a, 0, a.segments, b, 0, b.segments);
     }
 
+    /// Whether b begins where a ends.
+    [[nodiscard]] bool goes_on(const Chain& a, const Chain& b) const noexcept {
+        const std::uint64_t end = a.first + a.segments;
+        return a.ring == b.ring &&
+               (end == layer_.offsets[a.ring + 1] ? layer_.offsets[a.ring] : end) == b.first;
+    }
+
     /// Of the first segment of a chain that is no point: 1 in what changes along it, 0 in what does not.
     [[nodiscard]] Point2 first_step(const Chain& chain) const noexcept {
         std::uint32_t i = 1;
-        while (i < chain.segments && all_.point(chain, i) == all_.front(chain))
+        while (i < chain.segments && all_.point(chain, i) == chain.front)
             ++i;
-        return step(all_.front(chain), all_.point(chain, i));
+        return step(chain.front, all_.point(chain, i));
     }
     [[nodiscard]] Point2 last_step(const Chain& chain) const noexcept {
         std::uint32_t i = chain.segments - 1;
-        while (i > 0 && all_.point(chain, i) == all_.back(chain))
+        while (i > 0 && all_.point(chain, i) == chain.back)
             --i;
-        return step(all_.point(chain, i), all_.back(chain));
+        return step(all_.point(chain, i), chain.back);
     }
     static Point2 step(const Point2& a, const Point2& b) noexcept {
         return {a.x != b.x ? 1.0 : 0.0, a.y != b.y ? 1.0 : 0.0};
@@ -271,19 +303,12 @@ class Search {
 
     /// Puts all rings in groups, connected by boxes that meet.
     void group_by_boxes() {
-        std::vector<ChainBox> boxes(layer_.rings, {0, 0, 0, 0});
         std::vector<std::uint32_t> order;
-        for (const Chain& chain : all_.all()) {
-            const ChainBox box = ChainBox::of(all_.front(chain), all_.back(chain));
-            if (order.empty() || order.back() != chain.ring) {
-                boxes[chain.ring] = box;
-                order.push_back(chain.ring);
-            } else {
-                boxes[chain.ring].add(box);
-            }
-        }
+        for (std::uint32_t ring = 0; ring < layer_.rings; ++ring)
+            if (!all_.of_ring(ring).empty())
+                order.push_back(ring);
         std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return std::tie(boxes[a].x0, a) < std::tie(boxes[b].x0, b);
+            return std::tie(all_.box(a).x0, a) < std::tie(all_.box(b).x0, b);
         });
         // What is open at the sweep's abscissa, by the groups' intervals of y: disjoint, or they would be
         // one.
@@ -298,10 +323,10 @@ class Search {
         };
         std::set<Open, decltype(by_y)> open(by_y);
         for (const std::uint32_t ring : order) {
-            Open here{boxes[ring].y0, boxes[ring].y1, boxes[ring].x1, ring};
+            Open here{all_.box(ring).y0, all_.box(ring).y1, all_.box(ring).x1, ring};
             groups_.connect(ring, ring);
             for (auto other = open.find(here); other != open.end(); other = open.find(here)) {
-                if (other->x1 >= boxes[ring].x0) {
+                if (other->x1 >= all_.box(ring).x0) {
                     groups_.connect(ring, other->ring);
                     here = {std::min(here.y0, other->y0), std::max(here.y1, other->y1),
                             std::max(here.x1, other->x1), ring};

@@ -25,20 +25,26 @@ Segment edge_over(double x, const MonotoneChains& chains, const Chain& chain) {
 
 } // namespace
 
-std::optional<EdgeBelow> edge_below(const Point2& p, const MonotoneChains& chains, const ChainGrid& grid) {
+std::optional<EdgeBelow> edge_below(const Point2& p, std::uint32_t own, const MonotoneChains& chains,
+                                    const ChainGrid& grid) {
     std::optional<EdgeBelow> found;
     Segment highest{};
+    const auto reaches = [&p](const ChainBox& box) {
+        return box.x0 <= p.x && p.x < box.x1 && box.y0 <= p.y;
+    };
     const std::size_t column = grid.column(p.x);
     for (std::size_t row = grid.row(p.y) + 1; row-- > 0;) {
         for (const std::uint32_t i : grid.in_cell(grid.cell_at(column, row))) {
-            const ChainBox& box = grid.box(i);
-            if (p.x < box.x0 || box.x1 <= p.x || p.y < box.y0)
+            if (!reaches(grid.box(i)) || grid.pieces()[i].ring == own)
                 continue;
-            const Chain& piece = grid.pieces()[i];
-            const Segment edge = edge_over(p.x, chains, piece);
-            if (side(edge, p) > 0 && (!found || compare_right_of(p.x, edge, highest) > 0)) {
-                highest = edge;
-                found = {piece.ring, (piece.ways & way::right) != 0};
+            for (const Chain& chain : grid.chains(grid.pieces()[i])) {
+                if (!reaches(chain.box()))
+                    continue;
+                const Segment edge = edge_over(p.x, chains, chain);
+                if (side(edge, p) > 0 && (!found || compare_right_of(p.x, edge, highest) > 0)) {
+                    highest = edge;
+                    found = {chain.ring, (chain.ways & way::right) != 0};
+                }
             }
         }
         // What was not seen yet lies in lower rows from end to end.

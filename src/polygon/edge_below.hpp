@@ -15,9 +15,10 @@ struct EdgeBelow {
     bool rightwards = true; ///< the direction of the edge in its ring
 };
 
-/// The highest edge that passes below p just to the right of it, of rings that are not in contact. Edges that
-/// p is on are not below it. Exact. It takes the cells down from p to that edge.
-[[nodiscard]] std::optional<EdgeBelow> edge_below(const Point2& p, const MonotoneChains& chains,
-                                                  const ChainGrid& grid);
+/// The highest edge that passes below p just to the right of it, of rings that are not in contact. p is the
+/// lower left end of ring `own`, none of whose edges pass below it. Exact. It takes the cells down from p to
+/// that edge.
+[[nodiscard]] std::optional<EdgeBelow> edge_below(const Point2& p, std::uint32_t own,
+                                                  const MonotoneChains& chains, const ChainGrid& grid);
 
 } // namespace lamella

@@ -1,6 +1,7 @@
 #include "polygon/monotone_chains.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace lamella {
@@ -12,27 +13,56 @@ unsigned ways_between(const Point2& a, const Point2& b) noexcept {
            (b.y < a.y ? way::down : 0);
 }
 
-/// The ways of all segments between n + 1 points, x and y side by side in a register.
-unsigned ways_along(const Point2* points, std::size_t n) noexcept {
+/// For up to 64 segments, from the highest bit down, which of them go which way.
+struct Ways {
+    std::uint64_t right = 0;
+    std::uint64_t left = 0;
+    std::uint64_t up = 0;
+    std::uint64_t down = 0;
+
+    /// The ways of the first n segments together; n is at least 1.
+    [[nodiscard]] unsigned of_first(unsigned n) const noexcept {
+        const std::uint64_t first = ~std::uint64_t{0} << (64 - n);
+        return ((right & first) != 0 ? way::right : 0) | ((left & first) != 0 ? way::left : 0) |
+               ((up & first) != 0 ? way::up : 0) | ((down & first) != 0 ? way::down : 0);
+    }
+    /// How many segments a chain can take that has gone `ways` so far; 64 when it never turns.
+    [[nodiscard]] unsigned before_turn(unsigned ways) const noexcept {
+        const auto first = [ways](std::uint64_t bits, unsigned way) {
+            return (ways & way) != 0 ? 0 : std::countl_zero(bits);
+        };
+        return static_cast<unsigned>(std::min(std::max(first(right, way::right), first(left, way::left)),
+                                              std::max(first(up, way::up), first(down, way::down))));
+    }
+    void skip(unsigned n) noexcept {
+        for (std::uint64_t* bits : {&right, &left, &up, &down})
+            *bits <<= n;
+    }
+};
+
+/// The ways of the n segments between n + 1 points, x and y side by side in a register. n is 1 to 64.
+Ways ways_along(const Point2* points, std::size_t n) noexcept {
     using Pair = double __attribute__((vector_size(16)));
-    using Signs = std::int64_t __attribute__((vector_size(16)));
+    using Bits = std::int64_t __attribute__((vector_size(16)));
     static_assert(sizeof(Pair) == sizeof(Point2));
     const auto load = [&](std::size_t i) {
         Pair pair;
         std::memcpy(&pair, points + i, sizeof pair);
         return pair;
     };
-    Signs grows{};
-    Signs shrinks{};
+    Bits grows{};
+    Bits shrinks{};
     Pair a = load(0);
     for (std::size_t i = 1; i <= n; ++i) {
         const Pair b = load(i);
-        grows |= b > a;
-        shrinks |= b < a;
+        grows = (grows << 1) - (b > a); // true is -1
+        shrinks = (shrinks << 1) - (b < a);
         a = b;
     }
-    return (grows[0] != 0 ? way::right : 0) | (shrinks[0] != 0 ? way::left : 0) |
-           (grows[1] != 0 ? way::up : 0) | (shrinks[1] != 0 ? way::down : 0);
+    grows <<= 64 - n;
+    shrinks <<= 64 - n;
+    return {static_cast<std::uint64_t>(grows[0]), static_cast<std::uint64_t>(shrinks[0]),
+            static_cast<std::uint64_t>(grows[1]), static_cast<std::uint64_t>(shrinks[1])};
 }
 
 } // namespace
@@ -40,6 +70,7 @@ unsigned ways_along(const Point2* points, std::size_t n) noexcept {
 MonotoneChains::MonotoneChains(const Layer& layer) : layer_(&layer) {
     chains_.reserve(layer.points.size() / longest + 5 * layer.rings);
     starts_.reserve(layer.rings + 1);
+    boxes_.resize(layer.rings, {0, 0, 0, 0});
     for (std::uint32_t ring = 0; ring < layer.rings; ++ring) {
         starts_.push_back(static_cast<std::uint32_t>(chains_.size()));
         cut(ring);
@@ -48,41 +79,48 @@ MonotoneChains::MonotoneChains(const Layer& layer) : layer_(&layer) {
 }
 
 void MonotoneChains::cut(std::uint32_t ring) {
-    constexpr std::uint64_t block = 16;
+    constexpr std::uint64_t block = 32;
     const Point2* const points = layer_->points.data();
     const std::uint64_t begin = layer_->offsets[ring];
     const std::uint64_t end = layer_->offsets[ring + 1];
     if (end - begin < 2)
         return;
-    Chain chain{begin, ring, 0, 0};
+    Chain chain{begin, ring, 0, 0, points[begin], {}};
+    ChainBox box = ChainBox::of(points[begin], points[begin]);
     const auto begin_anew = [&](std::uint64_t first) {
+        chain.back = points[first];
         chains_.push_back(chain);
-        chain = {first, ring, 0, 0};
-    };
-    const auto add_one = [&](std::uint64_t first, const Point2& to) {
-        const unsigned ways = ways_between(points[first], to);
-        if (way::turns(chain.ways | ways))
-            begin_anew(first);
-        chain.ways |= ways;
-        ++chain.segments;
+        chain = {first, ring, 0, 0, points[first], {}};
+        box.add(ChainBox::of(points[first], points[first])); // every end of a chain is a beginning
     };
     std::uint64_t i = begin;
     while (i + 1 < end) {
         if (chain.segments >= longest)
             begin_anew(i);
-        const std::uint64_t n = std::min(block, end - 1 - i);
-        const unsigned ways = ways_along(points + i, n);
-        if (way::turns(chain.ways | ways)) {
-            for (std::uint64_t k = 0; k < n; ++k)
-                add_one(i + k, points[i + k + 1]);
-        } else {
-            chain.ways |= ways;
-            chain.segments += static_cast<std::uint32_t>(n);
+        auto n = static_cast<unsigned>(std::min(block, end - 1 - i));
+        Ways ways = ways_along(points + i, n);
+        while (true) {
+            const unsigned next = std::min(n, ways.before_turn(chain.ways));
+            if (next > 0) {
+                chain.ways |= ways.of_first(next);
+                chain.segments += next;
+            }
+            i += next;
+            n -= next;
+            if (n == 0)
+                break;
+            begin_anew(i);
+            ways.skip(next);
         }
-        i += n;
     }
-    add_one(i, points[begin]);
+    const unsigned closing = ways_between(points[i], points[begin]);
+    if (way::turns(chain.ways | closing))
+        begin_anew(i);
+    chain.ways |= closing;
+    ++chain.segments;
+    chain.back = points[begin];
     chains_.push_back(chain);
+    boxes_[ring] = box;
 }
 
 } // namespace lamella

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,6 +18,7 @@ constexpr unsigned right = 1;
 constexpr unsigned left = 2;
 constexpr unsigned up = 4;
 constexpr unsigned down = 8;
+constexpr unsigned all = right | left | up | down;
 
 /// Whether segments of these ways together go forth and back.
 [[nodiscard]] constexpr bool turns_in_x(unsigned ways) noexcept {
@@ -30,6 +32,26 @@ constexpr unsigned down = 8;
 }
 } // namespace way
 
+struct ChainBox {
+    double x0;
+    double y0;
+    double x1;
+    double y1;
+
+    static ChainBox of(const Point2& a, const Point2& b) noexcept {
+        return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+    }
+    void add(const ChainBox& other) noexcept {
+        x0 = std::min(x0, other.x0);
+        y0 = std::min(y0, other.y0);
+        x1 = std::max(x1, other.x1);
+        y1 = std::max(y1, other.y1);
+    }
+    [[nodiscard]] bool meets(const ChainBox& other) const noexcept {
+        return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
+    }
+};
+
 /// A piece of a ring that goes one way in x and one way in y: its box is that of its ends, and it does not
 /// meet itself.
 struct Chain {
@@ -37,6 +59,10 @@ struct Chain {
     std::uint32_t ring;
     std::uint32_t segments; ///< at least one; its last point may be the first one of the ring
     unsigned ways;
+    Point2 front; ///< its first point and its last one: whoever looks for chains need not touch the layer
+    Point2 back;
+
+    [[nodiscard]] ChainBox box() const noexcept { return ChainBox::of(front, back); }
 };
 
 /// The chains of a layer's rings, in the order of the rings. Open chains of the layer do not count, nor do
@@ -50,20 +76,17 @@ class MonotoneChains {
     explicit MonotoneChains(const Layer& layer);
 
     [[nodiscard]] std::span<const Chain> all() const noexcept { return chains_; }
+    [[nodiscard]] std::size_t rings() const noexcept { return boxes_.size(); }
     [[nodiscard]] std::span<const Chain> of_ring(std::size_t ring) const noexcept {
         return all().subspan(starts_[ring], starts_[ring + 1] - starts_[ring]);
     }
+    /// The box of a ring that has chains.
+    [[nodiscard]] const ChainBox& box(std::size_t ring) const noexcept { return boxes_[ring]; }
 
     /// Point i of a chain, 0 <= i <= segments.
     [[nodiscard]] const Point2& point(const Chain& chain, std::uint32_t i) const noexcept {
         const std::uint64_t at = chain.first + i;
         return layer_->points[at == layer_->offsets[chain.ring + 1] ? layer_->offsets[chain.ring] : at];
-    }
-    [[nodiscard]] const Point2& front(const Chain& chain) const noexcept {
-        return layer_->points[chain.first];
-    }
-    [[nodiscard]] const Point2& back(const Chain& chain) const noexcept {
-        return point(chain, chain.segments);
     }
 
   private:
@@ -72,6 +95,7 @@ class MonotoneChains {
     const Layer* layer_;
     std::vector<Chain> chains_;
     std::vector<std::uint32_t> starts_; ///< of each ring, and the end
+    std::vector<ChainBox> boxes_;       ///< of each ring
 };
 
 } // namespace lamella

@@ -44,19 +44,6 @@ struct LeftEnd {
     Point2 smallest; ///< of the ring's points
 };
 
-/// Calls visit(segment, rightwards) for the edges of a chain that are not vertical.
-template <class Visit>
-void for_edges(const MonotoneChains& chains, const Chain& chain, Visit visit) {
-    for (std::uint32_t i = 0; i < chain.segments; ++i) {
-        const Point2& a = chains.point(chain, i);
-        const Point2& b = chains.point(chain, i + 1);
-        if (a.x < b.x)
-            visit(Segment{a, b}, true);
-        else if (b.x < a.x)
-            visit(Segment{b, a}, false);
-    }
-}
-
 /// How `edge` lies to the line of `probe` just to the right of probe.lo, where both exist: -1 below, 0 on it,
 /// 1 above.
 int compare_at(const Segment& edge, const Segment& probe) noexcept {
@@ -71,19 +58,15 @@ bool collinear(std::span<const Point2> ring) noexcept {
                        [&](const Point2& p) { return orientation(*ends.first, *ends.second, p) == 0; });
 }
 
-/// Of ring i, which has points. Only the chains that reach as far to the left as any are looked into.
+/// Of ring i, which has points. Only those of its points are looked at that are as far to the left as any,
+/// and the edges that begin there.
 LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t i) {
     const std::span<const Point2> ring = layer.contour(i);
     LeftEnd result;
     result.smallest = ring.front();
-    double left = ring.front().x;
-    for (const Chain& chain : chains.of_ring(i))
-        left = std::min(left, chains.back(chain).x);
     bool found = false;
     bool folded = false; // an edge that runs there and back says nothing about the direction of the ring
     const auto look_at = [&](const Segment& line, bool rightwards) {
-        if (line.lo.x > left)
-            return;
         const int order = !found                          ? -1
                           : line.lo.y != result.line.lo.y ? (line.lo.y < result.line.lo.y ? -1 : 1)
                                                           : compare_at(line, result.line);
@@ -96,12 +79,20 @@ LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t i
         }
         found = true;
     };
+    const double left = chains.of_ring(i).empty() ? ring.front().x : chains.box(i).x0;
     for (const Chain& chain : chains.of_ring(i)) {
-        if (chains.front(chain).x > left && chains.back(chain).x > left)
+        const bool rightwards = chain.front.x == left;
+        if (!rightwards && chain.back.x != left)
             continue;
-        for (std::uint32_t k = 0; k <= chain.segments; ++k)
-            result.smallest = std::min(result.smallest, chains.point(chain, k));
-        for_edges(chains, chain, look_at);
+        // From the end that is at the left, along what is vertical there, to the first point beyond.
+        for (std::uint32_t k = 0; k <= chain.segments; ++k) {
+            const Point2& p = chains.point(chain, rightwards ? k : chain.segments - k);
+            if (p.x > left) {
+                look_at({chains.point(chain, rightwards ? k - 1 : chain.segments - k + 1), p}, rightwards);
+                break;
+            }
+            result.smallest = std::min(result.smallest, p);
+        }
     }
     if (!found) {
         result.flat = true;
@@ -436,7 +427,9 @@ class Search {
     /// What is next below a left end tells all: the ring is inside of that one, or beside it.
     void place_apart(const ChainGrid& grid) {
         for (const std::uint32_t ring : order_) {
-            const std::optional<EdgeBelow> below = edge_below(ends_[ring].line.lo, chains_, grid);
+            const Point2& left = ends_[ring].line.lo;
+            const std::optional<EdgeBelow> below =
+                grid.surrounded(left, ring) ? edge_below(left, ring, chains_, grid) : std::nullopt;
             if (!below)
                 place(ring, Nesting::none, 0);
             else if (below->rightwards == ends_[below->ring].rightwards)
@@ -474,14 +467,16 @@ class Search {
 
     /// So that what lies below a left end comes before it.
     void order_from_left_to_right() {
-        std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto before = [&](std::uint32_t a, std::uint32_t b) {
             const Segment& s = ends_[a].line;
             const Segment& t = ends_[b].line;
             if (s.lo != t.lo)
                 return s.lo < t.lo;
             const int by_slope = compare_at(s, t);
             return by_slope != 0 ? by_slope < 0 : rank_[a] < rank_[b];
-        });
+        };
+        if (!std::is_sorted(order_.begin(), order_.end(), before)) // rings in normal form all but are
+            std::sort(order_.begin(), order_.end(), before);
     }
 
     [[nodiscard]] EdgesByAbscissa sorted_edges() const {
@@ -496,8 +491,8 @@ class Search {
                 continue;
             const std::int32_t net = net_winding(ring);
             for (const Chain& chain : chains_.of_ring(ring)) {
-                const std::size_t from = edges.leaf(chains_.front(chain).x, near);
-                near = edges.leaf(chains_.back(chain).x, from);
+                const std::size_t from = edges.leaf(chain.front.x, near);
+                near = edges.leaf(chain.back.x, from);
                 if (from != near) // others reach over no left end
                     add_edges(chain, net, from, edges);
             }

@@ -93,8 +93,8 @@ TEST(KnownNesting, IsTheNestingOfTheLayer) {
         const bool apart = run % 2 == 0;
         for (std::size_t i = 0; i < rings.size(); ++i) {
             const double x = apart ? 100.0 * static_cast<double>(i / 3) : std::round(random.real(0, 20));
-            rings[i] = wavy(12 + below(random, 200), static_cast<int>(random.integer(0, 3)),
-                            apart ? 10 / std::pow(3, i % 3) : 10);
+            const int waves = below(random, 4) == 0 ? 40 : static_cast<int>(random.integer(0, 3));
+            rings[i] = wavy(12 + below(random, 600), waves, apart ? 10 / std::pow(3, i % 3) : 10);
             for (Point2& p : rings[i])
                 p.x += x;
             if (below(random, 2) == 0)
