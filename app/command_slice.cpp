@@ -275,7 +275,7 @@ FileJob make_job(const SliceArguments& arguments) {
     job.inspect = arguments.inspect;
     job.strict = arguments.strict;
     job.steps = arguments.making.steps();
-    job.layer_statistics = !arguments.stats.empty();
+    job.layer_statistics = !arguments.stats.empty() || (!arguments.report.empty() && job.steps.any());
     job.output = arguments.output;
     job.format = arguments.writing.format;
     if (!job.output.empty())

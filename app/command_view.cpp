@@ -65,6 +65,7 @@ Written view_mesh(const ViewArguments& arguments, const std::string& output, con
     job.layers.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height);
     job.layers.slice_at = slice_at_of(arguments.slice_at);
     job.steps = arguments.making.steps();
+    job.layer_statistics = job.steps.any(); // the page tells what became of each
     job.report = {.path = output,
                   .page = {.viewer = viewer_page(), .title = title_of(arguments.input)},
                   .notes = [&](const FileResult& result) {
@@ -87,9 +88,14 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
                     fmt::format("{}: holds layers, and these stay where they are; options of "
                                 "where a part stands and how it is cut are for meshes",
                                 file.path));
-    LayerChanges changes;
-    for (LayerPart& part : file.parts)
+    PageNotes notes = file_notes(file);
+    for (LayerPart& part : file.parts) {
+        std::vector<LayerChanges> changes;
         part.layers = take_steps(arguments.making.steps(), std::move(part.layers), changes, execution);
+        for (std::size_t i = 0; i < changes.size(); ++i)
+            if (changes[i].changed_layers > 0)
+                notes.changes.push_back({part.layers[i].index, changes[i]});
+    }
     const LayerFileInfo info = info_of(file);
     const auto page =
         open_layer_page(output, info, {.viewer = viewer_page(), .title = title_of(arguments.input)});
@@ -101,7 +107,7 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
             plane[part] = file.parts[part].layers[i];
         page->prepare(plane)();
     }
-    page->tell(file_notes(file));
+    page->tell(std::move(notes));
     page->finish();
     return {.layers = info.layers, .warnings = page->warnings()};
 }

@@ -98,6 +98,9 @@ PageNotes run_notes(const FileResult& result) {
         notes.sections.push_back(mesh_section(*result.inspection));
     notes.sections.push_back(input_section(result));
     notes.sections.push_back(run_section(result));
+    for (const LayerStatistics& layer : result.layers)
+        if (layer.changes.changed_layers > 0)
+            notes.changes.push_back({layer.index, layer.changes});
     return notes;
 }
 

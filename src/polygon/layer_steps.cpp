@@ -80,12 +80,11 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
     return layer;
 }
 
-LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
+LayerStack take_steps(const LayerSteps& steps, LayerStack layers, std::vector<LayerChanges>& each,
                       const Execution& execution) {
-    changes = {};
+    each.assign(layers.size(), {});
     if (!steps.any())
         return layers;
-    std::vector<LayerChanges> each(layers.size());
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
@@ -95,6 +94,14 @@ LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& 
         }
     });
     progress.finish();
+    return layers;
+}
+
+LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
+                      const Execution& execution) {
+    std::vector<LayerChanges> each;
+    layers = take_steps(steps, std::move(layers), each, execution);
+    changes = {};
     for (const LayerChanges& one : each)
         changes += one;
     return layers;

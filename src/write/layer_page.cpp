@@ -1,6 +1,7 @@
 #include "lamella/write/layer_page.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/open_gaps.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
 #include "lamella/polygon/selection.hpp"
@@ -19,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <utility>
 
 namespace lamella {
@@ -32,6 +34,7 @@ struct PlaneFacts {
     double bottom = 0;
     double top = 0;
     LayerMeasure measure;
+    OpenGaps gaps = {};
     std::uint64_t crossings = 0;
     std::uint64_t misoriented = 0;
     std::uint64_t overlapping = 0;
@@ -49,6 +52,7 @@ struct Picture {
 void find_faults(std::span<const Layer> parts, PlaneFacts& facts, std::vector<Point2>& places) {
     for (const Layer& layer : parts) {
         facts.measure.add(measure(layer));
+        facts.gaps += open_gaps(layer);
         facts.hatches += layer.hatches.size() / 2;
         const Crossings crossings = find_crossings(layer);
         facts.crossings += crossings.count;
@@ -174,6 +178,8 @@ class PlaneTable {
                                                              std::to_string(facts.measure.holes),
                                                              std::to_string(facts.measure.points),
                                                              std::to_string(facts.measure.open_chains),
+                                                             page_number(facts.gaps.longest_mm),
+                                                             page_number(facts.gaps.total_mm),
                                                              std::to_string(facts.crossings),
                                                              std::to_string(facts.misoriented),
                                                              std::to_string(facts.overlapping),
@@ -181,22 +187,53 @@ class PlaneTable {
                                                              std::to_string(picture.shown),
                                                              page_number(picture.tolerance_mm)};
         for (std::size_t i = 0; i < columns.size(); ++i)
-            texts_[i].append(texts_[i].empty() ? "" : ",").append(values[i]);
+            append(texts_[i], values[i]);
+        planes_.push_back({facts.index, facts.measure.area_mm2});
     }
 
-    [[nodiscard]] std::string json() const {
-        std::string text = "{";
+    /// `changes`: what steps did to the planes; without any, there are no columns about it.
+    [[nodiscard]] std::string json(const std::vector<PageChange>& changes) const {
+        std::string text;
         for (std::size_t i = 0; i < columns.size(); ++i)
-            text += fmt::format("{}\"{}\":[{}]", i == 0 ? "" : ",\n", columns[i], texts_[i]);
-        return text + "}";
+            append(text, column(columns[i], texts_[i]));
+        if (!changes.empty())
+            append(text, change_columns(changes));
+        return "{" + text + "}";
     }
 
   private:
-    static constexpr std::array<std::string_view, 16> columns{
-        "index",       "z",       "bottom", "top",         "area_mm2",  "perimeter_mm",
-        "contours",    "holes",   "points", "open_chains", "crossings", "misoriented",
-        "overlapping", "hatches", "shown",  "tolerance_mm"};
+    static void append(std::string& list, std::string_view item) {
+        list.append(list.empty() ? "" : ",").append(item);
+    }
+    static std::string column(std::string_view name, std::string_view values) {
+        return fmt::format("\n\"{}\":[{}]", name, values);
+    }
+
+    [[nodiscard]] std::string change_columns(const std::vector<PageChange>& changes) const {
+        std::map<std::uint64_t, LayerChanges> by_index;
+        for (const PageChange& change : changes)
+            by_index[change.index] += change.changes;
+        std::string dropped;
+        std::string before;
+        for (const Plane& plane : planes_) {
+            const LayerChanges& change = by_index[plane.index];
+            append(dropped, std::to_string(change.rings_dropped));
+            // Of the parts that were changed alone, so the others are in neither number.
+            append(before, page_number(plane.area_mm2 - change.area_after_mm2 + change.area_before_mm2));
+        }
+        return column("rings_dropped", dropped) + "," + column("area_before_mm2", before);
+    }
+
+    struct Plane {
+        std::uint64_t index;
+        double area_mm2;
+    };
+    static constexpr std::array<std::string_view, 18> columns{
+        "index",     "z",           "bottom",      "top",         "area_mm2",       "perimeter_mm",
+        "contours",  "holes",       "points",      "open_chains", "longest_gap_mm", "gaps_mm",
+        "crossings", "misoriented", "overlapping", "hatches",     "shown",          "tolerance_mm"};
     std::array<std::string, columns.size()> texts_;
+    std::vector<Plane> planes_;
 };
 
 class PageWriter final : public LayerPageWriter {
@@ -224,11 +261,12 @@ class PageWriter final : public LayerPageWriter {
     void tell(PageNotes notes) override {
         std::ranges::move(notes.sections, std::back_inserter(notes_.sections));
         std::ranges::move(notes.places, std::back_inserter(notes_.places));
+        std::ranges::move(notes.changes, std::back_inserter(notes_.changes));
     }
 
     void finish() override {
         order_.end();
-        file_.append(json_element("table", table_.json()));
+        file_.append(json_element("table", table_.json(notes_.changes)));
         file_.append(json_element("notes", notes_json(notes_)));
         file_.append(frame_.tail);
         file_.commit();

@@ -173,12 +173,52 @@ test('an open contour is seen in red, counted, and listed', async () => {
     assert.match(await page.locator('#verdict').textContent(), /100 layers with faults/);
     const aside = page.getByRole('complementary');
     assert.match(await aside.textContent(), /100 open contours in every layer, the lowest at z = 0\.05 mm/);
+    assert.match(await aside.textContent(), /The longest gap is 30 mm, all together 3,000 mm/);
+    assert.match(await aside.locator('section', { hasText: 'Cut at z' }).textContent(), /Gaps30 mm/);
+    assert.match(await page.locator('.row', { hasText: /^Gap/ }).textContent(), /Gap30 mm/);
+    assert.equal(await aside.locator('section', { hasText: 'Longest gaps' }).getByRole('button').count(), 10);
     const worst = aside.locator('section', { hasText: 'Worst layers' }).getByRole('button');
     await worst.nth(3).click();
     assert.equal(String(await shown(page)), await worst.nth(3).locator('b').textContent());
     assert.match(await page.locator('canvas[data-layer]').getAttribute('aria-label'), /1 of the contours open/);
     await close();
   }
+});
+
+test('what gaps there are differs from layer to layer, and what steps dropped is told', async () => {
+  // Layer i has two chains, with gaps of 1 mm and of i mm, and a speck in the upper two.
+  const layers = [2, 3, 5, 4].map((gap, i) => ({
+    index: i,
+    z: i + 0.5,
+    bottom: i,
+    top: i + 1,
+    parts: [
+      {
+        rings: i > 1 ? [[30, 0, 31, 0, 31, 1, 30, 1], [0, 40, 20, 40, 20, 60, 0, 60]] : [[0, 40, 20, 40, 20, 60, 0, 60]],
+        chains: [[0, 0, 10, 0, 10, 10], [10, 11, 0, 11, 0, gap]],
+      },
+    ],
+  }));
+  writeFileSync(file('gaps.json'), JSON.stringify({ format: 'lamella layers', version: 1, units: 'mm', parts: [{ label: 'a' }], layers }));
+  lamella('view', 'gaps.json', '--min-area', '2');
+  const { page, complaints, close } = await open('gaps.html');
+  await shown(page);
+  const aside = page.getByRole('complementary');
+  const picks = aside.locator('section', { hasText: 'Longest gaps' }).getByRole('button');
+  assert.deepEqual(await picks.locator('b').allTextContents(), ['3', '4', '2', '1']);
+  await picks.first().click();
+  assert.equal(await shown(page), 3);
+  const card = await aside.locator('section', { hasText: 'Cut at z' }).textContent();
+  assert.match(card, /Gapsthe longest 5 mm, 2 gaps of 6 mm in all/);
+  assert.match(card, /Rings dropped1/);
+  assert.match(card, /Area before401 mm²/);
+  assert.match(await page.locator('.row', { hasText: /^Gap/ }).textContent(), /Gap5 mm/);
+  assert.match(await page.locator('.row', { hasText: /^Dropped/ }).textContent(), /Dropped1/);
+  await page.keyboard.press('Home');
+  assert.match(await aside.locator('section', { hasText: 'Cut at z' }).textContent(), /Rings dropped0Area before400 mm²/);
+  assert.deepEqual(complaints, []);
+  if (process.env.LAMELLA_SCREENSHOTS) await page.screenshot({ path: `${process.env.LAMELLA_SCREENSHOTS}/gaps.png` });
+  await close();
 });
 
 test('the defects of a mesh are listed and can be gone to', async () => {

@@ -1,4 +1,5 @@
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/shapes.hpp"
@@ -200,6 +201,10 @@ TEST(LayerPage, TellsTheFiguresOfTheFullContours) {
             EXPECT_EQ(table["contours"][i], 3);
             EXPECT_EQ(table["holes"][i], 1);
             EXPECT_EQ(table["open_chains"][i], 1);
+            EXPECT_EQ(table["longest_gap_mm"][i], open_gaps(layers[i]).longest_mm);
+            EXPECT_EQ(table["gaps_mm"][i], open_gaps(layers[i]).total_mm);
+            EXPECT_GT(table["gaps_mm"][i], 0);
+            EXPECT_EQ(table.count("rings_dropped"), 0U); // no steps, not a word of them
             EXPECT_EQ(table["points"][i], 4003);
         }
     }
@@ -252,6 +257,19 @@ TEST(LayerPage, LetsALayerUseWhatThoseBelowLeft) {
         size = html.find('<', at) - html.find('>', at) - 1;
     EXPECT_TRUE(write_page(layers, options_with(3 * size / 2)).warnings.empty());
     EXPECT_FALSE(write_page(layers, options_with(3 * size / 5)).warnings.empty());
+}
+
+TEST(LayerPage, TellsWhatStepsMadeOfTheLayers) {
+    const LayerStack layers = fine_rings(4);
+    const double area = measure(layers[2]).area_mm2;
+    LayerChanges once{.changed_layers = 1, .rings_dropped = 2, .area_before_mm2 = 30, .area_after_mm2 = 10};
+    PageNotes notes;
+    notes.changes = {{layers[2].index, once}, {layers[2].index, once}, {layers[0].index, once}};
+    auto table =
+        numbers_of(write_page({layers}, info_of(layers), options_with(), notes).page.json.at("table"));
+    EXPECT_EQ(table["rings_dropped"], (std::vector<double>{2, 0, 4, 0}));
+    EXPECT_NEAR(table["area_before_mm2"][2], area + 40, 1e-9);
+    EXPECT_EQ(table["area_before_mm2"][1], table["area_mm2"][1]);
 }
 
 TEST(LayerPage, FindsFaults) {

@@ -34,6 +34,7 @@ export function faultText(table, i) {
   return faults
     .filter(({ column }) => table[column][i] > 0)
     .map(({ column, one, name }) => `${count(table[column][i])} ${table[column][i] === 1 ? one : name}`)
+    .concat(table.longest_gap_mm[i] > 0 ? [`the longest gap ${brief(table.longest_gap_mm[i])} mm`] : [])
     .join(', ');
 }
 
@@ -57,6 +58,15 @@ export function findings(page) {
     const text = `${count(sum(table[column]))} ${name} ${where(table, affected)}: ${meaning}.`;
     found.push({ tone: 'bad', text, layer: affected[0] });
   }
+  const [widest] = widestGaps(table, 1);
+  if (widest)
+    found.push({
+      tone: 'bad',
+      text:
+        `The longest gap is ${brief(table.longest_gap_mm[widest.layer])} mm, all together ${brief(sum(table.gaps_mm))} mm; ` +
+        'lamella slice --close-gaps MM closes those up to a length.',
+      layer: widest.layer,
+    });
   if (found.length === 0 && table.z.length > 0)
     found.push({ tone: 'good', text: 'Every contour closes, none crosses another, and all run the right way round.' });
   const overlapping = layersWith(table.overlapping);
@@ -107,6 +117,24 @@ export function worstLayers(table, most = 10) {
     .map((layer) => ({ layer, text: faultText(table, layer), bad: true }));
 }
 
+/** Layers with gaps, those with the longest ones first: { layer, text, bad }. */
+export function widestGaps(table, most = 10) {
+  const layers = [...table.z.keys()];
+  return layers
+    .filter((i) => table.longest_gap_mm[i] > 0)
+    .sort((a, b) => table.longest_gap_mm[b] - table.longest_gap_mm[a] || a - b)
+    .slice(0, most)
+    .map((layer) => ({ layer, text: gapText(table, layer), bad: true }));
+}
+
+/** "1.2 mm"; "the longest 1.2 mm, 3 gaps of 2.5 mm in all"; "none". */
+export function gapText(table, i) {
+  if (table.open_chains[i] === 0) return 'none';
+  const longest = `${brief(table.longest_gap_mm[i])} mm`;
+  if (table.open_chains[i] === 1) return longest;
+  return `the longest ${longest}, ${counted(table.open_chains[i], 'gap')} of ${brief(table.gaps_mm[i])} mm in all`;
+}
+
 /** The layer with most faults; null where there are none. */
 export const firstFault = (table) => worstLayers(table, 1)[0]?.layer ?? null;
 
@@ -141,6 +169,13 @@ export function totals(page) {
     ['Volume', `${brief(sum(thickness.map((t, i) => t * table.area_mm2[i])))} mm³`],
     ['Contours', count(sum(table.contours))],
     ['Open contours', count(sum(table.open_chains))],
+    ...(sum(table.open_chains) > 0 ? [['Gaps in all', `${brief(sum(table.gaps_mm))} mm`]] : []),
     ['Points', count(sum(table.points))],
+    ...(table.rings_dropped
+      ? [
+          ['Rings dropped', count(sum(table.rings_dropped))],
+          ['Volume before', `${brief(sum(thickness.map((t, i) => t * table.area_before_mm2[i])))} mm³`],
+        ]
+      : []),
   ];
 }

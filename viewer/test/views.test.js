@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { findings, firstFault, remarkableLayers, verdict, worstLayers } from '../src/findings.js';
+import { faultText, findings, firstFault, gapText, remarkableLayers, totals, verdict, widestGaps, worstLayers } from '../src/findings.js';
 import { Camera } from '../src/layer/camera.js';
 import { roundStep } from '../src/layer/round_step.js';
 import { Walls, spacingFor } from '../src/stack/walls.js';
@@ -43,7 +43,7 @@ test('an axis maps layers to pixels and back, and a plot loses no peak', () => {
   assert.equal(Math.min(...columns.map((column) => column.low)), 1);
 });
 
-const columns = ['area_mm2', 'contours', 'points', 'shown', 'open_chains', 'crossings', 'misoriented', 'overlapping', 'tolerance_mm', 'hatches'];
+const columns = ['area_mm2', 'contours', 'points', 'shown', 'open_chains', 'longest_gap_mm', 'gaps_mm', 'crossings', 'misoriented', 'overlapping', 'tolerance_mm', 'hatches'];
 function pageOf(layers, notes = { sections: [], places: [] }) {
   const table = { z: [], bottom: [], top: [] };
   for (const column of columns) table[column] = layers.map((layer) => layer[column] ?? (column === 'contours' ? 1 : 0));
@@ -63,6 +63,40 @@ test('faults are told, the worst layers first', () => {
   assert.deepEqual(worstLayers(page.table).map(({ layer }) => layer), [2, 1, 3]);
   assert.equal(verdict(page).text, '3 layers with faults');
   assert.equal(firstFault(page.table), 2);
+});
+
+test('gaps are told, the longest first', () => {
+  const page = pageOf([
+    { open_chains: 1, longest_gap_mm: 0.25, gaps_mm: 0.25 },
+    {},
+    { open_chains: 3, longest_gap_mm: 1.5, gaps_mm: 2 },
+    { open_chains: 1 },
+  ]);
+  page.head.box = [[0, 0, 0], [1, 1, 4]];
+  assert.deepEqual(widestGaps(page.table).map(({ layer }) => layer), [2, 0]);
+  assert.equal(gapText(page.table, 0), '0.25 mm');
+  assert.equal(gapText(page.table, 1), 'none');
+  assert.equal(gapText(page.table, 2), 'the longest 1.5 mm, 3 gaps of 2 mm in all');
+  assert.equal(faultText(page.table, 2), '3 open contours, the longest gap 1.5 mm');
+  const told = findings(page).find(({ text }) => text.startsWith('The longest gap'));
+  assert.equal(told.layer, 2);
+  assert.match(told.text, /^The longest gap is 1\.5 mm, all together 2\.25 mm;/);
+  assert.deepEqual(totals(page).find(([name]) => name === 'Gaps in all'), ['Gaps in all', '2.25 mm']);
+  const sound = pageOf([{}, {}]);
+  sound.head.box = page.head.box;
+  assert.deepEqual(widestGaps(sound.table), []);
+  assert.ok(!findings(sound).some(({ text }) => text.includes('gap')));
+  assert.ok(!totals(sound).some(([name]) => /Gaps|dropped/.test(name)));
+});
+
+test('what steps made of the layers is told where there were any', () => {
+  const page = pageOf([{ area_mm2: 5 }, { area_mm2: 7 }]);
+  page.head.box = [[0, 0, 0], [3, 3, 2]];
+  Object.assign(page.table, { rings_dropped: [0, 1200], area_before_mm2: [5, 8] });
+  const told = new Map(totals(page));
+  assert.equal(told.get('Rings dropped'), '1,200');
+  assert.equal(told.get('Volume'), '12 mm³');
+  assert.equal(told.get('Volume before'), '13 mm³');
 });
 
 test('a sound stack is called sound, and thinning is said', () => {

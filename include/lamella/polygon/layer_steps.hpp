@@ -7,6 +7,7 @@
 #include "lamella/polygon/fill.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace lamella {
 
@@ -43,7 +44,11 @@ struct LayerChanges {
 /// form when the layer was. Throws what the steps throw.
 [[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes);
 
-/// The same for all layers of a stack, in parallel; `changes` are those of all layers together.
+/// The same for all layers of a stack, in parallel; `each` are the changes of every layer.
+[[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers,
+                                    std::vector<LayerChanges>& each, const Execution& execution = {});
+
+/// The same; `changes` are those of all layers together.
 [[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
                                     const Execution& execution = {});
 

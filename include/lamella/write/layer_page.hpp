@@ -7,8 +7,10 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -39,10 +41,19 @@ struct PagePlace {
     bool closed = false;        ///< the line leads back to its first point
 };
 
+/// What steps made of a plane before it came to the page.
+struct PageChange {
+    std::uint64_t index = 0; ///< of its layers
+    LayerChanges changes;
+};
+
 /// Told beside the data themselves.
 struct PageNotes {
     std::vector<PageSection> sections;
     std::vector<PagePlace> places;
+    /// One or more for each plane that was changed, in any order. Where there are none, the page says nothing
+    /// of steps.
+    std::vector<PageChange> changes = {};
 };
 
 /// The places that a diagnosis lists, with what they mean for slicing. O(points).

@@ -1,6 +1,6 @@
 import { element } from '../element.js';
 import { brief, count, counted, mm } from '../text.js';
-import { faultText, findings, remarkableLayers, totals, worstLayers } from '../findings.js';
+import { faultText, findings, gapText, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
 
@@ -42,6 +42,9 @@ function layerCard(page, store) {
     ['of them holes', (i) => count(table.holes[i])],
     ['Points', (i) => count(table.points[i])],
   ];
+  if (table.open_chains.some((n) => n > 0)) rows.push(['Gaps', (i) => gapText(table, i)]);
+  if (table.rings_dropped)
+    rows.push(['Rings dropped', (i) => count(table.rings_dropped[i])], ['Area before', (i) => `${brief(table.area_before_mm2[i])} mm²`]);
   const list = facts(rows.map(([name]) => [name, '']));
   const values = list.querySelectorAll('dd');
   const fault = element('p', { className: 'fault' });
@@ -172,6 +175,8 @@ export function layerPanels(page, store, go, show) {
   const remarkable = remarkableLayers(page.table);
   const cards = [layerCard(page, store), diagnosisCard(page, go)];
   if (worst.length > 0) cards.push(layerList('Worst layers', worst, page, go));
+  const gaps = widestGaps(page.table);
+  if (gaps.length > 0) cards.push(layerList('Longest gaps', gaps, page, go));
   if (page.notes.places.length > 0) cards.push(placesCard(page, show));
   if (page.head.parts.length > 1) cards.push(partsCard(page, store));
   cards.push(card('Stack', facts(totals(page))));

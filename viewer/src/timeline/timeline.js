@@ -8,7 +8,12 @@ const rows = [
   { column: 'contours', name: 'Contours', unit: '', tell: count },
   { column: 'points', name: 'Points', unit: '', tell: count },
   { column: 'open_chains', name: 'Open', unit: '', tell: count, fault: true },
+  { column: 'longest_gap_mm', name: 'Gap', unit: 'mm', tell: brief, fault: true, rare: true },
+  { column: 'rings_dropped', name: 'Dropped', unit: '', tell: count, rare: true },
 ];
+
+/** Rows of what few stacks have are there for those alone. */
+const rowsFor = (table) => rows.filter(({ column, rare }) => !rare || table[column]?.some((value) => value > 0));
 
 /** The slider over all layers, and under it what they measure, on the same axis. */
 export class Timeline {
@@ -43,7 +48,7 @@ export class Timeline {
     });
     this.height = element('span', { className: 'height' });
     this.cursor = element('i', { className: 'cursor', 'aria-hidden': true });
-    this.plots = rows.map((row) => this.#plot(row));
+    this.plots = rowsFor(page.table).map((row) => this.#plot(row));
     this.node = element(
       'section',
       { className: 'timeline', 'aria-label': 'Layers' },
