@@ -1,6 +1,7 @@
 #include "slicing/sweep.hpp"
 
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
 #include "core/orientation.hpp"
@@ -303,6 +304,13 @@ class SlabSweep {
 
     // -------------------------------------------------------------------------------------- run and measure
 
+    /// To be called for each ring and each layer: a slab whose layers are all kept is written in one go,
+    /// which may take seconds. When another worker has failed, its error is the one that is told.
+    void end_if_stopping() const {
+        if (executor_.stopping())
+            throw Error(ErrorKind::cancelled, "cancelled");
+    }
+
     void add_run(std::uint32_t plane, std::uint32_t valid_until, bool closed, const std::uint32_t* sequence,
                  std::size_t size) {
         Run run{plane,    valid_until,  static_cast<std::uint32_t>(size), closed, sequences_.size(),
@@ -327,7 +335,6 @@ class SlabSweep {
             runs_.back().columns = columns_used_;
             columns_used_ += stride;
         }
-        executor_.check_cancelled(); // a run may serve thousands of planes
         measure(runs_.back(), plane, valid_until, benches_.front());
     }
 
@@ -359,8 +366,10 @@ class SlabSweep {
         if (begin == end)
             return;
         const EdgeColumns edges = lay_out_edges(run, bench);
-        for (std::uint32_t plane = begin; plane < end; ++plane)
+        for (std::uint32_t plane = begin; plane < end; ++plane) {
+            end_if_stopping();
             rings_[run.rings + plane - run.begin] = measure_ring(run, edges, plane, bench);
+        }
     }
 
     /// Notes for each plane the rings of the runs from `first` on.
@@ -496,8 +505,10 @@ class SlabSweep {
     void write_layers(std::uint32_t end) {
         std::vector<Outgoing> outgoing(end - written_);
         for_all(outgoing.size(), [&](std::uint64_t from, std::uint64_t to, Bench& bench) {
-            for (std::uint64_t i = from; i < to; ++i)
+            for (std::uint64_t i = from; i < to; ++i) {
+                end_if_stopping();
                 lay_out_layer(static_cast<std::uint32_t>(written_ + i), outgoing[i].layer, bench);
+            }
         });
         std::uint64_t total = 0;
         for (Outgoing& out : outgoing) {
@@ -515,6 +526,7 @@ class SlabSweep {
                 const Ring& ring = rings_[run.rings + p - run.begin];
                 if (ring.count == 0)
                     continue;
+                end_if_stopping();
                 if (edges.data == nullptr)
                     edges = edges_of(run, bench);
                 write_ring(edges, run.closed, p, ring,
@@ -530,6 +542,7 @@ class SlabSweep {
 
         for_all(outgoing.size(), [&](std::uint64_t from, std::uint64_t to, Bench&) {
             for (std::uint64_t i = from; i < to; ++i) {
+                end_if_stopping();
                 const auto plane = static_cast<std::uint32_t>(written_ + i);
                 const PlannedLayer& planned = plan_.layers[plane];
                 Layer& layer = outgoing[i].layer;

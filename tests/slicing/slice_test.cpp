@@ -1,4 +1,5 @@
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
@@ -8,15 +9,19 @@
 #include "fixtures/solids.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <fstream>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -260,6 +265,88 @@ TEST(Slice, EndsWhenItIsCancelledOnTheWay) {
         expect_error(ErrorKind::cancelled, {}, [&] {
             slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = stop.get_token()});
         });
+    }
+}
+
+TEST(Slice, HandsOverNoMoreThanOneLayerAThreadAfterItIsCancelled) {
+    const TriangleSoup soup = body();
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        std::stop_source stop;
+        std::atomic<unsigned> after{0};
+        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+            after += stop.stop_requested() ? 1 : 0;
+            if (layer.index % 100 == 50)
+                stop.request_stop();
+            return {};
+        };
+        expect_error(ErrorKind::cancelled, {}, [&] {
+            slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = stop.get_token()});
+        });
+        EXPECT_LE(after, threads);
+    }
+}
+
+/// The memory that this process has touched and holds, in bytes.
+std::uint64_t resident_bytes() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t all = 0;
+    std::uint64_t resident = 0;
+    file >> all >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// The most that this process has held since `forget_peak`.
+std::uint64_t peak_bytes() {
+    std::ifstream file("/proc/self/status");
+    for (std::string word; file >> word;) {
+        std::uint64_t kilobytes = 0;
+        if (word == "VmHWM:" && file >> kilobytes)
+            return kilobytes << 10;
+    }
+    return 0;
+}
+
+/// False where the system refuses to.
+bool forget_peak() {
+    std::ofstream file("/proc/self/clear_refs");
+    file << 5 << std::flush;
+    return file.good();
+}
+
+TEST(Slice, WritesNextToNothingAfterItIsCancelled) {
+    // Hundreds of megabytes of points, written in one go by each thread. How much of them is written after
+    // the wish to stop shows in the memory that is touched.
+    const TriangleSoup soup = make_sheet({});
+    const Plan plan = even_planes(0, 3, 1000);
+    constexpr std::uint64_t enough = std::uint64_t{64} << 20;
+    for (const unsigned threads : {1U, 2U}) {
+        std::uint64_t written = ~std::uint64_t{0};
+        bool stopped = false;
+        // A watcher that the system let sleep has seen nothing.
+        for (int attempt = 0; attempt < 20 && !stopped; ++attempt) {
+            std::stop_source stop;
+            std::uint64_t at_wish = 0;
+            if (!forget_peak())
+                GTEST_SKIP() << "this system does not forget how much memory a process held";
+            const std::uint64_t before = resident_bytes();
+            std::jthread watcher([&](const std::stop_token& over) {
+                while (!over.stop_requested() && resident_bytes() < before + enough)
+                    std::this_thread::yield();
+                stop.request_stop();
+                at_wish = resident_bytes();
+            });
+            try {
+                (void)slice(soup, plan, {.threads = threads, .cancel = stop.get_token()});
+            } catch (const Error& error) {
+                ASSERT_EQ(error.kind(), ErrorKind::cancelled);
+                stopped = true;
+            }
+            watcher.request_stop();
+            watcher.join();
+            written = peak_bytes() - std::min(peak_bytes(), at_wish);
+        }
+        ASSERT_TRUE(stopped);
+        EXPECT_LT(written, enough);
     }
 }
 
