@@ -1,5 +1,6 @@
 #include "lamella/polygon/simplify.hpp"
 
+#include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/crossings.hpp"
@@ -202,11 +203,35 @@ bool refine_nesting(Thinned& thinned, const Layer& layer, const Nesting& before)
     return any;
 }
 
-} // namespace
+/// Puts points back in rings that have turned over or vanished.
+bool refine_turned(Thinned& thinned, const Layer& layer, const Layer& before) {
+    bool any = false;
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        const double area = ring_area(before.contour(i));
+        if (area != 0 && !(ring_area(layer.contour(i)) * area > 0))
+            any = thinned.refine(layer, i) || any;
+    }
+    return any;
+}
 
-Layer simplify(const Layer& layer, double tolerance) {
+void check_tolerance(double tolerance) {
     if (!(tolerance >= 0))
         throw Error(ErrorKind::usage, "contours can be simplified within a distance of 0 or more only");
+}
+
+} // namespace
+
+Layer simplify_each(const Layer& layer, double tolerance) {
+    check_tolerance(tolerance);
+    Thinned thinned(layer, tolerance);
+    Layer result = thinned.layer();
+    while (refine_turned(thinned, result, layer))
+        result = thinned.layer();
+    return normal_form(std::move(result));
+}
+
+Layer simplify(const Layer& layer, double tolerance) {
+    check_tolerance(tolerance);
     Thinned thinned(layer, tolerance);
     Layer result = thinned.layer();
     if (result.points.size() == layer.points.size())

@@ -79,7 +79,7 @@ class Thinning {
         const double tolerance = tolerance_mm_ == 0 ? step_mm_ : 4 * tolerance_mm_;
         for (Layer& layer : layers_) {
             layer.hatches = {};
-            layer = simplify(layer, tolerance - tolerance_mm_);
+            layer = simplify_each(layer, tolerance - tolerance_mm_);
             if (tolerance > steps_of_specks * step_mm_)
                 layer = without_small_rings(layer, tolerance * tolerance);
         }

@@ -84,6 +84,25 @@ TEST(Simplify, StaysWithinTheToleranceBothWays) {
     }
 }
 
+TEST(SimplifyEach, StaysWithinTheToleranceAndLetsNoRingVanishOrTurnOver) {
+    Random random(43);
+    for (int round = 0; round < 200; ++round) {
+        const double tolerance = random.real(0.001, 3);
+        const Layer layer = normal_form(
+            layer_of({wobbly_circle(random, 0, 0, 10, 200, 0.2),
+                      reversed(wobbly_circle(random, 0, 0, 1, 50, 0.2)), rectangle(20, 0, 30, 0.001)}));
+        const Layer simple = simplify_each(layer, tolerance);
+        ASSERT_EQ(simple.rings, 3U);
+        EXPECT_LT(simple.points.size(), layer.points.size());
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_LE(farthest(layer.contour(i), simple.contour(i), true), tolerance + 1e-12);
+            EXPECT_LE(farthest(simple.contour(i), layer.contour(i), true), tolerance + 1e-12);
+            EXPECT_GT(ring_area(layer.contour(i)) * ring_area(simple.contour(i)), 0);
+        }
+    }
+    EXPECT_THROW((void)simplify_each(layer_of({}), -1), Error);
+}
+
 TEST(Simplify, NeverMakesContoursCrossTurnOverOrMovePastOthers) {
     Random random(42);
     std::size_t before = 0;
