@@ -98,14 +98,16 @@ export function buildLayerPage(page, store, main, help) {
     layerView.lookAt(x, y);
     stackView.lookAt([x, y, z]);
   };
-  const stackView = new StackView(page, shelf, store);
+  const stackView = new StackView(page, shelf, store, layerView.drawn);
   const stage = element('div', { className: 'stage' }, layerView.node, stackView.node);
   switchViews(store, layerView, stackView);
   main.append(stage, timeline.node, layerPanels(page, store, (layer) => player.go(layer), show));
   // Neighbours are ready before they are asked for.
-  store.on(['layer'], ({ layer }) => {
-    for (const next of [layer + 1, layer - 1]) if (next >= 0 && next < shelf.count) shelf.layer(next);
-  });
+  layerView.drawn.then(() =>
+    store.on(['layer'], ({ layer }) => {
+      for (const next of [layer + 1, layer - 1]) if (next >= 0 && next < shelf.count) shelf.layer(next);
+    }),
+  );
   announce(page, store);
   const { tone, text } = verdict(page);
   const node = document.getElementById('verdict');

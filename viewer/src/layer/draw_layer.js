@@ -1,35 +1,86 @@
 import { roundStep } from './round_step.js';
 
 /**
- * Draws what one plane yields. Contours out of sight are passed over, and so are points that lie within a
- * fraction of a pixel of the one before: a layer of a million points takes a frame or two.
+ * Draws what one plane yields. Contours out of sight are passed over, and so are points where the line is as good as
+ * straight: a layer of a million points takes a frame or two.
  */
 
-const closestPixels = 0.5;
+const tolerance = 0.1; // pixels that a line may be beside the points left out
+const pointsOfPath = 1000; // strokes of longer paths take more time for each point
 
-/** Adds contour i of `contours` to the path. */
+/**
+ * Adds contour i of `contours` to the path, in pixels. From the point drawn last on, each further one leaves a cone of
+ * directions that pass by it closely enough; the line goes on while they have one in common.
+ * @returns {number} points drawn
+ */
 function trace(path, contours, i, camera) {
   const { points, ends, rings } = contours;
   const begin = i === 0 ? 0 : ends[i - 1];
-  const last = ends[i] - 1;
-  let x = camera.toPixelX(points[2 * begin]);
-  let y = camera.toPixelY(points[2 * begin + 1]);
-  path.moveTo(x, y);
-  for (let p = begin + 1; p <= last; ++p) {
-    const nextX = camera.toPixelX(points[2 * p]);
-    const nextY = camera.toPixelY(points[2 * p + 1]);
-    if (Math.abs(nextX - x) + Math.abs(nextY - y) < closestPixels && p < last) continue;
-    [x, y] = [nextX, nextY];
-    path.lineTo(x, y);
+  let [fromX, fromY] = [camera.toPixelX(points[2 * begin]), camera.toPixelY(points[2 * begin + 1])];
+  let [lastX, lastY] = [fromX, fromY];
+  let [leftX, leftY, rightX, rightY] = [0, 0, 0, 0]; // the sides of the cone
+  let farthest = 0; // 0: every direction will do
+  let drawn = 1;
+  path.moveTo(fromX, fromY);
+  for (let p = begin + 1; p < ends[i]; ++p) {
+    const x = camera.toPixelX(points[2 * p]);
+    const y = camera.toPixelY(points[2 * p + 1]);
+    let [dx, dy] = [x - fromX, y - fromY];
+    let distance = Math.sqrt(dx * dx + dy * dy);
+    const beyond = farthest > 0 && (dx * leftY - dy * leftX < 0 || rightX * dy - rightY * dx < 0);
+    if (beyond || distance < farthest - tolerance) {
+      path.lineTo(lastX, lastY);
+      ++drawn;
+      [fromX, fromY] = [lastX, lastY];
+      [dx, dy] = [x - fromX, y - fromY];
+      distance = Math.sqrt(dx * dx + dy * dy);
+      farthest = 0;
+    }
+    if (distance > tolerance) {
+      const sine = tolerance / distance;
+      const cosine = Math.sqrt(1 - sine * sine);
+      const [ax, ay] = [dx * cosine - dy * sine, dx * sine + dy * cosine];
+      const [bx, by] = [dx * cosine + dy * sine, dy * cosine - dx * sine];
+      if (farthest === 0 || ax * leftY - ay * leftX > 0) [leftX, leftY] = [ax, ay];
+      if (farthest === 0 || rightX * by - rightY * bx > 0) [rightX, rightY] = [bx, by];
+      farthest = Math.max(farthest, distance);
+    }
+    [lastX, lastY] = [x, y];
   }
+  path.lineTo(lastX, lastY);
   if (i < rings) path.closePath();
+  return drawn + 1;
 }
 
-/** The contours from..to that chosen(i) says, as one path. */
-export function pathOf(contours, from, to, camera, chosen = () => true) {
-  const path = new Path2D();
-  for (let i = from; i < to; ++i) if (camera.sees(contours.boxes, 4 * i) && chosen(i)) trace(path, contours, i, camera);
-  return path;
+/** Paths that hold the contours from..to that chosen(i) says. */
+function pathsOf(contours, from, to, camera, chosen) {
+  const paths = [];
+  let room = 0;
+  for (let i = from; i < to; ++i) {
+    if (!camera.sees(contours.boxes, 4 * i) || !chosen(i)) continue;
+    if (room <= 0) {
+      paths.push(new Path2D());
+      room = pointsOfPath;
+    }
+    room -= trace(paths.at(-1), contours, i, camera);
+  }
+  return paths;
+}
+
+/** All rings, to be filled. */
+export function pathOf(contours, camera) {
+  return joined(pathsOf(contours, 0, contours.rings, camera, () => true));
+}
+
+function joined(paths) {
+  const all = new Path2D();
+  for (const path of paths) all.addPath(path);
+  return all;
+}
+
+function stroke(ctx, paths, colour) {
+  ctx.strokeStyle = colour;
+  for (const path of paths) ctx.stroke(path);
 }
 
 function drawGrid(ctx, camera, origin, colours) {
@@ -113,9 +164,8 @@ function drawDirections(ctx, contours, camera, colours) {
 
 function drawOpenChains(ctx, contours, camera, colours) {
   const { points, ends, rings, boxes } = contours;
-  ctx.strokeStyle = colours.open;
   ctx.lineWidth = 3;
-  ctx.stroke(pathOf(contours, rings, ends.length, camera));
+  stroke(ctx, pathsOf(contours, rings, ends.length, camera, () => true), colours.open);
   for (let i = rings; i < ends.length; ++i) {
     if (!camera.sees(boxes, 4 * i)) continue;
     const begin = i === 0 ? 0 : ends[i - 1];
@@ -164,21 +214,21 @@ export function drawLayer(ctx, camera, layer, options) {
   ctx.lineCap = 'round';
   layer.parts.forEach((contours, part) => {
     if (options.hidden.has(part)) return;
-    const all = contours.ends.length;
+    const { rings, areas, ends } = contours;
+    const outer = pathsOf(contours, 0, rings, camera, (i) => areas[i] > 0);
+    const holes = pathsOf(contours, 0, rings, camera, (i) => !(areas[i] > 0));
     if (options.fill) {
       ctx.fillStyle = options.partColours[part % options.partColours.length];
-      ctx.fill(pathOf(contours, 0, contours.rings, camera), 'nonzero');
+      ctx.fill(joined([...outer, ...holes]), 'nonzero');
     }
     if (options.hatches) drawHatches(ctx, contours, camera, colours.hatch);
     if (options.lines) {
       ctx.lineWidth = 1.5;
-      ctx.strokeStyle = colours.outer;
-      ctx.stroke(pathOf(contours, 0, contours.rings, camera, (i) => contours.areas[i] > 0));
-      ctx.strokeStyle = colours.hole;
-      ctx.stroke(pathOf(contours, 0, contours.rings, camera, (i) => !(contours.areas[i] > 0)));
+      stroke(ctx, outer, colours.outer);
+      stroke(ctx, holes, colours.hole);
     }
     if (options.directions) drawDirections(ctx, contours, camera, colours);
-    if (all > contours.rings) drawOpenChains(ctx, contours, camera, colours);
+    if (ends.length > rings) drawOpenChains(ctx, contours, camera, colours);
   });
   drawMarks(ctx, layer.crossings, camera, colours.crossing);
   drawMarks(ctx, options.marks, camera, colours.place);

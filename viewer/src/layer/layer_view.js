@@ -21,6 +21,9 @@ export function marksAt(places, z, tolerance, origin) {
   return marks;
 }
 
+/** Called in a frame; acts when the browser has painted that. */
+const afterPaint = (act) => setTimeout(act);
+
 /** One layer, seen from above: a canvas to zoom and pan, with its tools. */
 export class LayerView {
   #page;
@@ -30,6 +33,9 @@ export class LayerView {
   #layer = null; // what is drawn
   #shown = -1;
   #asked = false;
+  #tellDrawn;
+  /** Resolved when the first layer is on the screen. */
+  drawn = new Promise((resolve) => (this.#tellDrawn = resolve));
 
   constructor(page, shelf, store) {
     this.#page = page;
@@ -205,7 +211,10 @@ export class LayerView {
       marks: marksAt(notes.places, z, half, this.origin),
     });
     this.#drawScale();
-    if (canvas.dataset.layer === undefined) performance.mark('first picture');
+    if (canvas.dataset.layer === undefined) {
+      performance.mark('first picture');
+      afterPaint(this.#tellDrawn);
+    }
     canvas.dataset.layer = this.#shown;
   }
 

@@ -44,7 +44,7 @@ export class Cap {
     layer.parts.forEach((contours, part) => {
       if (hidden.has(part)) return;
       ctx.fillStyle = colours[part % colours.length];
-      const path = pathOf(contours, 0, contours.rings, this.camera);
+      const path = pathOf(contours, this.camera);
       ctx.fill(path, 'nonzero');
       if (rim === null) return;
       ctx.strokeStyle = rim;

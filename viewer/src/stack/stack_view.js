@@ -70,20 +70,21 @@ export class StackView {
   #marks;
   #begun = false;
 
-  constructor(page, shelf, store) {
+  /** @param {Promise} first all that takes a while waits for this, unless the stack is all that is to be seen */
+  constructor(page, shelf, store, first) {
     this.#page = page;
     this.#shelf = shelf;
     this.#store = store;
     this.caption = element('p', { className: 'caption' });
     this.node = element('section', { className: 'pane', 'aria-label': 'The stack in space' }, this.caption);
-    // The first picture of the layer does not wait for any of this.
     store.on(['view'], ({ view }) => {
-      if (view !== 'layer' && !this.#begun) afterNextPaint(() => this.#begin());
+      if (view === 'stack') afterNextPaint(() => this.#begin());
+      if (view === 'both') first.then(() => this.#begin());
     });
   }
 
   #begin() {
-    if (this.#begun) return;
+    if (this.#begun || this.#store.state.view === 'layer') return;
     this.#begun = true;
     const { head, table, notes } = this.#page;
     const bottom = Math.min(...table.bottom);
