@@ -19,6 +19,8 @@ class MpiRanks final : public Communicator {
 
     explicit MpiRanks(std::uint64_t most_bytes_at_once = most_bytes);
     ~MpiRanks() override;
+    MpiRanks(const MpiRanks&) = delete;
+    MpiRanks& operator=(const MpiRanks&) = delete;
 
     [[nodiscard]] std::size_t rank() const noexcept override { return rank_; }
     [[nodiscard]] std::size_t size() const noexcept override { return size_; }

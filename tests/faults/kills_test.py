@@ -41,7 +41,7 @@ class Kills(ProgramTest):
             self.succeed(*command)
             took = time.monotonic() - start
             new = content(self.path("out"))
-            self.succeed(*command, "--translate", "1,2,0")
+            self.succeed(*command, "--scale", "1.1")
             old = content(self.path("out"))
             self.assertNotEqual(old, new)
             for _ in range(100 if AT_LENGTH else 8):
@@ -53,7 +53,7 @@ class Kills(ProgramTest):
                 self.assertIn(now, [old, new], f"{name}, seed {seed}")
                 counts["after" if now == new else "before"] += 1
                 if now == new:
-                    self.succeed(*command, "--translate", "1,2,0")
+                    self.succeed(*command, "--scale", "1.1")
             self.succeed(*command)
             self.assertEqual(content(self.path("out")), new)
             self.path("out").rename(self.path(f"{name}-done"))
