@@ -5,7 +5,7 @@
 //                mostly near each other in a file.
 //     join       local vertices with equal coordinates are found by partitions (core/key_groups)
 //     number     the first of each kind becomes a vertex, in the order of the file
-//     rewrite    triangles are rewritten from local vertices to vertices
+//     rewrite    triangles are rewritten from local vertices to vertices, and those get their coordinates
 //
 // The order in the file decides all numbers, so the ranges, and with them the number of workers, do not show.
 
@@ -188,7 +188,25 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
         });
 
     const PageArray<std::uint32_t> number(locals);
-    resize_in_huge_pages(executor, mesh.vertices, number_firsts(executor, first.span(), number.span()));
+    const std::uint32_t kinds = number_firsts(executor, first.span(), number.span());
+    mesh.vertices.reserve(kinds);
+    make_pages_ready(executor, mesh.vertices.data(), kinds * sizeof(Point3));
+    // To resize a vector is one thread's work: it is the first chunk, beside those of the triangles.
+    executor.for_chunks(block + soup.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
+        if (begin == 0) {
+            mesh.vertices.resize(kinds);
+            return;
+        }
+        std::size_t r = 0;
+        for (std::size_t i = begin - block; i < end - block; ++i) {
+            while (i >= ranges[r].end)
+                ++r;
+            for (std::uint32_t& corner : mesh.triangles[i]) {
+                const std::size_t local = ranges[r].first_local + corner;
+                corner = number[first[local] != 0 ? first[local] - 1 : local];
+            }
+        }
+    });
     executor.for_chunks(locals, block, [&](std::size_t begin, std::size_t end, unsigned) {
         std::size_t r = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -196,18 +214,6 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
                 ++r;
             if (first[i] == 0)
                 mesh.vertices[number[i]] = point(ranges[r].keys[i - ranges[r].first_local]);
-        }
-    });
-
-    executor.for_chunks(soup.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
-        std::size_t r = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            while (i >= ranges[r].end)
-                ++r;
-            for (std::uint32_t& corner : mesh.triangles[i]) {
-                const std::size_t local = ranges[r].first_local + corner;
-                corner = number[first[local] != 0 ? first[local] - 1 : local];
-            }
         }
     });
     progress.finish();
