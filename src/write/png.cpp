@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace lamella {
@@ -32,6 +33,32 @@ void append_chunk(std::string_view name, std::string_view content, ByteBuffer& o
     out.append(name);
     out.append(content);
     append(crc32_of(out.view().substr(begin)), out);
+}
+
+constexpr std::uint8_t grey = 0;
+constexpr std::uint8_t colour_and_alpha = 6;
+
+void append_head(std::uint32_t width, std::uint32_t height, std::uint8_t colours, ByteBuffer& out) {
+    out.append(std::string_view("\x89PNG\r\n\x1a\n", 8));
+    const std::array<char, 4> w = big_endian(width);
+    const std::array<char, 4> h = big_endian(height);
+    std::array<char, 13> head{};
+    std::copy(w.begin(), w.end(), head.begin());
+    std::copy(h.begin(), h.end(), head.begin() + 4);
+    head[8] = 8;                          // bits
+    head[9] = static_cast<char>(colours); // the rest is 0: Deflate, the usual filters, not interlaced
+    append_chunk("IHDR", {head.data(), head.size()}, out);
+}
+
+std::uint32_t adler32_of(std::string_view bytes) {
+    constexpr std::uint32_t prime = 65521;
+    std::uint32_t sum = 1;
+    std::uint32_t sum_of_sums = 0;
+    for (const char byte : bytes) {
+        sum = (sum + static_cast<unsigned char>(byte)) % prime;
+        sum_of_sums = (sum_of_sums + sum) % prime;
+    }
+    return sum_of_sums << 16 | sum;
 }
 
 } // namespace
@@ -83,17 +110,30 @@ void PngEncoder::add(std::span<const PixelRun> row, std::uint32_t times) {
 }
 
 void PngEncoder::finish(ByteBuffer& out) {
-    out.append(std::string_view("\x89PNG\r\n\x1a\n", 8));
-    const std::array<char, 4> width = big_endian(width_);
-    const std::array<char, 4> height = big_endian(height_);
-    std::array<char, 13> head{};
-    std::copy(width.begin(), width.end(), head.begin());
-    std::copy(height.begin(), height.end(), head.begin() + 4);
-    head[8] = 8; // bits; the rest is 0: grey, Deflate, the usual filters, not interlaced
-    append_chunk("IHDR", {head.data(), head.size()}, out);
+    append_head(width_, height_, grey, out);
     append_chunk("IDAT", deflater_.finish(), out);
     append_chunk("IEND", {}, out);
     above_.clear();
+}
+
+void append_png(const ColourPicture& picture, ByteBuffer& out) {
+    const std::size_t row_size = std::size_t{4} * picture.width;
+    std::string rows;
+    rows.reserve((row_size + 1) * picture.height);
+    for (std::size_t row = 0; row < picture.height; ++row) {
+        rows += static_cast<char>(row == 0 ? as_it_is : more_than_above);
+        const std::uint8_t* const here = picture.values.data() + row * row_size;
+        for (std::size_t i = 0; i < row_size; ++i)
+            rows += static_cast<char>(row == 0 ? here[i] : here[i] - *(here + i - row_size));
+    }
+    std::string stream("\x78\x01", 2); // Deflate, window of 32 KB, the fastest kind
+    Deflater().append_piece(rows, stream);
+    stream += deflate_end;
+    const std::array<char, 4> checksum = big_endian(adler32_of(rows));
+    stream.append(checksum.data(), checksum.size());
+    append_head(picture.width, picture.height, colour_and_alpha, out);
+    append_chunk("IDAT", stream, out);
+    append_chunk("IEND", {}, out);
 }
 
 } // namespace lamella

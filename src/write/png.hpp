@@ -4,6 +4,7 @@
 
 #include "lamella/raster/picture.hpp"
 
+#include "raster/relief.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/run_deflate.hpp"
 
@@ -37,5 +38,8 @@ class PngEncoder {
     std::vector<PixelRun> differences_;
     RunDeflater deflater_;
 };
+
+/// Appends a picture in colours as a PNG file.
+void append_png(const ColourPicture& picture, ByteBuffer& out);
 
 } // namespace lamella

@@ -3,14 +3,17 @@
 #include "lamella/core/error.hpp"
 
 #include "container/zip_writer.hpp"
+#include "raster/relief.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
 #include "write/left_out.hpp"
+#include "write/png.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -48,6 +51,10 @@ constexpr PicturePrinter speed_sl1s{.name = "SL1S",
                                     .large_pause_s = 5};
 
 constexpr std::uint64_t first_layers = 3;
+
+/// Of the pictures that printers and programs show of a job.
+constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 2> thumbnail_sizes{{{400, 400}, {800, 480}}};
+constexpr std::uint32_t relief_side = 640;
 
 /// `key = value` lines in the order of the keys.
 using Settings = std::map<std::string, std::string>;
@@ -97,6 +104,7 @@ class Sl1Writer final : public LayerWriter {
               const PicturePrinter& printer)
         : printer_(printer), display_(display_for(info.box, options.picture, printer)), order_(info),
           pictures_(display_.grid(info.box), options.picture.raster),
+          relief_(info.box, relief_side, relief_side),
           normal_s_(exposure(options.exposure.normal_s, printer.normal_s, "an exposure")),
           first_s_(exposure(options.exposure.first_s, printer.first_s, "a first exposure")),
           fade_layers_(options.exposure.fade_layers), created_(time_text(options.exposure.created_s)),
@@ -105,9 +113,10 @@ class Sl1Writer final : public LayerWriter {
     std::function<void()> prepare(std::span<const Layer> parts) override {
         order_.check_parts(parts.size());
         const Layer& layer = parts.front();
-        return [this, picture = pictures_.picture(parts), extras = extras_of(parts), z = layer.z,
-                thickness = layer.thickness()] {
+        return [this, picture = pictures_.picture(parts), seen = relief_.spans(parts),
+                extras = extras_of(parts), z = layer.z, thickness = layer.thickness()] {
             order_.next(z);
+            relief_.add(seen);
             left_out_.note(extras);
             count(picture.covered * display_.pixel_mm2(), thickness);
             archive_.add_ready(fmt::format("{}{:05}.png", job_, order_.count() - 1), ZipMethod::stored,
@@ -119,6 +128,7 @@ class Sl1Writer final : public LayerWriter {
         order_.end();
         archive_.add("config.ini", text_of(job()), ZipMethod::deflated);
         archive_.add("prusaslicer.ini", text_of(profile()), ZipMethod::deflated);
+        add_thumbnails();
         archive_.finish();
     }
 
@@ -126,6 +136,15 @@ class Sl1Writer final : public LayerWriter {
     std::vector<std::string> warnings() const override { return left_out_.warnings(); }
 
   private:
+    void add_thumbnails() {
+        const ColourPicture whole = relief_.picture();
+        for (const auto& [width, height] : thumbnail_sizes) {
+            ByteBuffer file;
+            append_png(fitted(whole, width, height), file);
+            archive_.add(fmt::format("thumbnail/thumbnail{}x{}.png", width, height), file.view());
+        }
+    }
+
     /// Counts the layer that `order_` has just let through.
     void count(double area_mm2, double thickness) {
         const std::uint64_t position = order_.count() - 1;
@@ -203,6 +222,7 @@ class Sl1Writer final : public LayerWriter {
     LayerOrder order_;
     LeftOut left_out_{{.open_chains = false, .hatches = false}};
     LayerPictures pictures_;
+    Relief relief_;
     double normal_s_;
     double first_s_;
     std::uint32_t fade_layers_;

@@ -24,7 +24,8 @@ class Pictures(ProgramTest):
         self.succeed("slice", self.box(), "-o", "part.sl1")
         archive = self.archive("part.sl1")
         pictures = [f"part{i:05}.png" for i in range(100)]
-        self.assertEqual(archive.namelist(), pictures + ["config.ini", "prusaslicer.ini"])
+        thumbnails = ["thumbnail/thumbnail400x400.png", "thumbnail/thumbnail800x480.png"]
+        self.assertEqual(archive.namelist(), pictures + ["config.ini", "prusaslicer.ini"] + thumbnails)
         config = self.settings(archive, "config.ini")
         self.assertEqual(int(config["numSlow"]) + int(config["numFast"]), 100)
         self.assertEqual([config[key] for key in ("action", "jobDir", "printerModel")], ["print", "part", "SL1"])

@@ -56,6 +56,38 @@ class Prusa(ProgramTest):
                     self.assertLess(max(differences), 16)
                     self.assertLess(sum(differences) / 255, 0.002 * our_picture.covered())
 
+    def test_a_job_says_what_theirs_says(self):
+        self.write("part.stl", binary_stl(slanted_part()))
+        # An SL1's printer profile, as far as the program without its window knows it.
+        subprocess.run(["prusa-slicer", "--export-sla", "--supports-enable=0", "--pad-enable=0", "--slice-closing-radius", "0",
+                        "--layer-height", "0.1", "--initial-layer-height", "0.1", "--exposure-time", "7.5",
+                        "--initial-exposure-time", "35", "--faded-layers", "8", "--display-width", "120.96",
+                        "--display-height", "68.04", "--display-pixels-x", "2560", "--display-pixels-y", "1440",
+                        "--display-orientation", "portrait", "-o", "theirs.sl1", "part.stl"],
+                       cwd=self.folder, capture_output=True, check=True, timeout=120,
+                       env={**os.environ, "HOME": str(self.folder)})
+        self.succeed("slice", "part.stl", "-o", "ours.sl1", "--layer-height", "0.1", "--fade-layers", "8")
+        theirs, ours = (zipfile.ZipFile(self.path(name)) for name in ("theirs.sl1", "ours.sl1"))
+
+        def settings(archive, name):
+            lines = archive.read(name).decode().splitlines()
+            return dict(line.split(" = ", 1) if " = " in line else (line.rstrip(" ="), "") for line in lines)
+
+        theirs_job, our_job = settings(theirs, "config.ini"), settings(ours, "config.ini")
+        self.assertEqual(our_job.keys(), theirs_job.keys())
+        for key in ("action", "expTime", "expTimeFirst", "expUserProfile", "hollow", "layerHeight", "materialName",
+                    "numFade", "numFast", "numSlow", "printProfile"):
+            self.assertEqual(our_job[key], theirs_job[key], key)
+        # Theirs counts the material of its meshes, ours that of the pictures.
+        self.assertAlmostEqual(float(our_job["usedMaterial"]), float(theirs_job["usedMaterial"]), delta=0.002)
+        theirs_profile, our_profile = (settings(archive, "prusaslicer.ini") for archive in (theirs, ours))
+        # It keeps the name of a printer only where one of its profiles was chosen.
+        self.assertEqual(our_profile.keys() - theirs_profile.keys(), {"printer_model", "printer_variant"})
+        self.assertEqual([our_profile[key] for key in our_profile if key.startswith("display_p")],
+                         [theirs_profile[key] for key in our_profile if key.startswith("display_p")])
+        layers = [name.removeprefix("theirs") for name in theirs.namelist() if name.startswith("theirs")]
+        self.assertEqual([name.removeprefix("ours") for name in ours.namelist() if name.startswith("ours")], layers)
+
 
 if __name__ == "__main__":
     main()

@@ -7,8 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <functional>
 #include <limits>
 #include <string>
+#include <tuple>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -85,6 +89,50 @@ TEST(Sl1, ShowsItsPicturesUpright) {
     EXPECT_EQ(at(9, 8), 255);
     EXPECT_EQ(at(1, 2), 0);
     EXPECT_EQ(at(3, 9), 0);
+}
+
+/// The entry of an archive that is stored.
+PngFile stored_picture(const std::string& archive, const std::string& name) {
+    const std::size_t begin = archive.find("\x89PNG", archive.find(name));
+    const std::size_t end = archive.find("IEND", begin) + 8;
+    return read_png(archive.substr(begin, end - begin));
+}
+
+TEST(Sl1, HasPicturesOfThePart) {
+    const TemporaryFolder folder;
+    const LayerStack layers = stack_of({1, 1, 1, 1, 1, 1});
+    write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers));
+    const std::string archive = file_bytes(folder.file("job.sl1"));
+    for (const auto& [name, width, height] : {std::tuple{"thumbnail/thumbnail400x400.png", 400U, 400U},
+                                              {"thumbnail/thumbnail800x480.png", 800U, 480U}}) {
+        const PngFile picture = stored_picture(archive, name);
+        ASSERT_EQ(picture.error, "");
+        EXPECT_EQ(picture.width, width);
+        EXPECT_EQ(picture.height, height);
+        EXPECT_EQ(picture.bits, 8);
+        EXPECT_EQ(picture.colour_type, PNG_COLOR_TYPE_RGBA);
+        const auto alpha = [&](std::size_t column, std::size_t row) {
+            return picture.values[4 * (row * width + column) + 3];
+        };
+        EXPECT_EQ(alpha(width / 2, height / 2), 255);
+        EXPECT_EQ(alpha(3, 3), 0);
+    }
+}
+
+TEST(Sl1, HasTheSameBytesInWhateverOrderLayersAreMade) {
+    const TemporaryFolder folder;
+    const LayerStack layers = stack_of({1, 1, 1, 1, 1, 1});
+    write_layers(folder.file("a.sl1"), layer_format("", "a.sl1"), layers, info_of(layers));
+    std::filesystem::create_directory(folder.path() / "other"); // the pictures are named after the file
+    const std::string other = (folder.path() / "other" / "a.sl1").string();
+    const auto writer = open_layer_writer(other, layer_format("", other), info_of(layers));
+    std::vector<std::function<void()>> ready(layers.size());
+    for (std::size_t i = layers.size(); i-- > 0;)
+        ready[i] = writer->prepare(layers[i]);
+    for (const auto& write : ready)
+        write();
+    writer->finish();
+    EXPECT_TRUE(file_bytes(other) == file_bytes(folder.file("a.sl1")));
 }
 
 } // namespace
