@@ -29,6 +29,9 @@ constexpr std::size_t blur = 2;
 /// Neighbours that are further away than this lie on something else.
 constexpr double most_apart = 8 * reach;
 
+/// A height is drawn for so many rows of pixels.
+constexpr std::uint32_t rows_drawn_at_once = 2;
+
 struct Extent {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
@@ -149,31 +152,42 @@ Relief::Relief(const Box3& box, std::uint32_t width, std::uint32_t height)
     ground_.v0 = 0.5 * height - scale_ * rows.middle();
 }
 
+void Relief::draw(std::span<const Layer> parts, double z, std::vector<ReliefSpan>& spans) const {
+    PixelGrid grid = ground_;
+    grid.v0 -= z * row_per_z_;
+    const std::size_t begin = spans.size();
+    std::uint32_t row = 0;
+    rasterise(parts, grid, {.antialias = 1}, [&](std::span<const PixelRun> runs, std::uint32_t times) {
+        for (const std::uint32_t end = row + times; row < end; ++row) {
+            std::uint32_t from = 0;
+            for (const PixelRun& run : runs) {
+                if (run.value != 0)
+                    spans.push_back({row, from, run.end, static_cast<float>(z)});
+                from = run.end;
+            }
+        }
+    });
+    const std::size_t end = spans.size();
+    for (std::uint32_t up = 1; up < rows_drawn_at_once; ++up) {
+        const auto higher = static_cast<float>(z + up / row_per_z_);
+        for (std::size_t i = begin; i < end; ++i)
+            if (spans[i].row >= up)
+                spans.push_back({spans[i].row - up, spans[i].first, spans[i].end, higher});
+    }
+}
+
 std::vector<ReliefSpan> Relief::spans(std::span<const Layer> parts) const {
     const Layer& layer = parts.front();
-    const auto rows_up = [this](double z) {
-        return std::floor((z - lowest_) * row_per_z_);
+    const double drawn_per_z = row_per_z_ / rows_drawn_at_once;
+    const auto drawn_below = [&](double z) {
+        return std::floor((z - lowest_) * drawn_per_z);
     };
     std::vector<ReliefSpan> spans;
     // So that something is seen of a part that is lower than a pixel, the ground counts, too.
-    const double first = layer.bottom <= lowest_ ? 0 : rows_up(layer.bottom) + 1;
-    const double last = std::min(rows_up(layer.top), first + height_);
-    for (double up = first; up <= last; ++up) {
-        const double z = lowest_ + up / row_per_z_;
-        PixelGrid grid = ground_;
-        grid.v0 -= z * row_per_z_;
-        std::uint32_t row = 0;
-        rasterise(parts, grid, {.antialias = 1}, [&](std::span<const PixelRun> runs, std::uint32_t times) {
-            for (const std::uint32_t end = row + times; row < end; ++row) {
-                std::uint32_t from = 0;
-                for (const PixelRun& run : runs) {
-                    if (run.value != 0)
-                        spans.push_back({row, from, run.end, static_cast<float>(z)});
-                    from = run.end;
-                }
-            }
-        });
-    }
+    const double first = layer.bottom <= lowest_ ? 0 : drawn_below(layer.bottom) + 1;
+    const double last = std::min(drawn_below(layer.top), first + height_);
+    for (double i = first; i <= last; ++i)
+        draw(parts, lowest_ + i / drawn_per_z, spans);
     return spans;
 }
 

@@ -36,8 +36,9 @@ struct ReliefSpan {
 
 /// The outside of a part as one sees it from above and in front, turned a little, lit from the left. Upper
 /// layers are drawn over lower ones, each where it lies at its own height; so of each pixel it is known in
-/// the end how high it lies, and neighbours tell how steep it is there. Between two rows of pixels one height
-/// is drawn: thin layers are left out, thick ones drawn several times, and the time goes with the rows.
+/// the end how high it lies, and neighbours tell how steep it is there. For each two
+/// rows of pixels one height is drawn: thin layers are left out, thick ones drawn several times, and the time
+/// goes with the rows.
 class Relief {
   public:
     /// Of a part within this box.
@@ -54,6 +55,8 @@ class Relief {
     /// Along the columns, on the ground towards the viewer, and upwards; all in pixels.
     using Vector = std::array<double, 3>;
 
+    /// What is seen of a height, and of the rows that are drawn with it.
+    void draw(std::span<const Layer> parts, double z, std::vector<ReliefSpan>& spans) const;
     [[nodiscard]] bool covered(std::size_t row, std::size_t column) const noexcept {
         return row < height_ && column < width_ && !std::isnan(heights_[row * width_ + column]);
     }

@@ -134,7 +134,7 @@ class Pictures(ProgramTest):
                 (["--display-size", "-1,1"], "not a length or two"),
                 (["--antialias", "0"], "choose 1"),
                 (["--antialias", "65"], "level 65"),
-                (["--antialias", "5000000000"], "strips"),
+                (["--antialias", "5000000000"], "level"),
                 (["--gamma", "0"], "above 0"),
                 (["--mirror", "z"], "--mirror"),
                 (["--orientation", "upside"], "--orientation"),
