@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
-#include <utility>
 
 namespace lamella {
 
@@ -292,8 +291,7 @@ void RunDeflater::write_block(bool last) {
 }
 
 std::string_view RunDeflater::finish() {
-    if (run_.count > 0)
-        runs_.push_back(std::exchange(run_, {}));
+    end_run();
     write_block(true);
     for (; bit_count_ > 0; bit_count_ -= std::min(bit_count_, 8U), bits_ >>= 8) {
         const char byte = static_cast<char>(bits_ & 0xff);

@@ -24,20 +24,21 @@ class RunDeflater {
             return;
         for (std::uint64_t rest = count; rest > 0; rest -= std::min(rest, most_unreduced))
             add_to_checksum(value, std::min(rest, most_unreduced));
-        if (value != run_.value || run_.count == 0) {
+        if (value != value_) {
             end_run();
-            run_.value = value;
+            value_ = value;
         }
-        run_.count += count;
+        count_ += count;
     }
 
     /// Ends the stream. It lives until the next call.
     [[nodiscard]] std::string_view finish();
 
   private:
+    /// As small as may be: a picture has thousands in a block.
     struct Run {
-        std::uint64_t count = 0;
-        std::uint8_t value = 0;
+        std::uint32_t count;
+        std::uint8_t value;
     };
 
     // Adler-32 of n equal bytes v: the sum grows by n v, the sum of sums by n times the old sum and
@@ -51,21 +52,24 @@ class RunDeflater {
     }
     void reduce_checksum() noexcept;
     void end_run() {
-        if (run_.count == 0)
-            return;
-        runs_.push_back(run_);
-        run_.count = 0;
-        if (runs_.size() == most_runs)
-            write_block(false);
+        while (count_ > 0) {
+            const std::uint64_t count = std::min(count_, longest_run);
+            runs_.push_back({static_cast<std::uint32_t>(count), value_});
+            count_ -= count;
+            if (runs_.size() == most_runs)
+                write_block(false);
+        }
     }
     void begin_stream();
     void write_block(bool last);
 
     static constexpr std::uint64_t most_unreduced = 1 << 24;
-    static constexpr std::size_t most_runs = 1 << 15; ///< of a block: these stay in the cache
+    static constexpr std::size_t most_runs = 1 << 14; ///< of a block: these stay in the cache
+    static constexpr std::uint64_t longest_run = std::uint64_t{1} << 31;
 
     std::vector<Run> runs_;
-    Run run_;
+    std::uint64_t count_ = 0; ///< of the run that is not yet among them
+    std::uint8_t value_ = 0;
     std::uint64_t sum_ = 1; ///< the two halves of Adler-32, before they are reduced
     std::uint64_t sum_of_sums_ = 0;
     std::uint64_t unreduced_ = 0; ///< bytes that were added since
