@@ -122,6 +122,16 @@ void drop_unused(IndexedMesh& mesh, Executor& executor) {
 
 } // namespace
 
+std::optional<Corners> TriangleStrip::add(std::uint32_t corner) noexcept {
+    const bool odd = corners_ % 2 != 0;
+    const Corners triangle =
+        odd ? Corners{last_, last_but_one_, corner} : Corners{last_but_one_, last_, corner};
+    const bool whole = ++corners_ >= 3;
+    last_but_one_ = std::exchange(last_, corner);
+    const auto& [a, b, c] = triangle;
+    return whole && a != b && b != c && c != a ? std::optional(triangle) : std::nullopt;
+}
+
 void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t offset) {
     if (corners.size() < 3) {
         ++thin_faces;

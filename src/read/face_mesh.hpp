@@ -52,6 +52,21 @@ struct FacePiece {
     void add_face(const std::vector<std::uint32_t>& corners, std::size_t offset);
 };
 
+/// Triangles that share two corners each with the one before.
+class TriangleStrip {
+  public:
+    void restart() noexcept { corners_ = 0; }
+    /// The triangle that ends with this corner; none where the strip has just begun, and none that uses a
+    /// corner twice, as where strips are sewn together. Every second one is turned, so that all face the same
+    /// side.
+    [[nodiscard]] std::optional<std::array<std::uint32_t, 3>> add(std::uint32_t corner) noexcept;
+
+  private:
+    std::uint64_t corners_ = 0;
+    std::uint32_t last_but_one_ = 0;
+    std::uint32_t last_ = 0;
+};
+
 struct FaceMesh {
     IndexedMesh mesh;
     std::vector<FaceFan> polygons;

@@ -197,6 +197,24 @@ void RowWords::add_face(FacePiece& piece) {
     piece.add_face(corners_, begin);
 }
 
+void RowWords::add_strips(FacePiece& piece) {
+    const std::size_t begin = offset();
+    const std::int64_t count = integer();
+    if (count < 0)
+        throw TextFault{begin, "how many numbers of vertices there are"};
+    TriangleStrip strip;
+    for (std::int64_t i = 0; i < count; ++i) {
+        const std::int64_t v = integer();
+        if (v < 0) {
+            strip.restart();
+            continue;
+        }
+        if (const auto triangle =
+                strip.add(static_cast<std::uint32_t>(std::min<std::int64_t>(v, FacePiece::no_vertex))))
+            piece.triangles.push_back(*triangle);
+    }
+}
+
 const char* RowWords::skip_rest() {
     at_ = skip_to_line_end(at_, end_);
     return at_;

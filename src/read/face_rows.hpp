@@ -30,6 +30,9 @@ class RowWords {
     void skip_word();
     /// Adds a face to the piece: so many corners, then the number of a vertex for each, from 0 on.
     void add_face(FacePiece& piece);
+    /// Takes a count and as many numbers of vertices: strips of triangles with a negative number between
+    /// them.
+    void add_strips(FacePiece& piece);
 
     [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
     void move_to(const char* at) { at_ = at; }

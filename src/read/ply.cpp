@@ -42,17 +42,24 @@ PlyPlaces find_places(const PlyHeader& header, const std::string& file) {
         places.coordinates[axis] = *at;
     }
     places.face = find_element(header, "face");
+    if (places.face == header.elements.size() || header.elements[places.face].rows == 0) {
+        places.face = find_element(header, "tristrips");
+        places.strips = true;
+    }
     if (places.face == header.elements.size() || header.elements[places.face].rows == 0)
         fail(fmt::format("holds no triangle: {} vertices without an element 'face' (a cloud of points has no "
                          "surface to slice)",
                          vertex.rows));
     const PlyElement& face = header.elements[places.face];
+    const std::string_view what = places.strips
+                                      ? "property list int int vertex_indices' of the element 'tristrips"
+                                      : "property list uchar int vertex_indices' of the element 'face";
     for (const std::string_view name : {"vertex_indices", "vertex_index"})
         if (const auto at = face.find(name); at && face.properties[*at].list_length) {
             places.corners = *at;
             return places;
         }
-    fail("the head has no 'property list uchar int vertex_indices' of the element 'face'");
+    fail(fmt::format("the head has no '{}'", what));
     return places;
 }
 
@@ -79,7 +86,10 @@ void read_face(const PlyElement& element, const PlyPlaces& places, RowWords& wor
         for (std::int64_t k = list ? words.integer() : 1; k > 0; --k)
             words.skip_word();
     }
-    words.add_face(piece);
+    if (places.strips)
+        words.add_strips(piece);
+    else
+        words.add_face(piece);
 }
 
 MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places,

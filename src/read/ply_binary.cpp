@@ -159,7 +159,7 @@ class BinaryReader {
             if (i == places_.vertex)
                 read_vertices(element);
             else if (i == places_.face)
-                read_faces(element);
+                places_.strips ? read_strips(element) : read_faces(element);
             else
                 skip(element);
         }
@@ -300,6 +300,52 @@ class BinaryReader {
                             first_thin_ - begin_, thin_faces_, thin_faces_ == 1 ? "face" : "faces"));
     }
 
+    /// Calls visit(corners, row) for the triangles of all strips, where `row` begins. Returns the end.
+    template <class Visit>
+    const std::byte* for_each_in_strips(const PlyElement& element, const Visit& visit) const {
+        constexpr std::uint64_t negative = std::numeric_limits<std::uint64_t>::max();
+        constexpr std::uint64_t unsigned_minus_one = std::numeric_limits<std::uint32_t>::max();
+        const std::byte* at = strips_;
+        for (std::uint64_t row = 0; row < element.rows; ++row) {
+            const std::byte* const row_begin = at;
+            const std::byte* const list = walk<swapped>(before_, at, end_);
+            const std::byte* const list_end =
+                list == nullptr ? nullptr : walk<swapped>({{0, length_type_, item_type_}}, list, end_);
+            at = list_end == nullptr ? nullptr : walk<swapped>(after_, list_end, end_);
+            if (at == nullptr)
+                fail_cut_off(element, row);
+            TriangleStrip strip;
+            for (const std::byte* item = list + ply_bytes(length_type_); item != list_end;
+                 item += ply_bytes(item_type_)) {
+                const std::uint64_t number = whole_number_at<swapped>(item, item_type_);
+                if (number == negative || number == unsigned_minus_one) {
+                    strip.restart();
+                    continue;
+                }
+                if (const auto triangle = strip.add(as_vertex(number)))
+                    visit(*triangle, row_begin);
+            }
+        }
+        return at;
+    }
+
+    void read_strips(const PlyElement& element) {
+        before_ = steps_of(element, 0, places_.corners);
+        after_ = steps_of(element, places_.corners + 1, element.properties.size());
+        length_type_ = *element.properties[places_.corners].list_length;
+        item_type_ = element.properties[places_.corners].type;
+        strips_ = at_;
+        std::uint64_t triangles = 0;
+        at_ = for_each_in_strips(element, [&](const Corners&, const std::byte*) { ++triangles; });
+        limits_.add_triangles(triangles);
+        limits_.add_bytes(triangles * sizeof(Corners));
+        faces_.mesh.triangles.reserve(triangles);
+        for_each_in_strips(element, [&](const Corners& triangle, const std::byte*) {
+            faces_.mesh.triangles.push_back(triangle);
+        });
+        progress_.add(static_cast<std::uint64_t>(at_ - strips_));
+    }
+
     [[nodiscard]] bool item_type_is_u32() const {
         return item_type_ == PlyType::int32 || item_type_ == PlyType::uint32;
     }
@@ -407,7 +453,19 @@ class BinaryReader {
         }
     }
 
+    [[nodiscard]] std::string place_in_strips(std::uint64_t triangle) const {
+        const std::byte* found = strips_;
+        std::uint64_t count = 0;
+        for_each_in_strips(header_.elements[places_.face], [&](const Corners&, const std::byte* row) {
+            if (count++ == triangle)
+                found = row;
+        });
+        return fmt::format("byte {}", found - begin_);
+    }
+
     [[nodiscard]] std::string place(std::uint64_t triangle) const {
+        if (places_.strips)
+            return place_in_strips(triangle);
         auto run = std::ranges::upper_bound(runs_, triangle, {}, &FaceRun::triangles);
         --run;
         const std::byte* at = run->at;
@@ -438,8 +496,9 @@ class BinaryReader {
     std::vector<Step> after_;
     PlyType length_type_ = PlyType::uint8;
     PlyType item_type_ = PlyType::int32;
-    std::vector<FaceRun> runs_; ///< and the end of the last one
-    bool even_ = false;         ///< all rows have this form:
+    const std::byte* strips_ = nullptr; ///< where their rows begin
+    std::vector<FaceRun> runs_;         ///< and the end of the last one
+    bool even_ = false;                 ///< all rows have this form:
     std::uint64_t corners_ = 0;
     std::uint64_t row_bytes_ = 0;
     std::size_t index_offset_ = 0;

@@ -20,6 +20,7 @@ struct PlyPlaces {
     std::array<std::size_t, 3> coordinates{};
     std::size_t face = 0;
     std::size_t corners = 0;
+    bool strips = false; ///< the rows of `face` are strips of triangles, not faces
 };
 
 [[nodiscard]] MeshFile read_ply_binary(const ByteSource& source, const PlyHeader& header,

@@ -1,6 +1,7 @@
 #include "read/face_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
@@ -62,6 +63,60 @@ TEST(Ply, ReadsAllThreeForms) {
     expect_mesh(head(big) + binary_rows(true), name, corners, {{0, 1, 2}});
     // By its first line, whatever the name.
     EXPECT_EQ(read(head(little) + binary_rows(false), "part.stl").format, MeshFormat::ply);
+}
+
+std::string strips_head(const std::string& form, const std::string& index_type,
+                        std::uint64_t rows_of_strips) {
+    return fmt::format(
+        "ply\nformat {} 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+        "property float z\nelement tristrips {}\nproperty list int {} vertex_indices\nend_header\n",
+        form, rows_of_strips, index_type);
+}
+
+TEST(Ply, ReadsStripsOfTriangles) {
+    // Two strips, of which the first goes on after a seam (2 3 3 3), and a third one in a row of its own.
+    const std::vector<std::int32_t> first{0, 1, 2, 3, 3, 3, 0, 1, -1, 2, 3, 4};
+    const std::vector<std::int32_t> second{4, 3, 2};
+    const std::vector<Point3> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 1}};
+    const std::vector<std::array<std::uint32_t, 3>> expected{
+        {0, 1, 2}, {2, 1, 3}, {0, 3, 1}, {2, 3, 4}, {4, 3, 2}};
+    std::string text = strips_head("ascii", "int", 2);
+    for (const Point3& p : vertices)
+        text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+    text += fmt::format("{} {}\n3 4 3 2\n", first.size(), fmt::join(first, " "));
+    expect_mesh(text, name, vertices, expected);
+    for (const bool big_endian : {false, true}) {
+        for (const std::string type : {"int", "uint"}) { // -1 is the largest of the latter
+            Bytes bytes(big_endian);
+            for (const Point3& p : vertices)
+                bytes.all<float>(p.x, p.y, p.z);
+            for (const auto& row : {first, second}) {
+                bytes.add(static_cast<std::int32_t>(row.size()));
+                for (const std::int32_t v : row)
+                    bytes.add(v);
+            }
+            const std::string file = strips_head(big_endian ? big : little, type, 2) + bytes.text;
+            expect_mesh(file, name, vertices, expected);
+            EXPECT_EQ(error_of(file, name, {.max_triangles = 4}, ErrorKind::limit),
+                      name + ": holds more than the 4 triangles of --max-triangles");
+            EXPECT_NE(error_of(file.substr(0, file.size() - 1), name).find("the file ends within row 2 of 2"),
+                      std::string::npos);
+        }
+    }
+}
+
+TEST(Ply, SaysWhichStripNamesAVertexThatIsNotThere) {
+    const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 1\n";
+    EXPECT_NE(
+        error_of(strips_head("ascii", "int", 2) + vertices + "3 0 1 2\n4 0 1 2 5\n", name).find("line 16"),
+        std::string::npos);
+    Bytes bytes(false);
+    for (int i = 0; i < 5; ++i)
+        bytes.all<float>(i, i * i, 0);
+    bytes.all<std::int32_t>(3, 0, 1, 2).all<std::int32_t>(4, 0, 1, 2, 5);
+    const std::string head = strips_head(little, "int", 2);
+    const std::string error = error_of(head + bytes.text, name);
+    EXPECT_NE(error.find(fmt::format("byte {}", head.size() + 60 + 16)), std::string::npos) << error;
 }
 
 TEST(Ply, FindsTheRowsBehindAnyLineEnds) {
@@ -254,12 +309,14 @@ TEST(Ply, StopsAtTheLimits) {
 }
 
 TEST(Ply, SurvivesHostility) {
-    survive_hostility({head("ascii") + rows, head(little) + binary_rows(false), head(big) + binary_rows(true),
-                       strip(7, false, false)},
-                      name,
-                      {"property list uchar int x\n", "property double q\n", "element vertex 9\n",
-                       "\xff\xff\xff\xff", std::string(4, '\0'), "end_header\n", "3 0 1 2\n", "nan", "-1",
-                       "99999999999"});
+    survive_hostility(
+        {head("ascii") + rows, head(little) + binary_rows(false), head(big) + binary_rows(true),
+         strip(7, false, false),
+         strips_head("ascii", "int", 1) + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 1\n6 0 1 2 -1 3 4\n",
+         strips_head(little, "int", 1) + std::string(60, '\0') + std::string("\1\0\0\0\2\0\0\0", 8)},
+        name,
+        {"property list uchar int x\n", "property double q\n", "element vertex 9\n", "\xff\xff\xff\xff",
+         std::string(4, '\0'), "end_header\n", "3 0 1 2\n", "nan", "-1", "99999999999"});
 }
 
 } // namespace

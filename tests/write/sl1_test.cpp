@@ -5,13 +5,14 @@
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace lamella {
@@ -103,9 +104,10 @@ TEST(Sl1, HasPicturesOfThePart) {
     const LayerStack layers = stack_of({1, 1, 1, 1, 1, 1});
     write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers));
     const std::string archive = file_bytes(folder.file("job.sl1"));
-    for (const auto& [name, width, height] : {std::tuple{"thumbnail/thumbnail400x400.png", 400U, 400U},
-                                              {"thumbnail/thumbnail800x480.png", 800U, 480U}}) {
-        const PngFile picture = stored_picture(archive, name);
+    for (const std::uint32_t width : {400U, 800U}) {
+        const std::uint32_t height = width == 400 ? 400 : 480;
+        const PngFile picture =
+            stored_picture(archive, fmt::format("thumbnail/thumbnail{}x{}.png", width, height));
         ASSERT_EQ(picture.error, "");
         EXPECT_EQ(picture.width, width);
         EXPECT_EQ(picture.height, height);
