@@ -20,7 +20,7 @@ std::uint32_t column_of_centres(double u) noexcept {
 
 } // namespace
 
-RowRange CentreCrossing::rows(const Edge& edge, std::uint32_t height) noexcept {
+RowRange CentreCrossing::rows(const PictureEdge& edge, std::uint32_t height) noexcept {
     return {row_of_centres(edge.upper.y, height), row_of_centres(edge.lower.y, height)};
 }
 
@@ -31,7 +31,7 @@ std::uint32_t CentreRows::draw(std::uint32_t row, CoverageRow& out) {
     int winding = 0;
     bool upright = true;
     for (const auto& crossing : crossings_.entries()) {
-        const Edge& edge = crossings_.edge(crossing);
+        const PictureEdge& edge = crossings_.edge(crossing);
         const int left = std::exchange(winding, winding + edge.winding);
         if ((left == 0) != (winding == 0))
             out.begin_at(column_of_centres(crossing.column), left == 0 ? 1 : -1);

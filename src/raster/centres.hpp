@@ -15,9 +15,9 @@ namespace lamella {
 
 /// Where an edge crosses the centres of a row.
 struct CentreCrossing {
-    [[nodiscard]] static RowRange rows(const Edge& edge, std::uint32_t height) noexcept;
-    CentreCrossing(const Edge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
-    void move_to(const Edge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }
+    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept;
+    CentreCrossing(const PictureEdge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
+    void move_to(const PictureEdge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }
     bool operator<(const CentreCrossing& other) const noexcept { return column < other.column; }
 
     double column = 0;
@@ -26,7 +26,7 @@ struct CentreCrossing {
 /// Draws the rows of a picture from the top down, each into an empty CoverageRow of full coverage 1.
 class CentreRows {
   public:
-    CentreRows(std::span<const Edge> edges, std::uint32_t height)
+    CentreRows(std::span<const PictureEdge> edges, std::uint32_t height)
         : crossings_(edges, height), height_(height) {}
 
     /// Says how many rows from there on look the same.

@@ -18,7 +18,8 @@ namespace {
 /// A gap no wider than this (in pixels) between two bodies is the rounding of a border that they share.
 constexpr double most_rounding = 1e-6;
 
-void draw_border(const Edge& edge, double middle_column, double height, double weight, CoverageRow& out) {
+void draw_border(const PictureEdge& edge, double middle_column, double height, double weight,
+                 CoverageRow& out) {
     const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
     const double half =
         std::min({0.5 * std::abs(height * edge.slope), middle_column - low, high - middle_column});
@@ -27,25 +28,25 @@ void draw_border(const Edge& edge, double middle_column, double height, double w
 
 } // namespace
 
-RowRange RowPiece::rows(const Edge& edge, std::uint32_t height) noexcept {
+RowRange RowPiece::rows(const PictureEdge& edge, std::uint32_t height) noexcept {
     const auto row = [height](double v) {
         return static_cast<std::uint32_t>(std::clamp(v, 0.0, static_cast<double>(height)));
     };
     return {row(std::floor(edge.upper.y)), row(std::ceil(edge.lower.y))};
 }
 
-RowPiece::RowPiece(const Edge& edge, std::uint32_t row) noexcept {
+RowPiece::RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept {
     const bool begins = edge.upper.y >= row;
     top = begins ? edge.upper.y : row;
     reach(edge, row, begins ? edge.upper.x : edge.column(row));
 }
 
-void RowPiece::move_to(const Edge& edge, std::uint32_t row) noexcept {
+void RowPiece::move_to(const PictureEdge& edge, std::uint32_t row) noexcept {
     top = row;
     reach(edge, row, bottom == row ? bottom_column : edge.column(row));
 }
 
-void RowPiece::reach(const Edge& edge, std::uint32_t row, double top_column) noexcept {
+void RowPiece::reach(const PictureEdge& edge, std::uint32_t row, double top_column) noexcept {
     const double border = row + 1.0;
     const bool ends = edge.lower.y <= border;
     bottom = ends ? edge.lower.y : border;
@@ -119,8 +120,8 @@ bool CoverageRows::find_slabs(Pieces knot, std::uint32_t row) {
     return heights_.size() <= most;
 }
 
-void CoverageRows::add_crossing(const RowPiece& a, const Edge& edge_a, const RowPiece& b,
-                                const Edge& edge_b) {
+void CoverageRows::add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
+                                const PictureEdge& edge_b) {
     const double from = std::max(a.top, b.top);
     const double to = std::min(a.bottom, b.bottom);
     if (from >= to)
@@ -136,7 +137,7 @@ void CoverageRows::draw_slab(Pieces knot, int left, double from, double to, Cove
     borders_.clear();
     for (const auto& piece : knot) {
         if (piece.top <= middle && middle < piece.bottom) {
-            const Edge& edge = pieces_.edge(piece);
+            const PictureEdge& edge = pieces_.edge(piece);
             borders_.push_back({edge.column(middle), &edge});
         }
     }

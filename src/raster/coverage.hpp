@@ -15,9 +15,9 @@ namespace lamella {
 
 /// The piece of an edge that lies in a row, from `top` to `bottom`.
 struct RowPiece {
-    [[nodiscard]] static RowRange rows(const Edge& edge, std::uint32_t height) noexcept;
-    RowPiece(const Edge& edge, std::uint32_t row) noexcept;
-    void move_to(const Edge& edge, std::uint32_t row) noexcept;
+    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept;
+    RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept;
+    void move_to(const PictureEdge& edge, std::uint32_t row) noexcept;
     bool operator<(const RowPiece& other) const noexcept { return low < other.low; }
 
     double low = 0; ///< what its columns lie between; all that reaches beyond the left border begins there
@@ -28,14 +28,15 @@ struct RowPiece {
     bool through = false; ///< from the row's upper to its lower border
 
   private:
-    void reach(const Edge& edge, std::uint32_t row, double top_column) noexcept;
+    void reach(const PictureEdge& edge, std::uint32_t row, double top_column) noexcept;
 };
 
 /// Draws the rows of a picture from the top down, each into an empty CoverageRow of full coverage 1.
 class CoverageRows {
   public:
     /// `strips`: see RasterOptions::antialias.
-    CoverageRows(std::span<const Edge> edges, std::uint32_t width, std::uint32_t height, unsigned strips)
+    CoverageRows(std::span<const PictureEdge> edges, std::uint32_t width, std::uint32_t height,
+                 unsigned strips)
         : pieces_(edges, height), width_(width), strips_(strips) {}
 
     /// Says how many rows from there on look the same.
@@ -47,13 +48,14 @@ class CoverageRows {
     /// An edge in a slab of a row.
     struct Border {
         double column; ///< half-way down the slab
-        const Edge* edge;
+        const PictureEdge* edge;
     };
 
     void draw_knot(Pieces knot, int left, std::uint32_t row, CoverageRow& out);
     /// The heights between which nothing happens in a knot; false where that would be too many.
     bool find_slabs(Pieces knot, std::uint32_t row);
-    void add_crossing(const RowPiece& a, const Edge& edge_a, const RowPiece& b, const Edge& edge_b);
+    void add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
+                      const PictureEdge& edge_b);
     void draw_slab(Pieces knot, int left, double from, double to, CoverageRow& out);
 
     RowSweep<RowPiece> pieces_;

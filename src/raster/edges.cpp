@@ -18,9 +18,9 @@ Point2 place(const Point2& p, const PixelGrid& grid) noexcept {
     return {near(grid.ux * p.x + grid.uy * p.y + grid.u0), near(grid.vx * p.x + grid.vy * p.y + grid.v0)};
 }
 
-void add_edge(const Point2& from, const Point2& to, const PixelGrid& grid, std::vector<Edge>& edges) {
+void add_edge(const Point2& from, const Point2& to, const PixelGrid& grid, std::vector<PictureEdge>& edges) {
     const bool down = from.y < to.y;
-    Edge edge{.upper = down ? from : to, .lower = down ? to : from, .winding = down ? 1 : -1};
+    PictureEdge edge{.upper = down ? from : to, .lower = down ? to : from, .winding = down ? 1 : -1};
     if (edge.lower.y <= 0 || edge.upper.y >= grid.height || std::min(from.x, to.x) >= grid.width)
         return;
     if (std::max(from.x, to.x) <= 0) {
@@ -35,8 +35,8 @@ void add_edge(const Point2& from, const Point2& to, const PixelGrid& grid, std::
 
 } // namespace
 
-std::vector<Edge> picture_edges(std::span<const Layer> parts, const PixelGrid& grid) {
-    std::vector<Edge> edges;
+std::vector<PictureEdge> picture_edges(std::span<const Layer> parts, const PixelGrid& grid) {
+    std::vector<PictureEdge> edges;
     std::size_t points = 0;
     for (const Layer& layer : parts)
         points += layer.points.size();

@@ -18,7 +18,7 @@ inline constexpr double left_of_picture = -1;
 
 /// An edge in columns and rows, from its upper to its lower end whichever way it runs: a border that two
 /// bodies share is one line.
-struct Edge {
+struct PictureEdge {
     Point2 upper;
     Point2 lower;
     double slope = 0;         ///< columns per row; 0 for a level edge
@@ -34,6 +34,6 @@ struct Edge {
 
 /// Of all closed rings, those edges that lie in the picture's rows and not to the right of it. Where an edge
 /// lies to the left of the picture makes no difference, so it is upright there, and level ones are missing.
-[[nodiscard]] std::vector<Edge> picture_edges(std::span<const Layer> parts, const PixelGrid& grid);
+[[nodiscard]] std::vector<PictureEdge> picture_edges(std::span<const Layer> parts, const PixelGrid& grid);
 
 } // namespace lamella

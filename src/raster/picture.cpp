@@ -55,7 +55,7 @@ double draw(Rows rows, const PixelGrid& grid, const RasterOptions& options, cons
 double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
                  const RowSink& sink) {
     check(grid, options);
-    const std::vector<Edge> edges = picture_edges(parts, grid);
+    const std::vector<PictureEdge> edges = picture_edges(parts, grid);
     if (options.antialias == 1)
         return draw(CentreRows(edges, grid.height), grid, options, sink);
     return draw(CoverageRows(edges, grid.width, grid.height, options.antialias), grid, options, sink);

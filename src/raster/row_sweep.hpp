@@ -20,26 +20,26 @@ struct RowRange {
 };
 
 /// Keeps what the edges of one row are to an algorithm, its `Item`s, in order from row to row. An Item has
-///     static RowRange rows(const Edge&, std::uint32_t height);    the rows that it has to do with
-///     Item(const Edge&, std::uint32_t row);                       in the first of them
-///     void move_to(const Edge&, std::uint32_t row);               from one to the next, or further
+///     static RowRange rows(const PictureEdge&, std::uint32_t height);    the rows that it has to do with
+///     Item(const PictureEdge&, std::uint32_t row);                       in the first of them
+///     void move_to(const PictureEdge&, std::uint32_t row);               from one to the next, or further
 ///     bool operator<(const Item&) const;                          a strict weak order along the row
 /// The result depends on the order of the edges only where items are neither less nor greater.
 template <class Item>
 class RowSweep {
   public:
     struct Entry : Item {
-        Entry(const Edge& e, std::uint32_t index, std::uint32_t row) : Item(e, row), edge(index) {}
+        Entry(const PictureEdge& e, std::uint32_t index, std::uint32_t row) : Item(e, row), edge(index) {}
 
         std::uint32_t edge;
     };
 
-    RowSweep(std::span<const Edge> edges, std::uint32_t height) : height_(height) {
+    RowSweep(std::span<const PictureEdge> edges, std::uint32_t height) : height_(height) {
         sort_by_first_row(edges);
     }
 
     [[nodiscard]] std::span<const Entry> entries() const noexcept { return entries_; }
-    [[nodiscard]] const Edge& edge(const Entry& entry) const noexcept { return edges_[entry.edge]; }
+    [[nodiscard]] const PictureEdge& edge(const Entry& entry) const noexcept { return edges_[entry.edge]; }
     /// The row where the next edge begins, or the height of the picture.
     [[nodiscard]] std::uint32_t next_begin() const noexcept {
         return begun_ < edges_.size() ? rows_[begun_].first : height_;
@@ -73,13 +73,13 @@ class RowSweep {
         return a < b || (!(b < a) && a.edge < b.edge);
     }
 
-    void sort_by_first_row(std::span<const Edge> edges) {
+    void sort_by_first_row(std::span<const PictureEdge> edges) {
         std::vector<std::uint32_t> ends(std::size_t{height_} + 2);
-        const auto rows_of = [&](const Edge& edge) {
+        const auto rows_of = [&](const PictureEdge& edge) {
             return Item::rows(edge, height_);
         };
         std::size_t used = 0;
-        for (const Edge& edge : edges) {
+        for (const PictureEdge& edge : edges) {
             const RowRange rows = rows_of(edge);
             if (rows.first < rows.end) {
                 ++ends[rows.first + 1];
@@ -90,7 +90,7 @@ class RowSweep {
             ends[i] += ends[i - 1];
         edges_.resize(used);
         rows_.resize(used);
-        for (const Edge& edge : edges) {
+        for (const PictureEdge& edge : edges) {
             const RowRange rows = rows_of(edge);
             if (rows.first < rows.end) {
                 const std::uint32_t place = ends[rows.first]++;
@@ -134,7 +134,7 @@ class RowSweep {
     }
 
     std::uint32_t height_;
-    std::vector<Edge> edges_; ///< in the order of their first rows
+    std::vector<PictureEdge> edges_; ///< in the order of their first rows
     std::vector<RowRange> rows_;
     std::size_t begun_ = 0;
     std::vector<Entry> entries_;
