@@ -67,7 +67,7 @@ PixelGrid grid_of(const Box3& box) {
 struct Steps {
     Cost slicing;
     Cost raster;
-    Cost pictures; ///< the raster and the pictures' files in memory
+    Cost pictures; ///< the raster, the pictures' files in memory, and what each layer adds to the thumbnails
 };
 
 Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
