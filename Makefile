@@ -76,6 +76,7 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/files
 	build-bench/bench/raster
 	build-bench/bench/layer_steps
+	build-bench/bench/hostile_layers
 	build-bench/bench/kernels
 
 scaling: build  ## bytes and seconds of lamella-mpi, measured and predicted: out/scaling/ (bench/README.md)

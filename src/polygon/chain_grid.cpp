@@ -102,8 +102,10 @@ void ChainGrid::fill() {
     for (const ChainBox& box : boxes_)
         for_cells(box, [&](std::size_t i) { ++ends_[i]; });
     std::uint32_t sum = 0;
-    for (std::uint32_t& end : ends_)
+    for (std::uint32_t& end : ends_) {
+        pairs_ += std::uint64_t{end} * end;
         end = sum += end;
+    }
     sorted_.resize(sum);
     for (std::size_t k = pieces_.size(); k-- > 0;)
         for_cells(boxes_[k], [&](std::size_t i) { sorted_[--ends_[i]] = static_cast<std::uint32_t>(k); });

@@ -31,6 +31,10 @@ class ChainGrid {
     }
     [[nodiscard]] const ChainBox& box(std::uint32_t piece) const noexcept { return boxes_[piece]; }
 
+    /// Whether many pieces lie in few cells, such as small rings within one another: then to look at the
+    /// cells of each piece takes too long.
+    [[nodiscard]] bool crowded() const noexcept { return pairs_ > 256 * pieces_.size() + 65536; }
+
     [[nodiscard]] std::size_t cells() const noexcept { return ends_.size() - 1; }
     /// The cell of a point of the layer. Rounding keeps the order of numbers, so boxes that meet have a cell
     /// in common.
@@ -75,6 +79,7 @@ class ChainGrid {
     std::size_t rows_ = 0;
     std::vector<std::uint32_t> ends_; ///< of cell i the places [ends_[i], ends_[i + 1]) in sorted_
     std::vector<std::uint32_t> sorted_;
+    std::uint64_t pairs_ = 0; ///< of pieces in a cell, over all cells
 };
 
 } // namespace lamella

@@ -88,7 +88,7 @@ class Search {
   private:
     /// False when it would take too long.
     bool search(const ChainGrid& grid) {
-        patience_ = 64 * grid.pieces().size() + 16 * all_.all().size() + 4096;
+        patience_ = 64 * (grid.pieces().size() + all_.all().size()) + 4096;
         for (const Chain& piece : grid.pieces())
             if (ChainGrid::whole_ring(piece))
                 look_into(piece.ring);

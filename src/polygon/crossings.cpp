@@ -4,6 +4,7 @@
 
 #include "polygon/chain_grid.hpp"
 #include "polygon/contacts.hpp"
+#include "polygon/line_tree.hpp"
 #include "polygon/monotone_chains.hpp"
 #include "polygon/orientation.hpp"
 
@@ -379,61 +380,34 @@ class Search {
             search_side_by_side(cell, ids, has_left);
     }
 
-    /// Tests those that left against all others that may reach them. Where many have left, each has crossed a
-    /// neighbour, and that they are many says that most of the others lie farther away: seen along their
-    /// common direction, long segments side by side shrink to short intervals, and only those that overlap
-    /// can cross. Never more pairs than all of those that left with all others.
+    /// Tests those that left against all others that may reach them.
     void search_side_by_side(const Cell& cell, std::span<const SegmentId> ids,
                              const std::vector<bool>& has_left) {
-        // Directions have no sense of forward: the mean is taken of doubled angles.
-        double cosines = 0;
-        double sines = 0;
-        for (const SegmentId id : ids) {
-            const auto [a, b] = local(segments_[id]);
-            const double dx = b.x - a.x;
-            const double dy = b.y - a.y;
-            const double square = dx * dx + dy * dy;
-            if (square > 0) {
-                cosines += (dx * dx - dy * dy) / square;
-                sines += 2 * dx * dy / square;
-            }
-        }
-        const double angle = std::atan2(sines, cosines) / 2;
-        const Point2 across{-std::sin(angle), std::cos(angle)};
-
-        struct Interval {
-            double begin;
-            double end;
-            std::uint32_t i;
+        const auto turned = [](const Segment& s) {
+            const Point2 a{s.lo.y, s.lo.x};
+            const Point2 b{s.hi.y, s.hi.x};
+            return a < b ? Segment{a, b} : Segment{b, a};
         };
-        constexpr double rounding = 0x1p-44; // of coordinates up to 4
-        std::vector<Interval> intervals;
-        intervals.reserve(ids.size());
+        std::vector<LineTree::Item> flat;
+        std::vector<LineTree::Item> steep;
         for (std::uint32_t i = 0; i < ids.size(); ++i) {
-            const auto [a, b] = local(segments_[ids[i]]);
-            const auto [begin, end] =
-                std::minmax({a.x * across.x + a.y * across.y, b.x * across.x + b.y * across.y});
-            intervals.push_back({begin - rounding, end + rounding, i});
+            const Segment s = local(segments_[ids[i]]);
+            if (std::abs(s.hi.y - s.lo.y) <= s.hi.x - s.lo.x)
+                flat.push_back({s, i});
+            else
+                steep.push_back({turned(s), i});
         }
-        std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) {
-            return std::tie(a.begin, a.i) < std::tie(b.begin, b.i);
-        });
-        std::vector<std::size_t> left; // places in `intervals`
-        for (std::size_t k = 0; k < intervals.size(); ++k)
-            if (has_left[intervals[k].i])
-                left.push_back(k);
-        std::size_t next_left = 0;
-        for (std::size_t k = 0; k < intervals.size() && count_ < enough_; ++k) {
-            const Interval& here = intervals[k];
-            if (next_left < left.size() && left[next_left] == k) {
-                ++next_left;
-                for (std::size_t other = k + 1;
-                     other < intervals.size() && intervals[other].begin <= here.end; ++other)
-                    test(cell, ids[here.i], ids[intervals[other].i]);
-            } else {
-                for (std::size_t n = next_left; n < left.size() && intervals[left[n]].begin <= here.end; ++n)
-                    test(cell, ids[here.i], ids[intervals[left[n]].i]);
-            }
+        const LineTree flat_ones(cell.x0, cell.x1, flat);
+        const LineTree steep_ones(cell.y0, cell.y1, steep);
+        for (std::uint32_t i = 0; i < ids.size() && count_ < enough_; ++i) {
+            if (!has_left[i])
+                continue;
+            const auto visit = [&](std::uint32_t other) {
+                if (!has_left[other] || other > i)
+                    test(cell, ids[i], ids[other]);
+            };
+            flat_ones.for_close_to(local(segments_[ids[i]]), visit);
+            steep_ones.for_close_to(turned(local(segments_[ids[i]])), visit);
         }
     }
 

@@ -402,7 +402,7 @@ class Search {
             return std::move(result_);
         rank_by_area();
         order_from_left_to_right();
-        if (apart_ && grid != nullptr && std::ranges::none_of(ends_, &LeftEnd::flat))
+        if (apart_ && grid != nullptr && !grid->crowded() && std::ranges::none_of(ends_, &LeftEnd::flat))
             place_apart(*grid);
         else
             place_any();

@@ -197,6 +197,31 @@ TEST(Crossings, AreThoseOfAllPairsAmongLongSlantedSegments) {
     }
 }
 
+TEST(Crossings, AreThoseOfAllPairsInFans) {
+    Random random(9);
+    for (int round = 0; round < 24; ++round) {
+        // From a short stretch to a long one, in eight directions, with strays of any length across.
+        std::vector<Contour> chains;
+        const auto add = [&](std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1) {
+            Contour chain{{static_cast<double>(x0), static_cast<double>(y0)},
+                          {static_cast<double>(x1), static_cast<double>(y1)}};
+            for (Point2& p : chain) {
+                p.x *= round % 2 == 0 ? 1 : -1;
+                if (round % 4 >= 2)
+                    std::swap(p.x, p.y);
+            }
+            chains.push_back(chain);
+        };
+        for (std::int64_t i = 0; i < 500; ++i)
+            add(random.integer(0, 40), 2 * i + random.integer(-1, 1), 9000 + random.integer(0, 40),
+                (round % 3 - 1) * 4000 + 40 * i + random.integer(-30, 30));
+        for (std::int64_t i = 0; i < 5 * (round % 5); ++i)
+            add(random.integer(0, 9000), random.integer(-4000, 20000), random.integer(0, 9000),
+                random.integer(-4000, 20000));
+        ASSERT_NO_FATAL_FAILURE(expect_same_as_all_pairs(layer_of({}, chains))) << round;
+    }
+}
+
 TEST(Crossings, DoNotChangeWithPlaceAndScale) {
     Random random(6);
     std::vector<Contour> rings;
@@ -238,6 +263,25 @@ TEST(Crossings, OfManyLongWallsWithTheirNeighboursAreFoundAmongNeighbours) {
         const Crossings found = find_crossings(layer_of({}, walls), 2);
         ASSERT_EQ(found.count, static_cast<std::uint64_t>(n)) << slope;
         EXPECT_EQ(keys(found), (std::vector<Key>{{0, 0, 1, 0}, {2, 0, 3, 0}})) << slope;
+    }
+}
+
+TEST(Crossings, OfManyLinesThatFanOutAreFoundAmongNeighbours) {
+    // No common direction sets these apart; each crosses one of those beside it.
+    constexpr int n = 200000;
+    std::vector<Contour> narrow;
+    std::vector<Contour> round;
+    for (int i = 0; i < n; ++i) {
+        const double beside = i + (i % 2 == 0 ? 0.6 : -0.6);
+        const double from = 2 * std::numbers::pi * i / n;
+        const double to = 2 * std::numbers::pi * beside / n;
+        narrow.push_back({{0, 1.0 * i / n}, {100, 100 * beside / n}});
+        round.push_back({{std::cos(from), std::sin(from)}, {100 * std::cos(to), 100 * std::sin(to)}});
+    }
+    for (const std::vector<Contour>& lines : {narrow, round}) {
+        const Crossings found = find_crossings(layer_of({}, lines), 2);
+        EXPECT_EQ(found.count, n / 2U);
+        EXPECT_EQ(keys(found), (std::vector<Key>{{0, 0, 1, 0}, {2, 0, 3, 0}}));
     }
 }
 

@@ -482,6 +482,18 @@ TEST(Nesting, IsThatOfTheirCellsForRandomRingsThatTouch) {
     EXPECT_GT(rings, 20000U); // there was something to nest
 }
 
+TEST(Nesting, OfManySmallRingsWithinOneAnotherIsFoundWithoutLookingAtAllPairs) {
+    constexpr int n = 100000; // all in one corner of a frame
+    std::vector<Contour> rings{rectangle(-1000, -1000, 1000, 1000)};
+    for (int i = n; i > 0; --i)
+        rings.push_back(i % 2 == 0 ? diamond(0, 0, 1e-5 * i) : reversed(diamond(0, 0, 1e-5 * i)));
+    const Nesting nest = nesting(layer_of(rings));
+    for (std::uint32_t i = 1; i < nest.rings(); ++i) {
+        ASSERT_EQ(nest.depth[i], i);
+        ASSERT_EQ(nest.parent[i], i - 1);
+    }
+}
+
 TEST(Nesting, OfManyRingsInOnePlaceIsFoundWithoutLookingAtAllPairs) {
     constexpr std::uint32_t n = 40000;
     const Nesting copies = nesting(layer_of(std::vector<Contour>(n, rectangle(0, 0, 1, 1))));

@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/compare.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
 #include "lamella/polygon/simplify.hpp"
@@ -164,6 +165,29 @@ TEST(Simplify, StaysWithinTheToleranceAlsoWhereContoursWouldCross) {
         }
     }
     EXPECT_GT(put_back, 100U);
+}
+
+TEST(Simplify, OfSpikesAndSpiralsTakesAReasonableNumberOfSteps) {
+    // The farthest points of these split off one spike, or one turn, at a time.
+    constexpr int n = 300000;
+    Contour zigzag;
+    Contour comb;
+    Contour spiral;
+    for (int i = 0; i < n; ++i) {
+        zigzag.push_back({1.0 * i, (i % 2 == 0 ? 1.0 : -1.0) * (n - i)});
+        comb.push_back({0.5 * i, i % 2 == 0 ? 0.0 : 1.0 * n});
+        const double angle = 2 * std::numbers::pi * i / 20;
+        spiral.push_back({(1 + 0.01 * i) * std::cos(angle), (1 + 0.01 * i) * std::sin(angle)});
+    }
+    for (const Contour& contour : {zigzag, comb, spiral}) {
+        const Layer layer = normal_form(layer_of({}, {contour}));
+        EXPECT_TRUE(same_contours(simplify(layer, 0.01), layer)); // all of them are needed
+    }
+    const Layer layer = layer_of({}, {spiral});
+    const Layer coarse = simplify(layer, 0.3);
+    EXPECT_LT(coarse.points.size(), layer.points.size());
+    EXPECT_LE(compare(layer, coarse).distance_mm, 0.3);
+    EXPECT_EQ(find_crossings(coarse).count, 0U);
 }
 
 TEST(Simplify, OfWhatHasNothingToLeaveOutIsTheLayerItself) {

@@ -29,8 +29,9 @@ struct Crossings {
 /// vertex. Decided exactly, on the points as they are. `keep` bounds Crossings::first.
 ///
 /// Expected O(n + crossings); O(n log n) for hostile layers without crossings, O((n + crossings) log n) for
-/// long walls side by side that cross their neighbours. Throws Error{limit} for a
-/// layer of more than 2^32 - 1 points.
+/// long lines that cross those beside them, parallel or fanning out. At worst, for long lines in no order
+/// that all but cross, about O(n^1.5 + crossings). Throws Error{limit} for a layer of more than 2^32 - 1
+/// points.
 [[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16);
 
 /// Whether there are any: stops at the first one found.

@@ -14,8 +14,10 @@ namespace lamella {
 /// ring over, let it vanish or move it past another one, points are put back there until it does not, if need
 /// be all of them. A tolerance of 0 leaves out points that lie exactly on a line with their neighbours.
 ///
-/// By the method of Douglas and Peucker, O(n log n) for most contours, O(n^2) for spirals and the like.
-/// Throws Error{usage} for a tolerance that is negative or not a number.
+/// By the method of Douglas and Peucker: the farthest points are kept first. Where these split off little
+/// time and again, as along spikes and spirals, middle points take their place, so that it takes O(n log n).
+/// Points are put back in rounds, each of which looks for crossings once more: few, as a rule. Throws
+/// Error{usage} for a tolerance that is negative or not a number.
 [[nodiscard]] Layer simplify(const Layer& layer, double tolerance);
 
 /// The same for each contour by itself, for pictures: in a small part of the time. No ring vanishes or turns

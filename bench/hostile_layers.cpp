@@ -1,0 +1,283 @@
+// How does the cost of looking after layers grow where layers are made to be slow? Each kind of layer in four
+// sizes, each twice the one before; the growth is the power of the number of points that the times follow
+// (n log n is about 1.1, a square 2). Crossings are as many as the layer was made with; simplified contours
+// keep within the tolerance and do not cross; filled layers have no crossings and, filled again, stay as they
+// are.
+//
+//     hostile_layers [--rounds 3]
+
+#include "experiment.hpp"
+
+#include <fmt/format.h>
+#include <lamella/lamella.hpp>
+
+#include <cmath>
+#include <iostream>
+#include <numbers>
+
+namespace lamella::bench {
+
+namespace {
+
+using Contour = std::vector<Point2>;
+
+Layer layer_of(const std::vector<Contour>& rings, const std::vector<Contour>& chains = {}) {
+    LayerBuilder builder;
+    for (const auto* contours : {&rings, &chains})
+        for (const Contour& contour : *contours) {
+            for (const Point2& p : contour)
+                builder.add_point(p);
+            builder.end_contour(contours == &rings);
+        }
+    return builder.finish(0, 0.5, 0, 1);
+}
+
+Point2 polar(double radius, double angle) {
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+constexpr double turn = 2 * std::numbers::pi;
+
+/// Long segments from one side to a hundred times as much of the other one: each crosses one neighbour.
+Layer narrow_fan(int n) {
+    std::vector<Contour> lines;
+    for (int i = 0; i < n; ++i)
+        lines.push_back({{0, 1.0 * i / n}, {100, 100.0 * (i + (i % 2 == 0 ? 0.6 : -0.6)) / n}});
+    return layer_of({}, lines);
+}
+
+/// The same fan of dashes: neighbours cross in the first ones.
+Layer dashed_fan(int n) {
+    std::vector<Contour> lines;
+    for (int i = 0; i < n / 3; ++i) {
+        const double from = 3.0 * i / n;
+        const double to = 300 * (i + (i % 2 == 0 ? 0.6 : -0.6)) / n;
+        const auto at = [&](double share) {
+            return Point2{100 * share, from + share * (to - from)};
+        };
+        for (const double begin : {0.0, 0.34, 0.67})
+            lines.push_back({at(begin), at(begin + 0.32)});
+    }
+    return layer_of({}, lines);
+}
+
+/// The same in all directions.
+Layer round_fan(int n) {
+    std::vector<Contour> lines;
+    for (int i = 0; i < n; ++i)
+        lines.push_back({polar(1, turn * i / n), polar(100, turn * (i + (i % 2 == 0 ? 0.6 : -0.6)) / n)});
+    return layer_of({}, lines);
+}
+
+/// Walls aslant, each crossing one neighbour, and a line through all of them.
+Layer walls_and_stray(int n) {
+    std::vector<Contour> lines;
+    for (int i = 0; i < n - 1; ++i)
+        lines.push_back({{4.0 * i, 0}, {4.0 * n + 4.0 * i + (i % 2 == 0 ? 3 : -3), 4.0 * n}});
+    lines.push_back({{-1, 2.0 * n + 1}, {8.0 * n, 2.0 * n + 2}});
+    return layer_of({}, lines);
+}
+
+/// A star whose spikes all come back to one point.
+Layer star(int n) {
+    Contour ring;
+    for (int i = 0; i < n / 2; ++i) {
+        ring.push_back({0, 0});
+        ring.push_back(polar(100, turn * i / (n / 2)));
+    }
+    return layer_of({ring});
+}
+
+/// A wall along a spiral, turns apart by three times its thickness.
+Layer spiral_wall(int n, double turns) {
+    Contour ring;
+    Contour back;
+    for (int i = 0; i < n / 2; ++i) {
+        const double share = 2.0 * i / n;
+        ring.push_back(polar(1 + 100 * share, turn * turns * share));
+        back.push_back(polar(1 + 100 * share + 25 / turns, turn * turns * share));
+    }
+    ring.insert(ring.end(), back.rbegin(), back.rend());
+    return layer_of({ring});
+}
+
+Layer zigzag(int n) {
+    Contour chain;
+    for (int i = 0; i < n; ++i)
+        chain.push_back({1.0 * i, (i % 2 == 0 ? 1.0 : -1.0) * (n - i)});
+    return layer_of({}, {chain});
+}
+
+Layer comb(int n) {
+    Contour ring;
+    for (int i = 0; i < n / 2; ++i) {
+        ring.push_back({1.0 * i, 0});
+        ring.push_back({i + 0.5, 1.0 * n});
+    }
+    ring.push_back({n / 2.0, -1});
+    return layer_of({ring});
+}
+
+/// Round holes in a plate, and the plate once more, half a pitch further: as `layer_steps` doubles a sheet.
+Layer plate_over_its_copy(int n) {
+    constexpr int corners = 64;
+    const int side = static_cast<int>(std::sqrt(n / (2.0 * corners)));
+    std::vector<Contour> rings;
+    for (const double by : {0.0, 0.5}) {
+        rings.push_back({{by, by}, {side + by, by}, {side + by, side + by}, {by, side + by}});
+        for (int i = 0; i < side * side; ++i) {
+            Contour& hole = rings.emplace_back();
+            for (int k = 0; k < corners; ++k) {
+                const Point2 p = polar(0.4, -turn * k / corners);
+                hole.push_back({p.x + by + 0.5 + i % side, p.y + by + 0.5 + i / side});
+            }
+        }
+    }
+    return layer_of(rings);
+}
+
+/// Discs in a row, each over half of the next: one group of them all.
+Layer row_of_discs(int n) {
+    constexpr int corners = 16;
+    std::vector<Contour> rings;
+    for (int i = 0; i < n / corners; ++i) {
+        Contour& ring = rings.emplace_back();
+        for (int k = 0; k < corners; ++k) {
+            const Point2 p = polar(1, turn * k / corners + 1e-3 * i);
+            ring.push_back({p.x + i, p.y});
+        }
+    }
+    return layer_of(rings);
+}
+
+/// Small rings within one another in one place, in a large frame.
+Layer nest(int n) {
+    std::vector<Contour> rings{{{-1000, -1000}, {1000, -1000}, {1000, 1000}, {-1000, 1000}}};
+    for (int i = 0; i < n / 8; ++i) {
+        Contour& ring = rings.emplace_back();
+        for (int k = 0; k < 8; ++k)
+            ring.push_back(polar(8.0 * (i + 1) / n, (i % 2 == 0 ? -turn : turn) * k / 8));
+    }
+    return layer_of(rings);
+}
+
+/// Seconds, and whether the result is right.
+struct Timed {
+    double seconds = 0;
+    std::uint64_t points = 0;
+    bool right = false;
+};
+
+Timed count_crossings(const Layer& layer, std::uint64_t expected) {
+    const auto start = Clock::now();
+    const Crossings found = find_crossings(layer);
+    return {seconds_since(start), layer.points.size(), found.count == expected};
+}
+
+Timed find_nesting(const Layer& layer, std::uint64_t depth) {
+    const auto start = Clock::now();
+    const Nesting found = nesting(layer);
+    const double seconds = seconds_since(start);
+    return {seconds, layer.points.size(), *std::ranges::max_element(found.depth) == depth};
+}
+
+Timed simplify_by(const Layer& layer, double tolerance) {
+    const auto start = Clock::now();
+    const Layer thinned = simplify(layer, tolerance);
+    const double seconds = seconds_since(start);
+    const LayerDifference difference = compare(layer, thinned);
+    return {seconds, layer.points.size(),
+            difference.distance_mm <= tolerance && thinned.rings == layer.rings && !has_crossings(thinned)};
+}
+
+Timed fill_nonzero(const Layer& layer) {
+    const auto start = Clock::now();
+    const Layer filled = fill(layer, FillRule::nonzero).layer;
+    const double seconds = seconds_since(start);
+    return {seconds, layer.points.size(),
+            !has_crossings(filled) && !fill(filled, FillRule::nonzero).changed()};
+}
+
+class Report {
+  public:
+    explicit Report(int rounds) : rounds_(rounds) {}
+
+    template <class Measure>
+    void add(const std::string& what, int smallest, const Measure& measure) {
+        constexpr int sizes = 4;
+        std::vector<double> seconds;
+        std::vector<double> points;
+        bool right = true;
+        for (int k = 0; k < sizes; ++k) {
+            std::vector<double> rounds;
+            Timed last;
+            for (int round = 0; round < rounds_; ++round) {
+                last = measure_in_child<Timed>([&] { return measure(smallest << k); }).result;
+                rounds.push_back(last.seconds);
+                right = right && last.right;
+            }
+            seconds.push_back(median(rounds));
+            points.push_back(static_cast<double>(last.points));
+        }
+        const double growth =
+            std::log(seconds.back() / seconds.front()) / std::log(points.back() / points.front());
+        std::vector<std::string> row{what, fmt::format("{:.0f}", points.back())};
+        for (const double each : seconds)
+            row.push_back(fmt::format("{:.4f}", each));
+        row.push_back(fmt::format("{:.2f}", growth));
+        row.push_back(fmt::format("{:.0f}", 1e9 * seconds.back() / points.back()));
+        row.push_back(right ? "yes" : "WRONG");
+        table_.add(std::move(row));
+        right_ = right_ && right;
+    }
+
+    [[nodiscard]] std::string text() const { return table_.text(); }
+    [[nodiscard]] bool right() const noexcept { return right_; }
+
+  private:
+    int rounds_;
+    bool right_ = true;
+    Table table_{{"layer", "points", "s", "twice", "4 times", "8 times", "growth", "ns/point", "checked"}};
+};
+
+int report(int argc, char** argv) {
+    const int rounds = std::stoi(option(argc, argv, "--rounds", "3"));
+    std::cout << machine() << "; medians of " << rounds << " rounds, 1 thread\n\n";
+    constexpr int n = 25000;
+    const auto half = [](int lines) {
+        return static_cast<std::uint64_t>(lines / 2);
+    };
+    Report report(rounds);
+    report.add("crossings: fan", n, [&](int i) { return count_crossings(narrow_fan(i), half(i)); });
+    report.add("crossings: fan of dashes", n,
+               [&](int i) { return count_crossings(dashed_fan(i), half(i / 3)); });
+    report.add("crossings: fan all around", n, [&](int i) { return count_crossings(round_fan(i), half(i)); });
+    report.add("crossings: walls and a stray line", n, [&](int i) {
+        return count_crossings(walls_and_stray(i), static_cast<std::uint64_t>(i) - 1 + half(i - 1));
+    });
+    report.add("crossings: star", n, [](int i) { return count_crossings(star(i), 0); });
+    report.add("crossings: comb", n, [](int i) { return count_crossings(comb(i), 0); });
+    report.add("nesting: rings in one place", n,
+               [](int i) { return find_nesting(nest(i), static_cast<std::uint64_t>(i / 8)); });
+    report.add("simplify: spiral, fine turns", n,
+               [](int i) { return simplify_by(spiral_wall(i, i / 50.0), 0.001); });
+    report.add("simplify: spiral, turns within reach", n,
+               [](int i) { return simplify_by(spiral_wall(i, i / 50.0), 2500.0 / i); });
+    report.add("simplify: zigzag", n, [](int i) { return simplify_by(zigzag(i), 0.01); });
+    report.add("simplify: comb", n, [](int i) { return simplify_by(comb(i), 0.01); });
+    report.add("simplify: star", n, [](int i) { return simplify_by(star(i), 0.001); });
+    report.add("fill: plate over its copy", n, [](int i) { return fill_nonzero(plate_over_its_copy(i)); });
+    report.add("fill: row of discs", n, [](int i) { return fill_nonzero(row_of_discs(i)); });
+    report.add("fill: star", n, [](int i) { return fill_nonzero(star(i)); });
+    report.add("fill: comb", n, [](int i) { return fill_nonzero(comb(i)); });
+    std::cout << report.text();
+    return report.right() ? 0 : 1;
+}
+
+} // namespace
+
+} // namespace lamella::bench
+
+int main(int argc, char** argv) {
+    return lamella::bench::report(argc, argv);
+}

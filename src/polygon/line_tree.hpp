@@ -1,0 +1,89 @@
+#pragma once
+
+// Long segments by the lines that they lie on: which of them a given one may cross.
+
+#include "polygon/orientation.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// A tree of segments that are no steeper than 1, by the heights of their lines at both borders of a stretch
+/// of abscissae. Segments side by side are neighbours in it whether they are parallel or fan out, which no
+/// tree of boxes sees.
+class LineTree {
+  public:
+    struct Item {
+        Segment line; ///< coordinates of at most 4
+        std::uint32_t number;
+    };
+
+    /// For what happens between the abscissae x0 and x1 alone. O(n log n).
+    LineTree(double x0, double x1, std::span<const Item> items);
+
+    /// Calls visit(number) for every segment that comes closer to `s` between x0 and x1 than rounding
+    /// errors, and for some others. O(log n) and a little for each segment beside it; at worst O(sqrt(n)) and
+    /// as much for each.
+    template <class Visit>
+    void for_close_to(const Segment& s, Visit visit) const {
+        if (!nodes_.empty())
+            descend(0, probe(s), visit);
+    }
+
+  private:
+    /// A segment as two heights of its line, and what part of it counts.
+    struct Line {
+        double left;  ///< the height at x0
+        double right; ///< and at x1
+        double begin; ///< abscissae, as shares of the way from x0 to x1
+        double end;
+        std::uint32_t number;
+    };
+    /// What lines, or a node of them, reach.
+    struct Bounds {
+        double left0, left1, right0, right1, begin, end;
+    };
+    struct Node {
+        Bounds bounds;
+        std::uint32_t first; ///< of the lines in it
+        std::uint32_t last;
+        std::uint32_t above; ///< the node of its second half, 0 for a leaf; that of the first half is next
+    };
+    /// What is looked for: a flat segment as a line, a steep one by its ends.
+    struct Probe {
+        bool steep;
+        Line line;
+        Point2 low; ///< of a steep one, x as a share
+        Point2 high;
+    };
+
+    [[nodiscard]] double share(double x) const noexcept { return (x - x0_) / width_; }
+    [[nodiscard]] Line line_of(const Segment& s, std::uint32_t number) const noexcept;
+    [[nodiscard]] Probe probe(const Segment& s) const noexcept;
+    [[nodiscard]] static bool apart(const Bounds& bounds, const Probe& probe) noexcept;
+    void build(std::uint32_t first, std::uint32_t last);
+
+    template <class Visit>
+    void descend(std::uint32_t at, const Probe& probe, Visit& visit) const {
+        const Node& node = nodes_[at];
+        if (apart(node.bounds, probe))
+            return;
+        if (node.above != 0) {
+            descend(at + 1, probe, visit);
+            descend(node.above, probe, visit);
+            return;
+        }
+        for (std::uint32_t i = node.first; i < node.last; ++i)
+            visit(lines_[i].number);
+    }
+
+    double x0_;
+    double width_;
+    std::vector<Line> lines_;
+    std::vector<Node> nodes_; ///< each before those below it
+};
+
+} // namespace lamella
