@@ -1,7 +1,7 @@
 // Meshes that were broken on purpose, repaired by the policies, and sliced: against what they were before.
 
 #include "fixtures/named_solids.hpp"
-#include "fixtures/random.hpp"
+#include "fixtures/random_solids.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/shared_meshes.hpp"
 
@@ -18,32 +18,14 @@ namespace lamella {
 namespace {
 
 using test::Random;
+using test::random_solid;
+using test::random_turn;
 using test::rounds_within_reason;
 using Soup = std::vector<Triangle3>;
 
 void add(Soup& soup, const TriangleSoup& part) {
     for (std::size_t i = 0; i < part.size(); ++i)
         soup.push_back(part.placed(i));
-}
-
-TriangleSoup random_solid(Random& random) {
-    switch (random.integer(0, 4)) {
-    case 0:
-        return make_box(random.real(2, 6), random.real(2, 6), random.real(2, 6));
-    case 1:
-        return make_sphere(random.real(1, 3), 1 + static_cast<unsigned>(random.integer(0, 1)));
-    case 2:
-        return make_torus(2, random.real(0.5, 1), 12, 7);
-    case 3:
-        return make_cylinder(random.real(1, 3), random.real(2, 6), 13);
-    default: // hollow
-        return make_box(5, 5, 5);
-    }
-}
-
-Transform random_turn(Random& random) {
-    return compose(rotation('x', random.real(0, 360)),
-                   compose(rotation('y', random.real(0, 360)), rotation('z', random.real(0, 360))));
 }
 
 /// Some solids, turned any way, apart from each other, or with `overlapping` in a heap.
