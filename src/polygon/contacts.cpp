@@ -51,7 +51,10 @@ class Groups {
     [[nodiscard]] bool open(std::uint32_t i, std::uint32_t j) noexcept {
         return i == j ? !marked_[find(i)] : find(i) != find(j);
     }
+    /// Counts what was connected.
+    [[nodiscard]] std::uint64_t news() const noexcept { return news_; }
     void connect(std::uint32_t i, std::uint32_t j) noexcept {
+        ++news_;
         i = find(i);
         j = find(j);
         parent_[std::max(i, j)] = std::min(i, j);
@@ -71,6 +74,7 @@ class Groups {
   private:
     std::vector<std::uint32_t> parent_; // the smallest number of a set is its root
     std::vector<bool> marked_;
+    std::uint64_t news_ = 0;
 };
 
 class Search {
@@ -94,11 +98,17 @@ class Search {
                 look_into(piece.ring);
         for (std::size_t i = 0; i < grid.cells(); ++i) {
             const std::span<const std::uint32_t> here = grid.in_cell(i);
+            if (no_news_among(grid, here))
+                continue;
             const std::uint64_t pairs = here.size() * here.size() / 16;
             if (patience_ < pairs)
                 return false;
             patience_ -= pairs;
-            for (std::size_t a = 0; a < here.size(); ++a)
+            std::uint64_t news = groups_.news();
+            for (std::size_t a = 0; a < here.size(); ++a) {
+                if (groups_.news() != news && no_news_among(grid, here))
+                    break;
+                news = groups_.news();
                 for (std::size_t b = a + 1; b < here.size(); ++b) {
                     const ChainBox& s = grid.box(here[a]);
                     const ChainBox& t = grid.box(here[b]);
@@ -106,8 +116,17 @@ class Search {
                     if (s.meets(t) && i == grid.cell(std::max(s.x0, t.x0), std::max(s.y0, t.y0)))
                         look_into(grid, here[a], here[b]);
                 }
+            }
         }
         return patience_ > 0;
+    }
+
+    /// Whether the pieces are all of one group already, such as the spikes of one star.
+    [[nodiscard]] bool no_news_among(const ChainGrid& grid, std::span<const std::uint32_t> pieces) {
+        return std::ranges::none_of(pieces, [&](std::uint32_t i) {
+            return groups_.open(grid.pieces()[i].ring, grid.pieces()[pieces.front()].ring) ||
+                   groups_.open(grid.pieces()[i].ring, grid.pieces()[i].ring);
+        });
     }
 
     /// Of a ring of few chains each with each.
