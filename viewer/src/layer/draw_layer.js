@@ -13,7 +13,7 @@ const pointsOfPath = 1000; // strokes of longer paths take more time for each po
  * directions that pass by it closely enough; the line goes on while they have one in common.
  * @returns {number} points drawn
  */
-function trace(path, contours, i, camera) {
+export function trace(path, contours, i, camera) {
   const { points, ends, rings } = contours;
   const begin = i === 0 ? 0 : ends[i - 1];
   let [fromX, fromY] = [camera.toPixelX(points[2 * begin]), camera.toPixelY(points[2 * begin + 1])];

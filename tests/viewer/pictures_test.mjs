@@ -1,0 +1,183 @@
+// What pages draw, compared pixel by pixel with what the same layers look like to somebody else: layers with the
+// pictures that the raster of `lamella slice` makes, the stack with a pinhole camera's view of the contours.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { colourOf, file, lamella, open, shown, startBrowser, stopBrowser } from './browser.mjs';
+
+const height = 0.5; // mm, of a layer
+const pitches = { rook: 0.02, calibration: 0.1 }; // mm, of the raster's pixels: finer than those of the screen
+
+before(async () => {
+  lamella('make', 'rook', '-o', 'rook.stl');
+  lamella('make', 'calibration', '-o', 'calibration.stl');
+  for (const [part, pitch] of Object.entries(pitches)) {
+    lamella('view', `${part}.stl`, '--layer-height', `${height}`);
+    lamella('slice', `${part}.stl`, '--layer-height', `${height}`, '-o', part, '--format', 'png', '--pixel-size', `${pitch}`, '--antialias', '1');
+  }
+  lamella('slice', 'rook.stl', '--layer-height', `${height}`, '-o', 'rook.json');
+  await startBrowser();
+});
+after(stopBrowser);
+
+/** How many pixels an mm is long, by the scale in the corner. */
+const scaleOf = (page) =>
+  page.locator('.scale').evaluate((node) => node.lastChild.getBoundingClientRect().width / parseFloat(node.textContent));
+
+/**
+ * Compares which pixels of the drawing have a colour closer to the material's than to the paper's and its grid's with a picture of the raster, whose middle is in
+ * the middle of the drawing.
+ * @returns {Promise<{filled: number, different: number, wrong: number}>} pixels with material; those where the two are
+ *     not of one mind; and such of these as no edge passes nearby, which nothing excuses
+ */
+async function compare(page, picture, pitch, scale) {
+  const colours = await Promise.all(['--fill-0', '--paper', '--grid', '--grid-strong'].map((name) => colourOf(page, name)));
+  const png = readFileSync(picture).toString('base64');
+  return page.locator('canvas[data-layer]').evaluate(
+    async (canvas, [colours, png, scale, pitch]) => {
+      const pixels = (source) => {
+        const ctx = new OffscreenCanvas(source.width, source.height).getContext('2d', { willReadFrequently: true });
+        ctx.drawImage(source, 0, 0);
+        return ctx.getImageData(0, 0, source.width, source.height).data;
+      };
+      const image = new Image();
+      image.src = `data:image/png;base64,${png}`;
+      await image.decode();
+      const raster = pixels(image);
+      const material = (x, y) => {
+        const column = Math.floor(x / scale / pitch + image.width / 2);
+        const row = Math.floor(y / scale / pitch + image.height / 2);
+        return column >= 0 && row >= 0 && column < image.width && row < image.height && raster[4 * (row * image.width + column)] > 127;
+      };
+      const drawing = pixels(canvas);
+      const found = { filled: 0, different: 0, wrong: 0 };
+      for (let row = 0; row < canvas.height; ++row)
+        for (let column = 0; column < canvas.width; ++column) {
+          const at = 4 * (row * canvas.width + column);
+          const [x, y] = [column + 0.5 - canvas.width / 2, row + 0.5 - canvas.height / 2];
+          const [fill, ...others] = colours.map((colour) => [0, 1, 2].reduce((sum, k) => sum + Math.abs(drawing[at + k] - colour[k]), 0));
+          const filled = fill < Math.min(...others);
+          found.filled += filled;
+          if (filled === material(x, y)) continue;
+          ++found.different;
+          const around = [-1, 0, 1].flatMap((dx) => [-1, 0, 1].map((dy) => material(x + dx, y + dy)));
+          found.wrong += around.every((each) => each === around[0]);
+        }
+      return found;
+    },
+    [colours, png, scale, pitch],
+  );
+}
+
+for (const colorScheme of ['light', 'dark'])
+  test(`layers look as the raster sees them, ${colorScheme}`, async () => {
+    for (const [part, pitch] of Object.entries(pitches)) {
+      const { page, close } = await open(`${part}.html`, { colorScheme });
+      await shown(page);
+      for (const name of ['Contours', 'Direction']) await page.getByRole('button', { name, exact: true }).click();
+      const layers = Number(await page.locator('#layer').getAttribute('max')) + 1;
+      for (const [layer, zoomed] of [[0, false], [Math.floor(layers / 2), false], [layers - 1, false], [layers - 1, true]]) {
+        await page.locator('#layer').fill(String(layer));
+        await shown(page);
+        if (zoomed) await page.getByRole('button', { name: 'Zoom in' }).first().click();
+        await page.waitForTimeout(150);
+        const picture = file(`${part}/${String(layer).padStart(5, '0')}.png`);
+        const { filled, different, wrong } = await compare(page, picture, pitch, await scaleOf(page));
+        const where = `${part}, layer ${layer}${zoomed ? ', zoomed in' : ''}: ${different} of ${filled} pixels`;
+        assert.ok(filled > 5000, where);
+        assert.equal(wrong, 0, where);
+        assert.ok(different < 0.02 * filled, where);
+      }
+      await close();
+    }
+  });
+
+/** The leftmost and rightmost pixel of the stack in each row of the screen: what has not the colour of the paper. */
+async function silhouette(page) {
+  const paper = await colourOf(page, '--paper');
+  const png = (await page.locator('canvas[data-built]').screenshot()).toString('base64');
+  return page.evaluate(
+    async ([png, paper]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${png}`;
+      await image.decode();
+      const { width, height } = image;
+      const ctx = new OffscreenCanvas(width, height).getContext('2d');
+      ctx.drawImage(image, 0, 0);
+      const { data } = ctx.getImageData(0, 0, width, height);
+      const rows = [];
+      for (let row = 0; row < height; ++row) {
+        let [left, right] = [null, null];
+        for (let column = 0; column < width; ++column) {
+          const at = 4 * (row * width + column);
+          if ([0, 1, 2].reduce((sum, k) => sum + Math.abs(data[at + k] - paper[k]), 0) < 40) continue;
+          left ??= column;
+          right = column + 1;
+        }
+        rows.push([left, right]);
+      }
+      return { width, height, rows };
+    },
+    [png, paper],
+  );
+}
+
+/** x, y, bottom and top of all points of contours, mm from the middle of their box. */
+function pointsOf(layers) {
+  const points = [];
+  for (const { bottom, top, parts } of layers)
+    for (const ring of parts[0].rings) for (let i = 0; i < ring.length; i += 2) points.push([ring[i], ring[i + 1], bottom, top]);
+  const range = (k) => points.reduce(([low, high], p) => [Math.min(low, p[k]), Math.max(high, p[k])], [Infinity, -Infinity]);
+  const [x, y] = [range(0), range(1)].map(([low, high]) => (low + high) / 2);
+  const z = (range(2)[0] + range(3)[1]) / 2;
+  return points.map((p) => [p[0] - x, p[1] - y, p[2] - z, p[3] - z]);
+}
+
+/**
+ * The same as a camera sees the points that looks level from the front at the middle of the box, from so far away. Each
+ * is seen from the bottom to the top of its layer.
+ */
+function pinholeView(points, { width, height }, away) {
+  const focus = height / 2 / Math.tan((16 * Math.PI) / 180); // the viewer's camera sees 32 degrees of height
+  const rows = Array.from({ length: height }, () => [Infinity, -Infinity]);
+  for (const [x, y, bottom, top] of points) {
+    const scale = focus / (away + y);
+    const column = width / 2 + x * scale;
+    const last = Math.min(height, Math.round(height / 2 - bottom * scale));
+    for (let row = Math.max(0, Math.round(height / 2 - top * scale)); row < last; ++row) {
+      rows[row][0] = Math.min(rows[row][0], column);
+      rows[row][1] = Math.max(rows[row][1], column);
+    }
+  }
+  return rows;
+}
+
+for (const colorScheme of ['light', 'dark'])
+  test(`the stack has the outline that a camera sees, ${colorScheme}`, async () => {
+    const { layers } = JSON.parse(readFileSync(file('rook.json'), 'utf8'));
+    const points = pointsOf(layers);
+    const { page, close } = await open('rook.html', { view: 'stack', colorScheme });
+    await page.waitForSelector('canvas[data-built]');
+    await page.locator('#layer').fill(String(layers.length - 1));
+    await page.getByRole('button', { name: 'Front' }).click();
+    await page.waitForTimeout(1000);
+    const drawn = await silhouette(page);
+    // Below, the bed is seen behind the part.
+    const rowsOf = (view) => [...view.keys()].filter((row) => Number.isFinite(view[row][0]) && row < 0.65 * drawn.height);
+    const differences = (away) => {
+      const view = pinholeView(points, drawn, away);
+      return rowsOf(view).map((row) => Math.max(Math.abs(view[row][0] - drawn.rows[row][0]), Math.abs(view[row][1] - drawn.rows[row][1])));
+    };
+    // How far away it stands is the camera's business: it is where most rows agree.
+    let best = [];
+    let most = -1;
+    for (let away = 60; away < 300; away *= 1.005) {
+      const found = differences(away);
+      const agree = found.filter((d) => d <= 2).length / found.length;
+      if (agree > most) [most, best] = [agree, found];
+    }
+    assert.ok(best.length > 100, `${best.length} rows`);
+    assert.ok(most > 0.95, `${(100 * most).toFixed(1)} % of ${best.length} rows agree`);
+    await close();
+  });
