@@ -62,7 +62,8 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     std::vector<LayerStack> stacks;
     for (const LayerPart& part : file.parts)
         stacks.push_back(part.layers);
-    for (const std::string& warning : write_layers(arguments.output, format, stacks, info, options))
+    for (const std::string& warning :
+         write_layers(arguments.output, format, stacks, info, options, execution))
         context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
 
     std::string text =

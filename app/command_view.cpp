@@ -99,14 +99,13 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
     const LayerFileInfo info = info_of(file);
     const auto page =
         open_layer_page(output, info, {.viewer = viewer_page(), .title = title_of(arguments.input)});
-    std::vector<Layer> plane(file.parts.size());
-    for (std::size_t i = 0; i < info.layers; ++i) {
-        if (execution.cancel.stop_requested())
-            throw Error(ErrorKind::cancelled, "cancelled");
-        for (std::size_t part = 0; part < plane.size(); ++part)
-            plane[part] = file.parts[part].layers[i];
-        page->prepare(plane)();
-    }
+    const auto parts_of = [&](std::size_t i) {
+        std::vector<Layer> plane;
+        for (const LayerPart& part : file.parts)
+            plane.push_back(part.layers[i]);
+        return plane;
+    };
+    write_planes(*page, info.layers, parts_of, execution);
     page->tell(std::move(notes));
     page->finish();
     return {.layers = info.layers, .warnings = page->warnings()};

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Iterable, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,9 @@ from ._meshes import PathLike, Progress, is_path, read_mesh, thread_count
 from ._warning import warn
 
 MESH_EXTENSIONS = (".stl", ".ply", ".obj")
+
+BATCH_LAYERS = 64
+BATCH_POINTS = 2**22  # 64 MB
 
 Layers = Union[Stack, LayerStream, Sequence[Stack]]
 
@@ -100,6 +103,7 @@ def write(
     pixel_mm: Union[None, float, Tuple[float, float]] = None,
     pixels: Optional[Tuple[int, int]] = None,
     display_mm: Optional[Tuple[float, float]] = None,
+    threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> None:
     """Writes layers or a mesh to a file, whose extension says the format. Nobody ever sees half a file.
@@ -112,6 +116,7 @@ def write(
     short_form: Common Layer Interface, binary: coordinates of 16 bits.
     pixel_mm, pixels, display_mm: pictures: size of a pixel, their number, and size of the display, each along x and
         y; of these three, two tell the third.
+    threads: that layers are formatted on; 0 takes one for each processor. The file is the same.
     progress: called as progress("write", done, total), in layers.
 
     Raises OutputError, and UsageError for a format that is not known. Issues a DefectWarning for what the format has
@@ -120,18 +125,33 @@ def write(
     if isinstance(what, Mesh):
         _write_mesh(path, what)
         return
+    thread_count(threads)
     parts, planes, bottom = _planes(what)
     pixel = (pixel_mm, pixel_mm) if isinstance(pixel_mm, (int, float)) else pixel_mm
     writer = _lamella.open_writer(
         os.fsencode(path), format, parts, _length(what), bottom, units_mm, short_form, pixel, pixels, display_mm
     )
     done, total = 0, _length(what)
-    for plane in planes:
-        writer.write(plane)
-        done += 1
-        if progress is not None and (done % max(1, total // 100) == 0 or done == total):
+    for batch in _batches(planes):
+        writer.write(batch, threads)
+        done += len(batch)
+        if progress is not None:
             progress("write", done, total)
     warn(f"{os.fsdecode(path)}: {warning}" for warning in writer.finish())
+
+
+def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
+    """Planes that are formatted together: enough for all threads, as far as memory is meant for layers in flight."""
+    batch: List[List[Layer]] = []
+    points = 0
+    for plane in planes:
+        batch.append(plane)
+        points += sum(len(layer.points) for layer in plane)
+        if len(batch) == BATCH_LAYERS or points >= BATCH_POINTS:
+            yield batch
+            batch, points = [], 0
+    if batch:
+        yield batch
 
 
 def _write_mesh(path: PathLike, mesh: Mesh) -> None:
@@ -193,7 +213,7 @@ def convert(
         raise InputError(f"{os.fsdecode(source)}: holds no layers")
     write(
         target, stack, format=format, units_mm=units_mm, short_form=short_form, pixel_mm=pixel_mm, pixels=pixels,
-        display_mm=display_mm, progress=progress,
+        display_mm=display_mm, threads=threads, progress=progress,
     )  # fmt: skip
 
 

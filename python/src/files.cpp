@@ -16,8 +16,8 @@
 
 #include <pybind11/stl.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,14 +68,17 @@ class StackWriter {
                 const LayerWriteOptions& options)
         : writer_(open_layer_writer(path, layer_format(format, path), info, options)) {}
 
-    void write(const std::vector<LayerPointer>& parts) {
-        const py::gil_scoped_release released;
-        std::vector<Layer> layers;
-        layers.reserve(parts.size());
-        for (const LayerPointer& part : parts)
-            layers.push_back(part->get());
-        if (const std::function<void()> put = writer_->prepare(layers))
-            put();
+    /// The layers of each part, plane by plane.
+    void write(const std::vector<std::vector<LayerPointer>>& planes, unsigned threads) {
+        const auto parts_of = [&](std::size_t i) {
+            std::vector<Layer> layers;
+            layers.reserve(planes[i].size());
+            for (const LayerPointer& part : planes[i])
+                layers.push_back(part->get());
+            return layers;
+        };
+        run(threads, py::none(),
+            [&](const Execution& execution) { write_planes(*writer_, planes.size(), parts_of, execution); });
     }
 
     py::list finish() {

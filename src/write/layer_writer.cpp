@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/write/layer_page.hpp"
 
+#include "core/executor.hpp"
 #include "write/common_layer.hpp"
 #include "write/dxf.hpp"
 #include "write/geojson.hpp"
@@ -20,8 +21,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <filesystem>
+#include <mutex>
 #include <utility>
 
 namespace lamella {
@@ -149,30 +153,59 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
     return options.most_bytes == 0 ? std::move(writer) : limited(std::move(writer), path, options.most_bytes);
 }
 
+void write_planes(LayerWriter& writer, std::size_t planes,
+                  const std::function<std::vector<Layer>(std::size_t)>& parts_of,
+                  const Execution& execution) {
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::write, planes);
+    std::mutex mutex;
+    std::condition_variable moved;
+    std::size_t next = 0;
+    executor.for_chunks(planes, 1, [&](std::uint64_t plane, std::uint64_t, unsigned) {
+        const std::function<void()> write = writer.prepare(parts_of(plane));
+        std::unique_lock lock(mutex);
+        // Planes are handed out in ascending order, so somebody is at work on the next one, or has failed.
+        while (next != plane) {
+            if (executor.stopping())
+                return;
+            moved.wait_for(lock, std::chrono::milliseconds(50)); // a stop request does not notify
+        }
+        if (write)
+            write();
+        progress.add(1);
+        ++next;
+        moved.notify_all();
+    });
+    executor.check_cancelled();
+    progress.finish();
+}
+
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Layer> layers, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options) {
+                                      const LayerWriteOptions& options, const Execution& execution) {
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
-    for (const Layer& layer : layers)
-        writer->prepare(layer)();
+    write_planes(
+        *writer, layers.size(), [&](std::size_t i) { return std::vector<Layer>{layers[i]}; }, execution);
     writer->finish();
     return writer->warnings();
 }
 
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const LayerStack> parts, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options) {
+                                      const LayerWriteOptions& options, const Execution& execution) {
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
     const std::size_t planes = parts.empty() ? 0 : parts.front().size();
     if (std::any_of(parts.begin(), parts.end(),
                     [&](const LayerStack& part) { return part.size() != planes; }))
         throw Error(ErrorKind::usage, "parts of one file must have the same planes");
-    std::vector<Layer> plane(parts.size());
-    for (std::size_t i = 0; i < planes; ++i) {
-        for (std::size_t part = 0; part < parts.size(); ++part)
-            plane[part] = parts[part][i];
-        writer->prepare(plane)();
-    }
+    const auto parts_of = [&](std::size_t i) {
+        std::vector<Layer> plane;
+        plane.reserve(parts.size());
+        for (const LayerStack& part : parts)
+            plane.push_back(part[i]);
+        return plane;
+    };
+    write_planes(*writer, planes, parts_of, execution);
     writer->finish();
     return writer->warnings();
 }

@@ -22,9 +22,10 @@ def test_slice_files_have_the_bytes_of_the_program(program, rook, tmp_path, name
     expected = (tmp_path / ("program_" + name)).read_bytes()
     lamella.write(tmp_path / name, lamella.slice(rook, 0.5))
     assert (tmp_path / name).read_bytes() == expected
-    with lamella.iter_layers(rook, 0.5) as layers:
-        lamella.write(tmp_path / name, layers)
-    assert (tmp_path / name).read_bytes() == expected
+    for threads in (1, 2, 7):
+        with lamella.iter_layers(rook, 0.5) as layers:
+            lamella.write(tmp_path / name, layers, threads=threads)
+        assert (tmp_path / name).read_bytes() == expected
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "program_" + name])
 
 

@@ -7,7 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <functional>
+#include <numeric>
+#include <span>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -79,6 +84,79 @@ TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
         EXPECT_TRUE(file_bytes(folder.file("parallel")) == file_bytes(folder.file("expected")))
             << format.name;
         EXPECT_EQ(writer->bytes(), file_bytes(folder.file("expected")).size());
+    }
+}
+
+/// Notes what it is given to write.
+class NotingWriter final : public LayerWriter {
+  public:
+    explicit NotingWriter(std::uint64_t fails_at = ~std::uint64_t{0}) : fails_at_(fails_at) {}
+
+    using LayerWriter::prepare;
+    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
+        ++prepared;
+        return [this, index = parts.front().index] {
+            if (index == fails_at_)
+                throw Error(ErrorKind::output, "the disk is full");
+            written.push_back(index);
+        };
+    }
+    void finish() override {}
+    [[nodiscard]] std::uint64_t bytes() const noexcept override { return 0; }
+
+    std::atomic<unsigned> prepared{0};
+    std::vector<std::uint64_t> written;
+
+  private:
+    std::uint64_t fails_at_;
+};
+
+std::vector<Layer> empty_plane(std::size_t i) {
+    Layer layer;
+    layer.index = i;
+    return {layer};
+}
+
+TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndTellsHowFarItIs) {
+    std::vector<std::uint64_t> expected(500);
+    std::iota(expected.begin(), expected.end(), 0);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        NotingWriter writer;
+        std::uint64_t done = 0;
+        write_planes(writer, expected.size(), empty_plane,
+                     {.threads = threads, .progress = [&](const Progress& p) {
+                          EXPECT_EQ(p.stage, Stage::write);
+                          EXPECT_GE(p.done, done);
+                          done = p.done;
+                      }});
+        EXPECT_EQ(writer.written, expected);
+        EXPECT_EQ(done, expected.size());
+        write_planes(writer, 0, empty_plane, {.threads = threads});
+        EXPECT_EQ(writer.written, expected);
+    }
+}
+
+TEST(WritePlanes, EndsAtTheFirstFailureAndWhenItIsCancelled) {
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        NotingWriter full(100);
+        EXPECT_EQ(
+            error_of(ErrorKind::output, [&] { write_planes(full, 5000, empty_plane, {.threads = threads}); }),
+            "the disk is full");
+        EXPECT_EQ(full.written.size(), 100U);
+        EXPECT_LE(full.prepared, 100 + 2 * threads);
+
+        NotingWriter writer;
+        std::stop_source stop;
+        const auto parts_of = [&](std::size_t i) {
+            if (i == 100)
+                stop.request_stop();
+            return empty_plane(i);
+        };
+        (void)error_of(ErrorKind::cancelled, [&] {
+            write_planes(writer, 5000, parts_of, {.threads = threads, .cancel = stop.get_token()});
+        });
+        EXPECT_LE(writer.prepared, 100 + 2 * threads);
+        EXPECT_LE(writer.written.size(), writer.prepared);
     }
 }
 

@@ -3,9 +3,11 @@
 // Writing slice files: Common Layer Interface, SVG, pictures.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/write/picture_options.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -123,15 +125,22 @@ class LayerWriter {
                                                              const LayerFileInfo& info,
                                                              const LayerWriteOptions& options = {});
 
-/// Writes the stack of a single part and returns LayerWriter::warnings. Formats on one thread; slicing to a
-/// file in parallel is `slice_to` with LayerWriter::prepare as the sink.
+/// Has `planes` planes formatted on all threads and written in order; the first one is the writer's next.
+/// `parts_of(i)` gives the layers of plane i, one for each part (see LayerWriter::prepare); it may be called
+/// for several planes at once. Each thread holds one plane. Throws what these throw, and Error{cancelled}.
+void write_planes(LayerWriter& writer, std::size_t planes,
+                  const std::function<std::vector<Layer>(std::size_t)>& parts_of,
+                  const Execution& execution = {});
+
+/// Writes the stack of a single part and returns LayerWriter::warnings. Formats on all threads; layers need
+/// not be in memory for that: `slice_to` takes LayerWriter::prepare as its sink.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Layer> layers, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options = {});
+                                      const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 /// The same for several parts, whose stacks have the same planes.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const LayerStack> parts, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options = {});
+                                      const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella
