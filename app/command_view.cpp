@@ -24,6 +24,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace lamella::app {
@@ -51,15 +52,16 @@ PlateInput input_of(const ViewArguments& arguments) {
     return input;
 }
 
-Diagnosis diagnosis_of(const ViewArguments& arguments, const Execution& execution) {
-    const Plate plate = load_plate(input_of(arguments), read_mesh(arguments.input, {}, execution), execution);
+Diagnosis diagnosis_of(const Plate& plate, const Execution& execution) {
     DiagnosisOptions options;
     options.keep = page_places;
     return diagnose(weld(joined(plate, execution), execution), options, execution);
 }
 
-Written view_mesh(const ViewArguments& arguments, const std::string& output, const Execution& execution) {
-    const Diagnosis diagnosis = diagnosis_of(arguments, execution);
+Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::string& output,
+                  const Execution& execution) {
+    Plate plate = load_plate(input_of(arguments), std::move(mesh), execution);
+    const Diagnosis diagnosis = diagnosis_of(plate, execution);
     FileJob job;
     job.inputs = {input_of(arguments)};
     job.layers.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height);
@@ -74,7 +76,7 @@ Written view_mesh(const ViewArguments& arguments, const std::string& output, con
                       notes.places = places_of(diagnosis);
                       return notes;
                   }};
-    const FileResult result = slice_file(job, execution);
+    const FileResult result = slice_file(job, std::move(plate), execution);
     Written written{.layers = result.report.layers, .warnings = result.report_warnings};
     for (const PlateFile& file : result.files)
         written.warnings.insert(written.warnings.end(), file.warnings.begin(), file.warnings.end());
@@ -115,25 +117,27 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
 std::string output_of(const ViewArguments& arguments) {
     if (!arguments.output.empty())
         return arguments.output;
+    if (arguments.input == "-")
+        throw Error(ErrorKind::usage,
+                    "standard input has no name to call the page by; give one with --output");
     return std::filesystem::path(arguments.input).stem().string() + ".html";
 }
 
 int run_view(const ViewArguments& arguments, const Context& context) {
-    if (arguments.input == "-")
-        throw Error(ErrorKind::usage,
-                    "view reads its file twice, and standard input can be read once: save it "
-                    "to a file first");
     const std::string output = output_of(arguments);
     check_distinct(arguments.input, output);
     const Execution execution = arguments.run.execution(context);
-    std::optional<LayerFile> layers = read_if_layers(arguments.input, execution);
-    const Written written = layers ? view_layers(arguments, std::move(*layers), output, execution)
-                                   : view_mesh(arguments, output, execution);
+    auto read = read_either(arguments.input, {}, execution);
+    auto* const layers = std::get_if<LayerFile>(&read);
+    const Written written =
+        layers != nullptr ? view_layers(arguments, std::move(*layers), output, execution)
+                          : view_mesh(arguments, std::move(std::get<MeshFile>(read)), output, execution);
     for (const std::string& warning : written.warnings)
         context.messages.warn(warning);
-    const std::string text = fmt::format("{}: {} of {}; open it with a browser\n",
-                                         output == "-" ? "standard output" : one_line(output),
-                                         counted(written.layers, "layer"), one_line(arguments.input));
+    const std::string text =
+        fmt::format("{}: {} of {}; open it with a browser\n",
+                    output == "-" ? "standard output" : one_line(output), counted(written.layers, "layer"),
+                    arguments.input == "-" ? "standard input" : one_line(arguments.input));
     if (output == "-")
         context.messages.note(text);
     else
@@ -167,7 +171,7 @@ Command view_command() {
             "file. For more ways to cut a mesh, lamella slice writes such a page, too: with -o page.html, or "
             "beside a slice file with --report.",
         .operands = {{.placeholder = "FILE",
-                      .help = "a mesh, or a slice file: CLI, SVG, SLC, 3MF, JSON or NPZ",
+                      .help = "a mesh, or a slice file: CLI, SVG, SLC, 3MF, JSON or NPZ; - is standard input",
                       .set =
                           [arguments](const std::string& text) {
                               arguments->input = text;

@@ -67,19 +67,4 @@ std::variant<MeshFile, LayerFile> read_either(const std::string& path, const Mes
         [&] { return read_mesh(path, options, execution); });
 }
 
-std::optional<LayerFile> read_if_layers(const std::string& path, const Execution& execution) {
-    const FileKind kind = file_kind(head_of(path));
-    if (kind == FileKind::layers)
-        return read_layers(path, execution);
-    if (kind == FileKind::mesh)
-        return std::nullopt;
-    try {
-        return read_layers(path, execution);
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::input)
-            throw;
-        return std::nullopt;
-    }
-}
-
 } // namespace lamella::app

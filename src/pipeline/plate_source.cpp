@@ -185,8 +185,11 @@ std::unique_ptr<LayerSource> open_plate_source(const FileJob& job, std::vector<M
             for (const MeshObject& object : meshes.back().objects)
                 check_size(input.path(), object.mesh, memory, threads);
     }
-    return std::make_unique<PlateSource>(build_plate(job.inputs, std::move(meshes), execution),
-                                         memory.points_in_flight(threads));
+    return plate_source(build_plate(job.inputs, std::move(meshes), execution), memory, execution);
+}
+
+std::unique_ptr<LayerSource> plate_source(Plate plate, const JobMemory& memory, const Execution& execution) {
+    return std::make_unique<PlateSource>(std::move(plate), memory.points_in_flight(thread_count(execution)));
 }
 
 } // namespace lamella

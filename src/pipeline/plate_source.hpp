@@ -3,6 +3,7 @@
 // Layers of a plate in memory.
 
 #include "lamella/core/execution.hpp"
+#include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 
@@ -18,5 +19,9 @@ namespace lamella {
 [[nodiscard]] std::unique_ptr<LayerSource> open_plate_source(const FileJob& job, std::vector<MeshInput> files,
                                                              const JobMemory& memory,
                                                              const Execution& execution);
+
+/// Of a plate that is in memory already.
+[[nodiscard]] std::unique_ptr<LayerSource> plate_source(Plate plate, const JobMemory& memory,
+                                                        const Execution& execution);
 
 } // namespace lamella

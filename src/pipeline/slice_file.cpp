@@ -4,7 +4,9 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
+#include "pipeline/job_memory.hpp"
 #include "pipeline/layer_source.hpp"
+#include "pipeline/plate_source.hpp"
 #include "pipeline/slicing_steps.hpp"
 #include "pipeline/stopwatch.hpp"
 
@@ -314,9 +316,9 @@ void finish(LayerPageWriter& page, const FileReport& report, FileResult& result)
     result.report_warnings = page.warnings();
 }
 
-} // namespace
-
-FileResult slice_file(const FileJob& job, const Execution& execution) {
+/// `open` gives the source of the layers, once the wishes are known to be possible.
+FileResult slice_source(const FileJob& job, const Execution& execution,
+                        const std::function<std::unique_ptr<LayerSource>(const Engine& with)>& open) {
     const Stopwatch total;
     FileResult result;
 
@@ -330,7 +332,7 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
     result.threads = thread_count(execution);
 
     const Stopwatch reading;
-    const std::unique_ptr<LayerSource> source = open_layer_source(job, with, execution);
+    const std::unique_ptr<LayerSource> source = open(with);
     result.seconds.read = reading.seconds();
     describe_parts(job, *source, result);
     plan = plan_of(job, *source, std::move(plan), execution);
@@ -367,6 +369,19 @@ FileResult slice_file(const FileJob& job, const Execution& execution) {
         finish(*report, job.report, result);
     result.seconds.total = total.seconds();
     return result;
+}
+
+} // namespace
+
+FileResult slice_file(const FileJob& job, const Execution& execution) {
+    return slice_source(job, execution,
+                        [&](const Engine& with) { return open_layer_source(job, with, execution); });
+}
+
+FileResult slice_file(const FileJob& job, Plate plate, const Execution& execution) {
+    return slice_source(job, execution, [&](const Engine&) {
+        return plate_source(std::move(plate), JobMemory(job), execution);
+    });
 }
 
 } // namespace lamella

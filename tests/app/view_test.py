@@ -111,8 +111,18 @@ class View(ProgramTest):
         self.assertTrue(result.text.rstrip().endswith("</html>"))
         self.assertIn("100 layers", result.err)
 
+    def test_standard_input(self):
+        self.need_viewer()
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        for name in ["box.stl", "box.cli"]:
+            result = self.succeed("view", "-", "-o", "piped.html", stdin=self.bytes_of(name))
+            self.assertIn("100 layers of standard input", result.text)
+            page = self.page("piped.html")
+            self.assertEqual(element(page, "head")["title"], "standard input")
+            self.assertEqual(element(page, "head")["layers"], 100)
+
     def test_what_cannot_be_done(self):
-        self.fail_with(2, "standard input can be read once", "view", "-")
+        self.fail_with(2, "give one with --output", "view", "-")
         self.fail_with(2, "overwrite|same file", "view", "box.stl", "-o", "box.stl")
         self.fail_with(3, "missing.stl", "view", "missing.stl")
         self.succeed("slice", "box.stl", "-o", "box.cli")

@@ -196,4 +196,8 @@ struct FileResult {
 /// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.
 [[nodiscard]] FileResult slice_file(const FileJob& job, const Execution& execution = {});
 
+/// The same for a plate that was made of the job's inputs before (load_plate): they are not read again. It
+/// is sliced whole, whatever FileJob::max_memory says.
+[[nodiscard]] FileResult slice_file(const FileJob& job, Plate plate, const Execution& execution = {});
+
 } // namespace lamella
