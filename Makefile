@@ -113,6 +113,10 @@ python-bench: build packages-rivals  ## compare with other ways to slice in Pyth
 	cmake --build build-bench --target lamella_library_slicer lamella_cgal_slicer
 	python3 -B -m bench.python $(OPTIONS)
 
+page-bench: packages-viewer build  ## how soon pages show something in a browser: out/pages/ (bench/README.md)
+	@tools/install_packages.sh tools/packages-all.txt
+	python3 -B -m bench.pages $(OPTIONS)
+
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
 
@@ -143,5 +147,5 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan test-fuzz \
-        test-shared bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench paper \
+        test-shared bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench page-bench paper \
         format format-check lint install clean

@@ -153,6 +153,7 @@ export class Space {
     for (const listen of this.#listeners) listen(up);
     this.renderer.render(this.scene, this.camera);
     this.renderer.getContext().finish();
+    if (canvas.dataset.ready === undefined) performance.mark('first picture of the stack');
     canvas.dataset.ready = '';
     this.secondsOfPicture = (performance.now() - start) / 1000;
     this.#refineLater();
