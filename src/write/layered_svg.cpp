@@ -170,13 +170,12 @@ class SvgLayersWriter final : public LayerWriter {
         format(parts, *buffer);
         const Layer& layer = parts.front();
         const fs::path path = directory_.working_path() / fmt::format("layer_{:05}.svg", layer.index);
-        if (fs::exists(path))
-            throw Error(ErrorKind::usage, fmt::format("two layers have the index {}", layer.index));
         AtomicFile file(path.string());
         file.append(buffer->view());
         file.commit();
-        return [this, z = layer.z, size = buffer->view().size(), extras = extras_of(parts)] {
-            order_.next(z);
+        return [this, z = layer.z, index = layer.index, size = buffer->view().size(),
+                extras = extras_of(parts)] {
+            order_.next(z, index);
             left_out_.note(extras);
             bytes_.fetch_add(size, std::memory_order_relaxed);
         };

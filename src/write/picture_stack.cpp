@@ -89,7 +89,7 @@ class PictureStackWriter : public LayerWriter {
         made(layer.index, picture);
         return [this, picture = std::move(picture), extras = extras_of(parts), index = layer.index,
                 z = layer.z, bottom = layer.bottom, top = layer.top] {
-            order_.next(z);
+            order_.next(z, index);
             left_out_.note(extras);
             add(index, picture);
             manifest_.add(index, z, bottom, top, picture.covered);
@@ -132,10 +132,7 @@ class PictureFolderWriter final : public PictureStackWriter {
   private:
     // Each layer has a file of its own, so it is written here and not in order.
     void made(std::uint64_t index, const LayerPicture& picture) override {
-        const fs::path path = directory_.working_path() / picture_name(index);
-        if (fs::exists(path))
-            throw Error(ErrorKind::usage, fmt::format("two layers have the index {}", index));
-        write(path, picture.file->view());
+        write(directory_.working_path() / picture_name(index), picture.file->view());
     }
     void add(std::uint64_t, const LayerPicture&) override {}
     void end(const std::string& manifest) override {
@@ -164,11 +161,6 @@ class PictureArchiveWriter final : public PictureStackWriter {
   private:
     void made(std::uint64_t, const LayerPicture&) override {}
     void add(std::uint64_t index, const LayerPicture& picture) override {
-        if (any_ && index <= last_index_)
-            throw Error(ErrorKind::usage,
-                        fmt::format("the layer with index {} follows the one with {}", index, last_index_));
-        any_ = true;
-        last_index_ = index;
         archive_.add_ready(picture_name(index), ZipMethod::stored,
                            {picture.file->view(), picture.file->view().size(), picture.crc});
     }
@@ -178,8 +170,6 @@ class PictureArchiveWriter final : public PictureStackWriter {
     }
 
     ZipWriter archive_;
-    bool any_ = false;
-    std::uint64_t last_index_ = 0;
 };
 
 } // namespace

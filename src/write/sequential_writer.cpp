@@ -21,6 +21,14 @@ void LayerOrder::next(double z) {
     ++count_;
 }
 
+void LayerOrder::next(double z, std::uint64_t index) {
+    if (count_ > 0 && index <= last_index_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("the layer with index {} follows the one with {}", index, last_index_));
+    last_index_ = index;
+    next(z);
+}
+
 void LayerOrder::end() const {
     if (count_ != announced_)
         throw Error(ErrorKind::usage,

@@ -29,6 +29,9 @@ class LayerOrder {
     void check_parts(std::size_t parts) const;
     /// Throws Error{usage} when this layer does not lie above the one before.
     void next(double z);
+    /// The same where files are called after the indices of layers: throws also when this one does not follow
+    /// the one before.
+    void next(double z, std::uint64_t index);
     /// Throws Error{usage} when there were more or fewer layers than announced.
     void end() const;
     /// Layers so far.
@@ -39,6 +42,7 @@ class LayerOrder {
     std::size_t parts_;
     std::uint64_t count_ = 0;
     double last_z_ = 0;
+    std::uint64_t last_index_ = 0;
 };
 
 /// Rings by how they are listed in a file, with their signed areas: computed once, used for order, direction
