@@ -26,15 +26,13 @@ struct CentreCrossing {
 /// Draws the rows of a picture from the top down, each into an empty CoverageRow of full coverage 1.
 class CentreRows {
   public:
-    CentreRows(std::span<const PictureEdge> edges, std::uint32_t height)
-        : crossings_(edges, height), height_(height) {}
+    CentreRows(std::span<const PictureEdge> edges, std::uint32_t height) : crossings_(edges, height) {}
 
     /// Says how many rows from there on look the same.
     std::uint32_t draw(std::uint32_t row, CoverageRow& out);
 
   private:
     RowSweep<CentreCrossing> crossings_;
-    std::uint32_t height_;
 };
 
 } // namespace lamella
