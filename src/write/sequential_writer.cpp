@@ -22,11 +22,11 @@ void LayerOrder::next(double z) {
 }
 
 void LayerOrder::next(double z, std::uint64_t index) {
-    if (count_ > 0 && index <= last_index_)
+    next(z);
+    if (count_ > 1 && index <= last_index_)
         throw Error(ErrorKind::usage,
                     fmt::format("the layer with index {} follows the one with {}", index, last_index_));
     last_index_ = index;
-    next(z);
 }
 
 void LayerOrder::end() const {
