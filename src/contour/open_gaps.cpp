@@ -23,7 +23,8 @@ double distance(const Point2& a, const Point2& b) noexcept {
 }
 
 /// Points of which the nearest is asked for, and which are taken away one by one. A tree of medians along the
-/// longer side: the middle of a range is the median of it, those before it are no greater.
+/// longer side: the middle of a range is the median of it, those before it are no greater. Ranges know their
+/// boxes, so that thousands of points in one place are looked at as one.
 class NearestPoints {
   public:
     explicit NearestPoints(std::vector<Point2> points)
@@ -72,6 +73,14 @@ class NearestPoints {
     struct Node {
         std::size_t left = 0; ///< how many points are
         double Point2::*axis = nullptr;
+        Point2 low;
+        Point2 high;
+
+        /// No point of the range is closer.
+        [[nodiscard]] double distance_to(const Point2& p) const noexcept {
+            return std::hypot(std::max({low.x - p.x, 0.0, p.x - high.x}),
+                              std::max({low.y - p.y, 0.0, p.y - high.y}));
+        }
     };
 
     void build(const Range& range) {
@@ -80,37 +89,38 @@ class NearestPoints {
         const auto at = [&](std::size_t place) {
             return order_.begin() + static_cast<std::ptrdiff_t>(place);
         };
-        const auto extent = [&](double Point2::*axis) {
-            const auto [low, high] =
-                std::minmax_element(at(range.begin), at(range.end), [&](std::size_t a, std::size_t b) {
-                    return points_[a].*axis < points_[b].*axis;
-                });
-            return points_[*high].*axis - points_[*low].*axis;
-        };
-        double Point2::*const axis = extent(&Point2::x) >= extent(&Point2::y) ? &Point2::x : &Point2::y;
+        Point2 low = points_[*at(range.begin)];
+        Point2 high = low;
+        for (std::size_t place = range.begin; place < range.end; ++place) {
+            const Point2& p = points_[*at(place)];
+            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        }
+        double Point2::*const axis = high.x - low.x >= high.y - low.y ? &Point2::x : &Point2::y;
         // Equal ones by their numbers, so that the tree is the same everywhere.
         std::nth_element(at(range.begin), at(range.middle()), at(range.end),
                          [&](std::size_t a, std::size_t b) {
                              return std::tuple(points_[a].*axis, a) < std::tuple(points_[b].*axis, b);
                          });
-        nodes_[range.middle()] = {range.end - range.begin, axis};
+        nodes_[range.middle()] = {range.end - range.begin, axis, low, high};
         build(range.before());
         build(range.after());
     }
 
     template <class Fits>
     void search(const Range& range, const Point2& to, const Fits& fits, Best& best) const {
-        if (range.empty() || nodes_[range.middle()].left == 0)
+        if (range.empty())
+            return;
+        const Node& node = nodes_[range.middle()];
+        if (node.left == 0 || !(node.distance_to(to) < best.distance))
             return;
         const std::size_t number = order_[range.middle()];
         if (!gone_[number])
             if (const double d = distance(points_[number], to); d < best.distance && fits(number, d))
                 best = {d, number};
-        double Point2::*const axis = nodes_[range.middle()].axis;
-        const double beyond = to.*axis - points_[number].*axis;
-        search(beyond < 0 ? range.before() : range.after(), to, fits, best);
-        if (std::abs(beyond) < best.distance)
-            search(beyond < 0 ? range.after() : range.before(), to, fits, best);
+        const bool before = to.*node.axis < points_[number].*node.axis;
+        search(before ? range.before() : range.after(), to, fits, best);
+        search(before ? range.after() : range.before(), to, fits, best);
     }
 
     std::vector<Point2> points_;

@@ -55,6 +55,18 @@ TEST(OpenGaps, AShortPieceGoesOnInItsNeighboursNotInItself) {
     EXPECT_NEAR(gaps.longest_mm, 0.2, 1e-12);
 }
 
+TEST(OpenGaps, OfChainsInOnePlaceAreFoundWithoutLookingAtAllOfThem) {
+    // Each end has all starts at the same distance. To compare all with all would take minutes.
+    for (const Point2 step : {Point2{0, 0}, Point2{0, 1e-9}, Point2{1e-9, 0}}) {
+        std::vector<Points> chains;
+        for (int i = 0; i < 100'000; ++i)
+            chains.push_back({{i * step.x, i * step.y}, {10, i * step.y}, {10, 10}, {0, 10}, {0, 3}});
+        const OpenGaps gaps = open_gaps(layer_of(chains));
+        EXPECT_EQ(gaps.count, chains.size());
+        EXPECT_NEAR(gaps.total_mm, 3.0 * static_cast<double>(chains.size()), 10);
+    }
+}
+
 TEST(OpenGaps, APieceAloneIsAsLongAsItsGap) {
     const OpenGaps gaps = open_gaps(layer_of({{{0, 0}, {3, 4}}}));
     EXPECT_EQ(gaps.count, 1U);
