@@ -55,7 +55,8 @@ using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t 
 /// Returns the covered area in pixels, before it was rounded to values.
 ///
 /// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (with strips, where rows are
-/// cut into them), in memory for the points and one row. Throws Error{usage} for a grid or options that make no picture.
+/// cut into them), in memory for the points and one row. Throws Error{usage} for a grid or options that make
+/// no picture.
 double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
                  const RowSink& sink);
 
