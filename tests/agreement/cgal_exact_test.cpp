@@ -1,6 +1,7 @@
 // Agreement with exact arithmetic: sections, nesting and unions by CGAL's kernel with exact constructions, in
 // which nothing is rounded, and winding numbers by rays whose way through the mesh is decided exactly.
 
+#include "fixtures/corner_soups.hpp"
 #include "fixtures/random_solids.hpp"
 
 #include <CGAL/Boolean_set_operations_2.h>
@@ -23,13 +24,13 @@ namespace lamella {
 namespace {
 
 using test::Random;
+using test::Soup;
+using test::welded;
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 using Filtered = CGAL::Exact_predicates_inexact_constructions_kernel; // exact on the given doubles
 using Mesh = CGAL::Surface_mesh<Exact::Point_3>;
 using Polygon2 = CGAL::Polygon_2<Exact>;
 using PolygonSet = CGAL::Polygon_set_2<Exact>;
-
-using Soup = std::vector<Triangle3>; // in double precision, as transformed
 
 Soup placed(const TriangleSoup& solid, const Transform& place) {
     const TriangleSoup moved = solid.transformed(place);
@@ -70,16 +71,6 @@ Soup together(const std::vector<Soup>& solids) {
     for (const Soup& solid : solids)
         all.insert(all.end(), solid.begin(), solid.end());
     return all;
-}
-
-IndexedMesh welded(const Soup& soup) {
-    IndexedMesh mesh;
-    for (const Triangle3& t : soup) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), t.begin(), t.end());
-        mesh.triangles.push_back({first, first + 1, first + 2});
-    }
-    return weld(mesh);
 }
 
 std::vector<double> random_heights(const IndexedMesh& mesh, Random& random, std::size_t n) {

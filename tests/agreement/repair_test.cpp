@@ -1,5 +1,6 @@
 // Meshes that were broken on purpose, repaired by the policies, and sliced: against what they were before.
 
+#include "fixtures/corner_soups.hpp"
 #include "fixtures/named_solids.hpp"
 #include "fixtures/random_solids.hpp"
 #include "fixtures/rounds.hpp"
@@ -21,7 +22,9 @@ using test::Random;
 using test::random_solid;
 using test::random_turn;
 using test::rounds_within_reason;
-using Soup = std::vector<Triangle3>;
+using test::Soup;
+using test::unwelded;
+using test::welded;
 
 void add(Soup& soup, const TriangleSoup& part) {
     for (std::size_t i = 0; i < part.size(); ++i)
@@ -39,22 +42,6 @@ Soup random_solids(Random& random, bool overlapping) {
         add(soup, random_solid(random).transformed(compose(place, random_turn(random))));
     }
     return soup;
-}
-
-/// Each corner a vertex of its own.
-IndexedMesh unwelded(const Soup& soup) {
-    IndexedMesh mesh;
-    for (const Triangle3& t : soup) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), t.begin(), t.end());
-        mesh.triangles.push_back({first, first + 1, first + 2});
-    }
-    return mesh;
-}
-
-/// Equal corners joined and nothing else.
-IndexedMesh welded(const Soup& soup) {
-    return weld(unwelded(soup));
 }
 
 std::vector<double> random_heights(const Soup& soup, Random& random, int n) {
