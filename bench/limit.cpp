@@ -2,7 +2,7 @@
 // result to fresh memory. Both are timed here in one run, each in a process of its own, in turn, and the
 // result is checked.
 //
-//     limit [--rounds 7] [--threads 2]
+//     limit [--parts rook,lattice] [--rounds 7] [--threads 2]
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -131,7 +131,7 @@ int report(int argc, char** argv) {
     bool right = true;
     std::uint64_t sheet_hash = 0;
     double sheet_total = 0;
-    for (const Part& part : standard_parts()) {
+    for (const Part& part : chosen_parts(argc, argv)) {
         std::vector<double> single(4);
         std::uint64_t hash = 0;
         std::vector<unsigned> counts{1};
