@@ -1,39 +1,44 @@
 #include "slicing/ranks.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace lamella {
 
-Ranks::Ranks(const Plan& plan)
-    : count_(static_cast<std::uint32_t>(plan.layers.size())),
-      inclusive_(plan.rule == PlaneRule::section_below) {
-    z_.reserve(count_);
-    for (const PlannedLayer& layer : plan.layers)
+Ranks::Ranks(const Plan& plan) : rule_(plan.rule) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    z_.reserve(plan.layers.size());
+    bounds_.reserve(plan.layers.size());
+    for (const PlannedLayer& layer : plan.layers) {
         z_.push_back(layer.z);
-    if (count_ == 0) {
-        first_ = last_ = std::numeric_limits<double>::infinity();
+        bounds_.push_back(rule_ == PlaneRule::section_above ? layer.z : std::nextafter(layer.z, -infinity));
+    }
+    if (z_.empty()) {
+        cells_.push_back({infinity, 0, 0});
         return;
     }
     first_ = z_.front();
-    last_ = z_.back();
-
-    const std::size_t cells = count_ > 1 ? 2 * std::size_t{count_} : 1;
-    const double height = last_ - first_;
+    const double height = z_.back() - first_;
+    const std::size_t cells = z_.size() > 1 ? 2 * z_.size() : 1;
     cells_per_mm_ = static_cast<double>(cells) / height;
     if (!std::isfinite(cells_per_mm_))
         cells_per_mm_ = 0; // a single plane, or planes closer than doubles can scale: one cell holds them all
 
     // The cell of a plane is computed with the very expression that looks up a vertex, and that expression is
     // monotone. So a z in cell c lies above every plane of the cells before c, and below every plane after c.
-    const std::size_t last_cell = static_cast<std::size_t>((last_ - first_) * cells_per_mm_);
-    cells_.assign(last_cell + 2, 0);
-    for (const double plane : z_)
-        ++cells_[static_cast<std::size_t>((plane - first_) * cells_per_mm_) + 1];
+    last_cell_ = std::trunc(height * cells_per_mm_);
+    if (!std::isfinite(last_cell_)) // no height that a double can hold
+        last_cell_ = 0;
+    cells_.assign(static_cast<std::size_t>(last_cell_) + 1, {infinity, 0, 0});
+    for (std::size_t plane = 0; plane < z_.size(); ++plane) {
+        const double place = (z_[plane] - first_) * cells_per_mm_;
+        Cell& cell = cells_[cell_at(place)];
+        if (cell.planes == 0)
+            cell.bound = bounds_[plane];
+        ++cell.planes;
+    }
     for (std::size_t c = 1; c < cells_.size(); ++c)
-        cells_[c] += cells_[c - 1];
-    z_.push_back(last_); // to look at where a cell holds no plane
+        cells_[c].below = cells_[c - 1].below + cells_[c - 1].planes;
 }
 
 } // namespace lamella

@@ -4,6 +4,8 @@
 
 #include "lamella/slicing/plan.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,47 +22,44 @@ class Ranks {
 
     /// section_above: the number of planes with z_i < z. section_below: with z_i <= z.
     [[nodiscard]] std::uint32_t operator()(double z) const noexcept {
-        if (!(z > first_)) // also the common case "on the first plane"
-            return inclusive_ && z == first_ ? 1 : 0;
-        if (z > last_)
-            return count_;
-        const auto cell = static_cast<std::size_t>((z - first_) * cells_per_mm_);
-        std::uint32_t low = cells_[cell];
-        std::uint32_t high = cells_[cell + 1];
+        const double place = (z - first_) * cells_per_mm_;
+        const Cell& cell = cells_[cell_at(place)];
         // Nearly every cell of evenly spaced planes holds one plane or none, and which is random: no branch.
-        if (high - low <= 1)
-            return low + static_cast<std::uint32_t>(static_cast<int>(low < high) &
-                                                    static_cast<int>(is_below(z_[low], z)));
-        while (low < high) {
-            const std::uint32_t middle = (low + high) / 2;
-            if (is_below(z_[middle], z))
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        return low;
+        if (cell.planes <= 1)
+            return cell.below + static_cast<std::uint32_t>(cell.bound < z);
+        const double* const bounds = bounds_.data() + cell.below;
+        return cell.below +
+               static_cast<std::uint32_t>(std::lower_bound(bounds, bounds + cell.planes, z) - bounds);
     }
 
     /// How many planes there are.
-    [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+    [[nodiscard]] std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(z_.size()); }
     [[nodiscard]] double z(std::uint32_t plane) const noexcept { return z_[plane]; }
-    [[nodiscard]] PlaneRule rule() const noexcept {
-        return inclusive_ ? PlaneRule::section_below : PlaneRule::section_above;
-    }
+    [[nodiscard]] PlaneRule rule() const noexcept { return rule_; }
 
   private:
-    [[nodiscard]] bool is_below(double plane, double z) const noexcept {
-        return inclusive_ ? plane <= z : plane < z;
+    /// What a lookup needs to know of a cell.
+    struct Cell {
+        double bound;         ///< of its first plane; infinite where it has none
+        std::uint32_t below;  ///< planes in the cells before it
+        std::uint32_t planes; ///< in it
+    };
+
+    /// The first cell for what lies below all cells (or is no number), the last one for what lies above.
+    [[nodiscard]] std::size_t cell_at(double place) const noexcept {
+        // By way of a signed number, which is one instruction.
+        return static_cast<std::size_t>(
+            static_cast<std::int64_t>(std::min(std::max(0.0, place), last_cell_)));
     }
 
     std::vector<double> z_;
-    /// cells_[c] <= rank of every z in cell c <= cells_[c + 1].
-    std::vector<std::uint32_t> cells_;
+    /// Per plane: it is below those z that are greater than this.
+    std::vector<double> bounds_;
+    std::vector<Cell> cells_;
     double first_ = 0;
-    double last_ = 0;
     double cells_per_mm_ = 0;
-    std::uint32_t count_ = 0;
-    bool inclusive_ = false;
+    double last_cell_ = 0;
+    PlaneRule rule_;
 };
 
 } // namespace lamella
