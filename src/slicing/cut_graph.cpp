@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 // How the graph is built
@@ -30,40 +31,69 @@ namespace lamella {
 
 namespace {
 
-template <class Ends>
-std::uint64_t hash_of(const Ends& ends) {
-    std::array<std::uint64_t, sizeof(Ends) / 8> words;
-    static_assert(sizeof words == sizeof ends);
-    std::memcpy(words.data(), &ends, sizeof ends);
-    std::uint64_t h = 0;
-    for (std::size_t i = 0; i + 1 < words.size(); i += 2)
-        h = mix(words[i] ^ h, words[i + 1]);
-    if (words.size() % 2 == 1)
-        h = mix(words.back() ^ h, words.size());
-    return h;
+/// Mixes the hashes of an edge's ends well; those of the ends need not be.
+std::uint64_t hash_of_edge(std::uint64_t low, std::uint64_t high) {
+    return mix(low, high);
 }
+
+/// As it is kept: in halves, so that with a number beside it it takes 12 bytes, not 16.
+struct EdgeHash {
+    explicit EdgeHash(std::uint64_t hash)
+        : high(static_cast<std::uint32_t>(hash >> 32)), low(static_cast<std::uint32_t>(hash)) {}
+    [[nodiscard]] std::uint64_t bits() const { return std::uint64_t{high} << 32 | low; }
+    friend auto operator<=>(const EdgeHash&, const EdgeHash&) = default;
+
+    std::uint32_t high;
+    std::uint32_t low;
+};
+
+// What triangles are made of. Corner: what tells a corner from others, as bits: a vertex has the same ones in
+// all its triangles.
 
 struct FloatCorners {
     using Ends = FloatEnds;
-    using Corner = Point3f;
+    /// In two pieces that stay in registers and go to memory, and come from there, as they are.
+    struct Corner {
+        std::uint64_t xy;
+        std::uint32_t z;
+        friend bool operator==(const Corner&, const Corner&) = default;
+    };
 
     FloatCorners(const TriangleSoup& soup, const Ranks& ranks)
         : data_(soup.data()), stride_(soup.stride()), ranks_(ranks) {}
 
     /// False when no plane cuts triangle i.
     bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
-        std::memcpy(&corners, data_ + i * stride_, sizeof corners);
-        if (corners[0].z == corners[1].z && corners[1].z == corners[2].z)
+        const std::byte* const triangle = data_ + i * stride_;
+        std::array<float, 3> z;
+        for (std::size_t k = 0; k < 3; ++k)
+            std::memcpy(&z[k], triangle + 12 * k + 8, 4);
+        if (z[0] == z[1] && z[1] == z[2])
             return false;
         for (std::size_t k = 0; k < 3; ++k)
-            rank[k] = ranks_(corners[k].z);
+            rank[k] = ranks_(z[k]);
         if (rank[0] == rank[1] && rank[1] == rank[2])
             return false;
-        for (Corner& c : corners)
-            c = {c.x + 0.0F, c.y + 0.0F, c.z + 0.0F}; // -0 is +0
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::array<float, 2> xy;
+            std::memcpy(&xy, triangle + 12 * k, 8);
+            xy = {xy[0] + 0.0F, xy[1] + 0.0F}; // -0 is +0
+            corners[k] = {std::bit_cast<std::uint64_t>(xy), std::bit_cast<std::uint32_t>(z[k] + 0.0F)};
+        }
         return true;
     }
-    [[nodiscard]] static Ends ends(const Corner& low, const Corner& high) { return {low, high}; }
+    [[nodiscard]] static std::uint64_t hash(const Corner& c) {
+        return c.xy * 0x9E3779B97F4A7C15 + c.z * 0xD1B54A32D192ED03;
+    }
+    [[nodiscard]] static bool is(const Point3f& stored, const Corner& c) {
+        std::uint64_t xy;
+        std::memcpy(&xy, &stored, sizeof xy);
+        return static_cast<int>(xy == c.xy) & static_cast<int>(std::bit_cast<std::uint32_t>(stored.z) == c.z);
+    }
+    static void store(const Corner& c, Point3f& to) {
+        std::memcpy(static_cast<void*>(&to), &c.xy, sizeof c.xy);
+        to.z = std::bit_cast<float>(c.z);
+    }
 
   private:
     const std::byte* data_;
@@ -83,7 +113,12 @@ struct PlacedCorners {
             rank[k] = ranks_(corners[k].z);
         return !(rank[0] == rank[1] && rank[1] == rank[2]);
     }
-    [[nodiscard]] static Ends ends(const Corner& low, const Corner& high) { return {low, high}; }
+    [[nodiscard]] static std::uint64_t hash(const Corner& c) {
+        return mix(mix(std::bit_cast<std::uint64_t>(c.x), std::bit_cast<std::uint64_t>(c.y)),
+                   std::bit_cast<std::uint64_t>(c.z));
+    }
+    [[nodiscard]] static bool is(const Point3& stored, const Corner& c) { return stored == c; }
+    static void store(const Corner& c, Point3& to) { to = c; }
 
   private:
     const TriangleSoup& soup_;
@@ -103,7 +138,9 @@ struct IndexedCorners {
             rank[k] = ranks_[corners[k]];
         return !(rank[0] == rank[1] && rank[1] == rank[2]);
     }
-    [[nodiscard]] static Ends ends(Corner low, Corner high) { return {low, high}; }
+    [[nodiscard]] static std::uint64_t hash(Corner vertex) { return vertex; }
+    [[nodiscard]] static bool is(std::uint32_t stored, Corner vertex) { return stored == vertex; }
+    static void store(Corner vertex, std::uint32_t& to) { to = vertex; }
 
   private:
     const IndexedMesh& mesh_;
@@ -112,10 +149,9 @@ struct IndexedCorners {
 
 /// Node numbers come in blocks from one counter, so that workers number nodes without waiting and the numbers
 /// stay dense.
-template <class Ends>
 class NodePool {
   public:
-    NodePool(PageArray<CutNode<Ends>>& nodes, std::uint32_t block) : nodes_(nodes), block_(block) {}
+    NodePool(std::uint64_t capacity, std::uint32_t block) : capacity_(capacity), block_(block) {}
 
     struct Cursor {
         std::uint32_t next = 0;
@@ -126,18 +162,130 @@ class NodePool {
         if (cursor.next == cursor.end) {
             const std::uint64_t begin = used_.fetch_add(block_, std::memory_order_relaxed);
             cursor.next = static_cast<std::uint32_t>(begin);
-            cursor.end = static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + block_, nodes_.size()));
+            cursor.end = static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + block_, capacity_));
         }
         return cursor.next++;
     }
     [[nodiscard]] std::uint32_t used() const {
-        return static_cast<std::uint32_t>(std::min<std::uint64_t>(used_.load(), nodes_.size()));
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(used_.load(), capacity_));
     }
 
   private:
-    PageArray<CutNode<Ends>>& nodes_;
+    std::uint64_t capacity_;
     std::uint32_t block_;
     std::atomic<std::uint64_t> used_{0};
+};
+
+/// One worker's part in collecting. It has copies of what it reads all the time, in memory of its own, so
+/// that no other worker's writing nearby takes that out of its cache.
+template <class Corners>
+class alignas(128) Collector {
+    using Ends = typename Corners::Ends;
+    using Corner = typename Corners::Corner;
+    using Node = CutNode<Ends>;
+
+  public:
+    /// `table_size` is a power of two.
+    Collector(const Corners& corners, const CutGraph<Ends>& graph, const PageArray<EdgeHash>& hashes,
+              NodePool& pool, std::size_t table_size)
+        : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), hashes_(hashes.data()),
+          pool_(pool), table_(table_size, Fill::zero) {}
+
+    /// Adds the triangles [begin, end).
+    void add(std::uint64_t begin, std::uint64_t end) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            add(i);
+    }
+
+    /// Numbers that were taken from the pool but not used.
+    [[nodiscard]] NodePool::Cursor unused() const { return cursor_; }
+
+  private:
+    /// The node last seen with this part of a hash, + 1, so that zero is empty.
+    struct Slot {
+        std::uint32_t tag;
+        std::uint32_t node;
+    };
+
+    void add(std::uint64_t i) {
+        std::array<Corner, 3> corner;
+        std::array<std::uint32_t, 3> rank;
+        if (!corners_.load(i, corner, rank))
+            return;
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
+            return; // no area and no effect on the topology: its two cut edges, if any, are one
+
+        const std::array<std::uint64_t, 3> hash{Corners::hash(corner[0]), Corners::hash(corner[1]),
+                                                Corners::hash(corner[2])};
+        const auto node_of = [&](std::size_t from, std::size_t to) {
+            if (rank[from] == rank[to])
+                return no_node;
+            const bool up = rank[from] < rank[to];
+            const std::size_t low = up ? from : to;
+            const std::size_t high = up ? to : from;
+            return find_or_add(corner[low], corner[high], hash_of_edge(hash[low], hash[high]),
+                               {rank[low], rank[high]}, up);
+        };
+        const std::uint32_t node01 = node_of(0, 1);
+        const std::uint32_t node12 = node_of(1, 2);
+        const std::uint32_t node20 = node_of(2, 0);
+
+        // Where an edge runs downwards, contours leave it through this triangle: below the third corner over
+        // the edge at the lower end, above it over the one at the upper end.
+        const auto link = [&](std::uint32_t from, std::uint32_t upper_rank, std::uint32_t lower_rank,
+                              std::uint32_t third_rank, std::uint32_t at_lower, std::uint32_t at_upper) {
+            if (upper_rank <= lower_rank)
+                return;
+            Node& leaving = nodes_[from];
+            const bool above_lower = lower_rank < third_rank;
+            const bool below_upper = third_rank < upper_rank;
+            leaving.next_low = above_lower ? at_lower : at_upper;
+            leaving.next_high = below_upper ? at_upper : at_lower;
+            leaving.split = above_lower && below_upper ? third_rank : lower_rank;
+            leaving.triangle = static_cast<std::uint32_t>(i);
+        };
+        link(node01, rank[0], rank[1], rank[2], node12, node20);
+        link(node12, rank[1], rank[2], rank[0], node20, node01);
+        link(node20, rank[2], rank[0], rank[1], node01, node12);
+    }
+
+    std::uint32_t find_or_add(const Corner& low, const Corner& high, std::uint64_t hash, PlaneSpan span,
+                              bool entered) {
+        const auto tag = static_cast<std::uint32_t>(hash >> 32);
+        Slot& slot = table_[hash & (table_.size() - 1)];
+        if (slot.node != 0 && slot.tag == tag) {
+            Node& node = nodes_[slot.node - 1];
+            const bool other_side = entered ? node.entered == 0 : !node.left();
+            if (other_side && Corners::is(node.ends.low, low) && Corners::is(node.ends.high, high)) {
+                const std::uint32_t found = slot.node - 1;
+                node.entered |= static_cast<unsigned>(entered);
+                slot.node = 0; // complete: a third triangle at this edge must make a node of its own
+                return found;
+            }
+        }
+        const std::uint32_t added = pool_.take(cursor_);
+        Node& node = nodes_[added];
+        node.next_low = no_node;
+        node.next_high = no_node;
+        node.split = 0;
+        node.triangle = 0;
+        node.last = span.last & 0x7FFFFFFF;
+        node.entered = static_cast<unsigned>(entered);
+        Corners::store(low, node.ends.low);
+        Corners::store(high, node.ends.high);
+        spans_[added] = span;
+        hashes_[added] = EdgeHash(hash);
+        slot = {tag, added + 1};
+        return added;
+    }
+
+    Corners corners_;
+    Node* nodes_;
+    PlaneSpan* spans_;
+    EdgeHash* hashes_;
+    NodePool& pool_;
+    NodePool::Cursor cursor_;
+    PageArray<Slot> table_;
 };
 
 template <class Corners>
@@ -163,8 +311,9 @@ class Builder {
                                     "numbers ({})",
                                     triangles_, no_node / 3));
         graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
-        hashes_ = PageArray<std::uint64_t>(capacity);
-        NodePool<Ends> pool(graph_.nodes, static_cast<std::uint32_t>(block));
+        graph_.spans = PageArray<PlaneSpan>(capacity, Fill::zero);
+        hashes_ = PageArray<EdgeHash>(capacity);
+        NodePool pool(capacity, static_cast<std::uint32_t>(block));
 
         collect(pool);
         graph_.count = pool.used();
@@ -181,111 +330,44 @@ class Builder {
         std::uint32_t other;
     };
 
-    /// The node last seen with this part of a hash, + 1, so that zero is empty.
-    struct Slot {
-        std::uint32_t tag;
-        std::uint32_t node;
-    };
-
     struct Worker {
-        PageArray<Slot> table;
-        typename NodePool<Ends>::Cursor cursor;
+        std::unique_ptr<Collector<Corners>> collector;
         std::array<Meeting, 16> meetings; ///< under way, oldest at `met` modulo their number
         std::size_t met = 0;
         std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, repeated
     };
 
-    void collect(NodePool<Ends>& pool) {
+    void collect(NodePool& pool) {
         const std::uint64_t expected = triangles_ * 3 / 2;
-        const auto table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
-        table_mask_ = (1U << table_bits) - 1;
-
+        const int table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
         worker_.resize(workers_);
         const std::uint64_t chunk =
             std::clamp<std::uint64_t>(triangles_ / (std::uint64_t{workers_} * 8), 4096, 1U << 16);
         executor_.for_chunks(triangles_, chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned w) {
-            Worker& worker = worker_[w];
-            if (worker.table.size() == 0) {
-                worker.table = PageArray<Slot>(table_mask_ + std::size_t{1}, Fill::zero);
-            }
-            for (std::uint64_t i = begin; i < end; ++i)
-                add_triangle(i, worker, pool);
+            std::unique_ptr<Collector<Corners>>& collector = worker_[w].collector;
+            if (!collector)
+                collector = std::make_unique<Collector<Corners>>(corners_, graph_, hashes_, pool,
+                                                                 std::size_t{1} << table_bits);
+            collector->add(begin, end);
             progress_.add(end - begin);
         });
-    }
-
-    void add_triangle(std::uint64_t i, Worker& worker, NodePool<Ends>& pool) {
-        std::array<typename Corners::Corner, 3> corner;
-        std::array<std::uint32_t, 3> rank;
-        if (!corners_.load(i, corner, rank))
-            return;
-        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
-            return; // no area and no effect on the topology: its two cut edges, if any, are one
-
-        std::array<std::uint32_t, 3> node;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t k1 = k == 2 ? 0 : k + 1;
-            if (rank[k] < rank[k1])
-                node[k] =
-                    find_or_add(Corners::ends(corner[k], corner[k1]), rank[k], rank[k1], true, worker, pool);
-            else if (rank[k] > rank[k1])
-                node[k] =
-                    find_or_add(Corners::ends(corner[k1], corner[k]), rank[k1], rank[k], false, worker, pool);
-            else
-                node[k] = no_node;
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t k1 = k == 2 ? 0 : k + 1;
-            const std::size_t k2 = k1 == 2 ? 0 : k1 + 1;
-            if (rank[k] <= rank[k1])
-                continue;
-            // The edge runs downwards here, so contours leave it through this triangle: below the third
-            // corner over the edge at the lower end, above it over the one at the upper end.
-            Node& leaving = graph_.nodes[node[k]];
-            leaving.triangle = static_cast<std::uint32_t>(i);
-            const bool between = rank[k1] < rank[k2] && rank[k2] < rank[k];
-            leaving.next_low = rank[k1] < rank[k2] ? node[k1] : node[k2];
-            leaving.next_high = rank[k2] < rank[k] ? node[k2] : node[k1];
-            leaving.split = between ? rank[k2] : rank[k1];
-        }
-    }
-
-    std::uint32_t find_or_add(const Ends& ends, std::uint32_t first, std::uint32_t last, bool entered,
-                              Worker& worker, NodePool<Ends>& pool) {
-        const std::uint64_t hash = hash_of(ends);
-        const auto tag = static_cast<std::uint32_t>(hash >> 32);
-        Slot& slot = worker.table[hash & table_mask_];
-        if (slot.node != 0 && slot.tag == tag) {
-            Node& node = graph_.nodes[slot.node - 1];
-            if ((entered ? node.entered == 0 : !node.left()) && node.ends == ends) {
-                const std::uint32_t found = slot.node - 1;
-                if (entered)
-                    node.entered = 1;
-                slot.node = 0; // complete: a third triangle at this edge must make a node of its own
-                return found;
-            }
-        }
-        const std::uint32_t added = pool.take(worker.cursor);
-        graph_.nodes[added] = {ends, no_node, no_node, first, first & 0x7FFFFFFF, entered, last, 0};
-        slot = {tag, added + 1};
-        hashes_[added] = hash;
-        return added;
     }
 
     void join() {
         // Numbers that were handed out but not used take part with hashes of their own.
         for (const Worker& worker : worker_)
-            for (std::uint32_t id = worker.cursor.next; id < worker.cursor.end; ++id)
-                hashes_[id] = mix(id, graph_.count);
+            if (worker.collector)
+                for (auto [id, end] = worker.collector->unused(); id < end; ++id)
+                    hashes_[id] = EdgeHash(mix(id, graph_.count));
 
-        std::vector<std::span<const std::uint64_t>> parts;
+        std::vector<std::span<const EdgeHash>> parts;
         for (std::uint64_t w = 0; w < workers_; ++w) {
             const std::uint64_t begin = graph_.count * w / workers_;
             const std::uint64_t end = graph_.count * (w + 1) / workers_;
             parts.emplace_back(hashes_.span().subspan(begin, end - begin));
         }
-        join_equal_keys<std::uint64_t>(
-            executor_, parts, [](std::uint64_t hash) { return hash; },
+        join_equal_keys<EdgeHash>(
+            executor_, parts, [](EdgeHash hash) { return hash.bits(); },
             [&](std::uint32_t first, std::uint32_t other, unsigned w) {
                 // The two nodes may lie anywhere: they are looked at a while after they are asked for.
                 Worker& worker = worker_[w];
@@ -305,38 +387,40 @@ class Builder {
         }
         // A half may have been in a crowd before it became part of another node, which then stands for it.
         for (std::uint32_t& id : crowded_)
-            if (graph_.nodes[id].first == graph_.nodes[id].last)
-                id = graph_.nodes[id].triangle;
+            if (!graph_.nodes[id].in_use())
+                id = graph_.nodes[id].split;
     }
 
     void meet(const Meeting& meeting, std::vector<std::uint32_t>& crowded) {
         Node& a = graph_.nodes[meeting.first];
         Node& b = graph_.nodes[meeting.other];
-        if (a.first == a.last) {
+        if (!a.in_use()) {
             // It is one node with another one already: three are a crowd.
-            crowded.insert(crowded.end(), {a.triangle, meeting.other});
+            crowded.insert(crowded.end(), {a.split, meeting.other});
             return;
         }
         const bool halves = a.entered != b.entered && a.left() != b.left() && a.entered != a.left();
         if (!halves || !(a.ends == b.ends)) {
             crowded.insert(crowded.end(), {meeting.first, meeting.other});
         } else if (a.entered) {
-            unite(a, b, meeting.first);
+            unite(meeting.first, meeting.other);
         } else {
-            unite(b, a, meeting.other);
+            unite(meeting.other, meeting.first);
         }
     }
 
     /// Nodes are known by the edges that lead to them, so the entered half stays and takes the other's links.
-    /// The other one is no longer in use; as its triangle it keeps the number of the node that it is part of.
-    static void unite(Node& entered, Node& left, std::uint32_t number) {
+    /// The other one is no longer in use; as its split it keeps the number of the node that it is part of.
+    void unite(std::uint32_t entered_half, std::uint32_t left_half) {
+        Node& entered = graph_.nodes[entered_half];
+        Node& left = graph_.nodes[left_half];
         entered.next_low = left.next_low;
         entered.next_high = left.next_high;
         entered.split = left.split;
         entered.triangle = left.triangle;
         left.next_low = left.next_high = no_node;
-        left.last = left.first;
-        left.triangle = number;
+        graph_.drop(left_half);
+        left.split = entered_half;
     }
 
     const Corners& corners_;
@@ -344,9 +428,8 @@ class Builder {
     Executor& executor_;
     ProgressMeter& progress_;
     unsigned workers_;
-    std::uint32_t table_mask_ = 0;
     std::vector<Worker> worker_;
-    PageArray<std::uint64_t> hashes_; // per node
+    PageArray<EdgeHash> hashes_; // per node
     CutGraph<Ends> graph_;
     std::vector<std::uint32_t> crowded_; // nodes that share their ends with others, in no order, repeated
 };

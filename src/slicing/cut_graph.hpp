@@ -26,23 +26,28 @@ constexpr std::uint32_t no_node = 0xFFFFFFFF;
 
 /// One cut edge; `Ends` identifies and locates its two end vertices, the lower one first.
 ///
-/// On plane i with first <= i < last a contour runs through the edge, and on to the node next(i).
+/// On plane i of its span a contour runs through the edge, and on to the node next(i).
 template <class Ends>
 struct CutNode {
-    Ends ends;
-    std::uint32_t next_low;  ///< the successor on planes below `split`; no_node where the contour ends
-    std::uint32_t next_high; ///< the successor from plane `split` on
-    std::uint32_t split; ///< the rank of the triangle's middle vertex; `first` when there is one successor
-    std::uint32_t first : 31;  ///< the rank of the lower end
-    std::uint32_t entered : 1; ///< some node leads here
-    std::uint32_t last;        ///< the rank of the upper end; a node with last == first is not in use
+    std::uint32_t next_low;    ///< the successor on planes below `split`; no_node where the contour ends
+    std::uint32_t next_high;   ///< the successor from plane `split` on
+    std::uint32_t split;       ///< the rank of the triangle's middle vertex, where there are two successors
     std::uint32_t triangle;    ///< that the contour leaves through; meaningful when next_low is a node
+    std::uint32_t last : 31;   ///< the rank of the upper end; 0 in a node that is not in use
+    std::uint32_t entered : 1; ///< some node leads here
+    Ends ends;
 
     [[nodiscard]] std::uint32_t next(std::uint32_t plane) const noexcept {
         return plane < split ? next_low : next_high;
     }
     [[nodiscard]] bool left() const noexcept { return next_low != no_node; }
-    [[nodiscard]] bool alive(std::uint32_t plane) const noexcept { return first <= plane && plane < last; }
+    [[nodiscard]] bool in_use() const noexcept { return last != 0; }
+};
+
+/// The planes [first, last) that cut an edge: from the rank of its lower end to that of its upper one.
+struct PlaneSpan {
+    std::uint32_t first;
+    std::uint32_t last;
 };
 
 /// Ends of an edge of an STL file: the coordinates themselves. Equal coordinates are the same vertex, so no
@@ -64,12 +69,14 @@ struct IndexEnds {
     friend bool operator==(const IndexEnds&, const IndexEnds&) = default;
 };
 
-static_assert(sizeof(CutNode<FloatEnds>) == 48 && sizeof(CutNode<IndexEnds>) == 32);
+static_assert(sizeof(CutNode<FloatEnds>) == 44 && sizeof(CutNode<IndexEnds>) == 28);
 
 template <class Ends>
 struct CutGraph {
-    /// Some of the nodes in [0, count) are not in use (last == first).
+    /// Some of the nodes in [0, count) are not in use.
     PageArray<CutNode<Ends>> nodes;
+    /// Per node, for those who look at all of them; empty ([0, 0)) where it is not in use.
+    PageArray<PlaneSpan> spans;
     std::uint32_t count = 0;
     /// Of an indexed mesh; must outlive the graph.
     const Point3* vertices = nullptr;
@@ -78,6 +85,12 @@ struct CutGraph {
 
     [[nodiscard]] Point3 low(const Ends& ends) const noexcept { return point(ends.low); }
     [[nodiscard]] Point3 high(const Ends& ends) const noexcept { return point(ends.high); }
+
+    /// The node is in use no longer.
+    void drop(std::uint32_t id) const noexcept {
+        nodes[id].last = 0;
+        spans[id] = {0, 0};
+    }
 
   private:
     [[nodiscard]] Point3 point(const Point3f& p) const noexcept { return {p.x, p.y, p.z}; }

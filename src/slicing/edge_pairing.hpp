@@ -138,7 +138,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
     executor.for_chunks(graph.count, 1U << 16, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
         for (std::uint64_t id = begin; id < end; ++id) {
             const Node& node = graph.nodes[id];
-            if (node.first == node.last || !node.left())
+            if (!node.in_use() || !node.left())
                 continue;
             for (const std::uint32_t next : {node.next_low, node.next_high})
                 if (is_crowded[next])
@@ -163,12 +163,15 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             ++end;
 
         const Ends edge = graph.nodes[crowded[begin]].ends;
+        PlaneSpan span{};
         rays.clear();
         links.clear();
         std::vector<std::uint32_t> spare; // nodes that no contour arrives at, to carry links that stay over
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t id = crowded[i];
             Node& node = graph.nodes[id];
+            if (node.in_use())
+                span = graph.spans[id];
             if (node.left()) {
                 rays.push_back({false, 0, third(edge, graph.nodes[node.next_low].ends), node.triangle,
                                 static_cast<std::uint32_t>(links.size())});
@@ -195,7 +198,8 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             to.next_high = from.next_high;
             to.split = from.split;
             to.triangle = from.triangle;
-            to.last = from.last;
+            to.last = span.last & 0x7FFFFFFF;
+            graph.spans[node] = span;
             placed[link] = true;
         };
         for (const auto& [arriving, leaving] : edge_pairing::match(rays))
@@ -207,7 +211,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             }
         }
         for (const std::uint32_t id : spare)
-            graph.nodes[id].last = graph.nodes[id].first;
+            graph.drop(id);
         edges += rays.size() > 2;
         begin = end;
     }

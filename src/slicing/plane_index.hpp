@@ -52,10 +52,10 @@ std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
         share.begins.assign(planes + std::size_t{1}, 0);
         share.ends.assign(planes + std::size_t{1}, 0);
         for (std::uint32_t id = share.begin; id < share.end; ++id) {
-            const CutNode<Ends>& node = graph.nodes[id];
-            const bool used = node.first < node.last;
-            share.begins[node.first] += used;
-            share.ends[node.last] += used;
+            const PlaneSpan span = graph.spans[id];
+            const bool used = span.last != 0;
+            share.begins[span.first] += used;
+            share.ends[span.last] += used;
         }
     });
     return result;
@@ -141,11 +141,11 @@ PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::
         shares.size(), std::vector<std::vector<std::uint32_t>>(slabs.size()));
     executor.for_chunks(shares.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
         for (std::uint32_t id = shares[s].begin; id < shares[s].end; ++id) {
-            const CutNode<Ends>& node = graph.nodes[id];
-            if (node.first >= node.last)
+            const PlaneSpan span = graph.spans[id];
+            if (span.last == 0)
                 continue;
-            index.starts[fill[s][node.first]++] = id;
-            for (std::uint32_t b = slab_of[node.first] + 1; b < slabs.size() && slabs[b].begin < node.last;
+            index.starts[fill[s][span.first]++] = id;
+            for (std::uint32_t b = slab_of[span.first] + 1; b < slabs.size() && slabs[b].begin < span.last;
                  ++b)
                 carried[s][b].push_back(id);
         }

@@ -103,12 +103,12 @@ struct Bench {
 /// Reads the contours of one slab after the other off the graph. Each worker has its own, but for a slab that
 /// all workers share: then one walks, and all measure, write and deliver.
 template <class Ends>
-class SlabSweep {
+class alignas(128) SlabSweep {
   public:
     SlabSweep(const CutGraph<Ends>& graph, const Ranks& ranks, const Plan& plan, const PlaneIndex& index,
               Executor& executor, OrderedDelivery& delivery)
         : graph_(graph), ranks_(ranks), plan_(plan), index_(index), executor_(executor), delivery_(delivery),
-          arena_(index.all_points), visited_until_(graph.count, Fill::zero), segment_at_(graph.count) {}
+          arena_(index.all_points), visited_until_(graph.count, Fill::zero) {}
 
     /// Slabs must come in ascending order.
     void sweep(const Slab& slab) {
@@ -154,7 +154,8 @@ class SlabSweep {
 
     /// A walk from one start to where it met the start of a walk, or the end of the mesh.
     struct Segment {
-        std::uint32_t next; ///< the segment it ran into; no_node: the mesh ended
+        std::uint32_t start; ///< its first node
+        std::uint32_t next;  ///< the segment it ran into, at first by its first node; no_node: the mesh ended
         std::uint64_t begin;
         std::uint64_t end;
         std::uint32_t valid_until;
@@ -221,12 +222,11 @@ class SlabSweep {
     bool set_out(Walker& walker, std::uint32_t plane, const std::uint32_t* candidates) {
         while (walker.candidate < walker.candidates_end) {
             const std::uint32_t node = candidates[walker.candidate++];
-            if (visited_until_[node] > plane || !graph_.nodes[node].alive(plane))
+            if (visited_until_[node] > plane || graph_.nodes[node].last <= plane)
                 continue;
             walker.node = walker.start = node;
             walker.valid_until = slab_->end;
             walker.sequence.clear();
-            segment_at_[node] = no_node; // until the walk is over
             return true;
         }
         return false;
@@ -243,7 +243,7 @@ class SlabSweep {
         visited_until_[id] = plane + 1;
         const CutNode<Ends>& node = graph_.nodes[id];
         walker.sequence.push_back(id);
-        walker.valid_until = std::min(walker.valid_until, node.last);
+        walker.valid_until = std::min<std::uint32_t>(walker.valid_until, node.last);
         std::uint32_t next = node.next_high;
         if (plane < node.split) {
             walker.valid_until = std::min(walker.valid_until, node.split);
@@ -254,6 +254,7 @@ class SlabSweep {
             return false;
         }
         walker.node = next;
+        __builtin_prefetch(&visited_until_[next], 1);
         __builtin_prefetch(&graph_.nodes[next]);
         return true;
     }
@@ -263,20 +264,24 @@ class SlabSweep {
             add_run(plane, walker.valid_until, true, walker.sequence.data(), walker.sequence.size());
             return;
         }
-        segment_at_[walker.start] = static_cast<std::uint32_t>(segments_.size());
         const std::uint64_t begin = pending_.size();
         pending_.insert(pending_.end(), walker.sequence.begin(), walker.sequence.end());
-        segments_.push_back({met, begin, pending_.size(), walker.valid_until});
+        segments_.push_back({walker.start, met, begin, pending_.size(), walker.valid_until});
     }
 
     /// Joins walks that ran into one another. Links are one to one, so a walk can only run into the start of
     /// another, and at most one runs into each: they form rings and chains of walks.
     void link_segments(std::uint32_t plane) {
+        std::sort(segments_.begin(), segments_.end(),
+                  [](const Segment& a, const Segment& b) { return a.start < b.start; });
         std::vector<bool> followed(segments_.size());
         for (Segment& segment : segments_) {
             if (segment.next == no_node)
                 continue;
-            segment.next = segment_at_[segment.next];
+            const auto met =
+                std::lower_bound(segments_.begin(), segments_.end(), segment.next,
+                                 [](const Segment& s, std::uint32_t node) { return s.start < node; });
+            segment.next = static_cast<std::uint32_t>(met - segments_.begin());
             followed[segment.next] = true;
         }
         std::vector<bool> done(segments_.size());
@@ -406,7 +411,7 @@ class SlabSweep {
         constexpr std::size_t ahead = 12;
         for (std::size_t i = 0; i < run.size; ++i) {
             if (i + ahead < run.size)
-                __builtin_prefetch(&graph_.nodes[sequence[i + ahead]]);
+                __builtin_prefetch(&graph_.nodes[sequence[i + ahead]].ends);
             const Ends& ends = graph_.nodes[sequence[i]].ends;
             const Point3 base = low_is_base ? graph_.low(ends) : graph_.high(ends);
             const Point3 far = low_is_base ? graph_.high(ends) : graph_.low(ends);
@@ -672,7 +677,6 @@ class SlabSweep {
     PointArena arena_;
     const Slab* slab_ = nullptr;
     PageArray<std::uint32_t> visited_until_; // per node: the plane before which it needs no visit
-    PageArray<std::uint32_t> segment_at_;    // per node that a walk of this plane started at: its segment
     std::vector<Walker> walker_;
     std::vector<Segment> segments_;
     std::vector<std::uint32_t> pending_;

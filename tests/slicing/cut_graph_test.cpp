@@ -76,7 +76,7 @@ std::vector<Link> links_of(const CutGraph<Ends>& graph) {
     std::vector<Link> links;
     for (std::uint32_t id = 0; id < graph.count; ++id) {
         const CutNode<Ends>& node = graph.nodes[id];
-        for (std::uint32_t plane = node.first; plane < node.last; ++plane)
+        for (std::uint32_t plane = graph.spans[id].first; plane < graph.spans[id].last; ++plane)
             if (node.next(plane) != no_node)
                 links.emplace_back(plane, edge_of(graph, id), edge_of(graph, node.next(plane)));
     }
@@ -106,26 +106,29 @@ Census census(const CutGraph<Ends>& graph, const Ranks& ranks) {
     std::vector<std::vector<std::uint32_t>> alive(ranks.count());
     for (std::uint32_t id = 0; id < graph.count; ++id) {
         const CutNode<Ends>& node = graph.nodes[id];
-        if (node.first == node.last)
+        const PlaneSpan span = graph.spans[id];
+        EXPECT_EQ(node.last, span.last);
+        if (!node.in_use()) {
+            EXPECT_EQ(span.first, 0U);
             continue;
-        EXPECT_LT(node.first, node.last);
-        EXPECT_LE(node.last, ranks.count());
-        EXPECT_EQ(node.first, ranks(graph.low(node.ends).z));
+        }
+        EXPECT_LT(span.first, span.last);
+        EXPECT_LE(span.last, ranks.count());
+        EXPECT_EQ(span.first, ranks(graph.low(node.ends).z));
         EXPECT_EQ(node.last, ranks(graph.high(node.ends).z));
         EXPECT_EQ(node.next_low == no_node, node.next_high == no_node);
         EXPECT_TRUE(node.left() || node.entered) << "a node that no triangle made";
         if (node.left()) {
-            EXPECT_LE(node.first, node.split);
+            EXPECT_LE(span.first, node.split);
             EXPECT_LT(node.split, node.last);
         }
-        for (std::uint32_t plane = node.first; plane < node.last && plane < ranks.count(); ++plane)
+        for (std::uint32_t plane = span.first; plane < span.last && plane < ranks.count(); ++plane)
             alive[plane].push_back(id);
     }
     for (std::uint32_t plane = 0; plane < ranks.count(); ++plane) {
         std::vector<std::uint32_t> reached;
         for (const std::uint32_t id : alive[plane]) {
             const CutNode<Ends>& node = graph.nodes[id];
-            EXPECT_TRUE(node.alive(plane));
             const std::uint32_t next = node.next(plane);
             ++out.alive;
             out.not_entered += node.entered == 0;
@@ -136,7 +139,9 @@ Census census(const CutGraph<Ends>& graph, const Ranks& ranks) {
             EXPECT_LT(next, graph.count);
             if (next >= graph.count)
                 continue;
-            EXPECT_TRUE(graph.nodes[next].alive(plane)) << "a link into nothing on plane " << plane;
+            const PlaneSpan there = graph.spans[next];
+            EXPECT_TRUE(there.first <= plane && plane < there.last)
+                << "a link into nothing on plane " << plane;
             EXPECT_TRUE(graph.nodes[next].entered);
             reached.push_back(next);
         }
@@ -221,14 +226,14 @@ TEST(CutGraph, OfATetrahedronIsAsDrawnByHand) {
         std::set<Edge> seen;
         for (std::uint32_t id = 0; id < graph.count; ++id) {
             const auto& node = graph.nodes[id];
-            if (node.first == node.last)
+            if (!node.in_use())
                 continue;
             const Edge here = edge_of(graph, id);
             EXPECT_TRUE(seen.insert(here).second) << "one node for each edge";
             ASSERT_TRUE(expected.contains(here));
             const Expected& want = expected.at(here);
-            EXPECT_EQ(node.first, want.first);
-            EXPECT_EQ(node.last, want.last);
+            EXPECT_EQ(graph.spans[id].first, want.first);
+            EXPECT_EQ(graph.spans[id].last, want.last);
             EXPECT_EQ(node.split, want.split);
             EXPECT_EQ(node.entered, 1U);
             ASSERT_TRUE(node.left());
@@ -386,7 +391,7 @@ TEST(CutGraph, NamesTheTriangleThatAContourLeavesThrough) {
     with_graph(test::soup(triangles), plan, 1, [&](const auto& graph) {
         for (std::uint32_t id = 0; id < graph.count; ++id) {
             const auto& node = graph.nodes[id];
-            if (node.first == node.last)
+            if (!node.in_use())
                 continue;
             ASSERT_LT(node.triangle, triangles.size());
             const Triangle3f& t = triangles[node.triangle];
