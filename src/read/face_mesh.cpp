@@ -120,6 +120,10 @@ void drop_unused(IndexedMesh& mesh, Executor& executor) {
     });
 }
 
+std::uint64_t bytes_of(const FacePiece& piece) {
+    return piece.vertices.size() * sizeof(Point3) + piece.triangles.size() * sizeof(Corners);
+}
+
 } // namespace
 
 std::optional<Corners> TriangleStrip::add(std::uint32_t corner) noexcept {
@@ -146,7 +150,11 @@ void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t 
 
 void count_piece(const FacePiece& piece, ReadLimits& limits) {
     limits.add_triangles(piece.triangles.size());
-    limits.add_bytes(piece.vertices.size() * sizeof(Point3) + piece.triangles.size() * sizeof(Corners));
+    limits.add_bytes(bytes_of(piece));
+}
+
+void give_back_piece(const FacePiece& piece, ReadLimits& limits) {
+    limits.give_back(piece.triangles.size(), bytes_of(piece));
 }
 
 FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor) {

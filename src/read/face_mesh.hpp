@@ -74,6 +74,8 @@ struct FaceMesh {
 
 /// Counts a piece as soon as it is there, before the next ones are read.
 void count_piece(const FacePiece& piece, ReadLimits& limits);
+/// Takes back that it was counted.
+void give_back_piece(const FacePiece& piece, ReadLimits& limits);
 
 /// All pieces, in order. Empties them.
 [[nodiscard]] FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor);

@@ -33,26 +33,34 @@ void for_rows(const char* begin, const char* end, char comment, Visit visit) {
     }
 }
 
+/// A stretch of the text and the rows in it.
+struct RowRange {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    std::uint64_t first_row = 0;
+    std::uint64_t last_row = 0; ///< exclusive
+};
+
 /// Reads the rows of one piece, until the triangle with this number is there. Returns where it stopped.
-std::size_t read_piece(std::string_view text, std::size_t begin, std::size_t end, std::uint64_t first_row,
-                       const FaceRows& rows, FacePiece& piece,
+std::size_t read_piece(std::string_view text, const RowRange& range, const FaceRows& rows, RowLayout layout,
+                       FacePiece& piece,
                        std::uint64_t last_triangle = std::numeric_limits<std::uint64_t>::max()) {
-    std::uint64_t row = first_row;
-    std::size_t stopped = end;
-    const std::string_view upto = text.substr(0, end);
-    RowWords words(upto, text.data() + begin);
+    std::uint64_t row = range.first_row;
+    std::size_t stopped = range.end;
+    RowWords words(text.substr(0, range.end), text.data() + range.begin, layout);
     try {
-        for_rows(text.data() + begin, text.data() + end, rows.comment, [&](const char* at) -> const char* {
-            if (row == rows.rows)
-                return nullptr;
-            words.move_to(at);
-            rows.read_row(row++, words, piece);
-            if (piece.triangles.size() > last_triangle) {
-                stopped = static_cast<std::size_t>(at - text.data());
-                return nullptr;
-            }
-            return words.skip_rest();
-        });
+        for_rows(text.data() + range.begin, text.data() + range.end, rows.comment,
+                 [&](const char* at) -> const char* {
+                     if (row == range.last_row)
+                         return nullptr;
+                     words.move_to(at);
+                     rows.read_row(row++, words, piece);
+                     if (piece.triangles.size() > last_triangle) {
+                         stopped = static_cast<std::size_t>(at - text.data());
+                         return nullptr;
+                     }
+                     return words.end_row();
+                 });
     } catch (TextFault& fault) {
         piece.fault = std::move(fault);
     }
@@ -115,9 +123,9 @@ std::uint64_t count_rows(std::string_view text, char comment) {
 
 } // namespace
 
-/// Skips blanks before the next word of the line.
+/// Skips blanks before the next word of the row.
 inline void RowWords::to_word(std::string_view expected) {
-    at_ = skip_spaces(at_, end_);
+    at_ = layout_ == RowLayout::words ? skip_blanks(at_, end_) : skip_spaces(at_, end_);
     if (at_ == end_ || is_line_end(*at_))
         throw TextFault{offset(), std::string(expected)};
 }
@@ -156,6 +164,20 @@ void RowWords::skip_word() {
     at_ += word_at(at_, end_).size();
 }
 
+void RowWords::skip_list() {
+    for (std::int64_t left = count("how many values the list has"); left > 0; --left)
+        skip_word();
+}
+
+std::int64_t RowWords::count(std::string_view expected) {
+    to_word(expected);
+    const std::size_t begin = offset();
+    const std::int64_t value = integer();
+    if (value < 0)
+        throw TextFault{begin, std::string(expected)};
+    return value;
+}
+
 /// Takes "3 17 4 2", as nearly all rows of most files are: all short numbers with one blank between them.
 bool RowWords::take_triangle(FacePiece& piece) {
     const char* at = at_;
@@ -184,12 +206,11 @@ void RowWords::add_face(FacePiece& piece) {
     at_ = skip_spaces(at_, end_);
     if (take_triangle(piece))
         return;
+    constexpr std::string_view expected = "how many corners the face has";
+    to_word(expected);
     const std::size_t begin = offset();
-    const std::int64_t count = integer();
-    if (count < 0)
-        throw TextFault{begin, "how many corners the face has"};
     corners_.clear();
-    for (std::int64_t i = 0; i < count; ++i) {
+    for (std::int64_t left = count(expected); left > 0; --left) {
         const std::int64_t v = integer();
         corners_.push_back(v >= 0 && v < std::int64_t{FacePiece::no_vertex} ? static_cast<std::uint32_t>(v)
                                                                             : FacePiece::no_vertex);
@@ -198,12 +219,8 @@ void RowWords::add_face(FacePiece& piece) {
 }
 
 void RowWords::add_strips(FacePiece& piece) {
-    const std::size_t begin = offset();
-    const std::int64_t count = integer();
-    if (count < 0)
-        throw TextFault{begin, "how many numbers of vertices there are"};
     TriangleStrip strip;
-    for (std::int64_t i = 0; i < count; ++i) {
+    for (std::int64_t left = count("how many numbers of vertices there are"); left > 0; --left) {
         const std::int64_t v = integer();
         if (v < 0) {
             strip.restart();
@@ -215,66 +232,191 @@ void RowWords::add_strips(FacePiece& piece) {
     }
 }
 
-const char* RowWords::skip_rest() {
-    at_ = skip_to_line_end(at_, end_);
+const char* RowWords::end_row() {
+    switch (layout_) {
+    case RowLayout::lines:
+        at_ = skip_to_line_end(at_, end_);
+        break;
+    case RowLayout::exact_lines:
+        at_ = skip_spaces(at_, end_);
+        if (at_ != end_ && !is_line_end(*at_))
+            throw TextFault{offset(), "the end of the line"};
+        break;
+    case RowLayout::words:
+        break;
+    }
     return at_;
 }
 
+namespace {
+
+class RowsReader {
+  public:
+    RowsReader(const ByteSource& source, const FaceRows& rows, Remarks& remarks, ReadLimits& limits,
+               const Execution& execution)
+        : source_(source), rows_(rows), remarks_(remarks), limits_(limits), executor_(execution),
+          progress_(execution, Stage::read, source.bytes.size()),
+          text_(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()) {}
+
+    MeshFile run() {
+        read_lines(rows_.any_lines ? RowLayout::exact_lines : RowLayout::lines);
+        if (failure_ && rows_.any_lines)
+            read_other_layouts();
+        if (failure_)
+            throw Error(ErrorKind::input, fmt::format("{}: {}", source_.name, failure_->text));
+        tell_thin_faces();
+        std::vector<std::uint64_t> ends; // of the pieces, in triangles
+        for (const FacePiece& piece : pieces_)
+            ends.push_back((ends.empty() ? 0 : ends.back()) + piece.triangles.size());
+        const auto place = [&](std::uint64_t triangle) {
+            const auto i =
+                static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
+            FacePiece again;
+            const std::size_t offset =
+                read_piece(text_, ranges_[i], rows_, layout_, again, triangle - (i == 0 ? 0 : ends[i - 1]));
+            return fmt::format("line {}", line_at(text_, offset));
+        };
+        MeshFile file = make_mesh_file(join(pieces_, executor_), source_.name, 0, place, remarks_, executor_);
+        progress_.finish();
+        return file;
+    }
+
+  private:
+    struct Failure {
+        std::size_t offset;
+        std::string text;
+    };
+
+    void read_lines(RowLayout layout) {
+        const std::vector<std::size_t> cuts = cut_at_lines(text_, rows_.begin);
+        const std::size_t count = cuts.size() - 1;
+        start(layout, count);
+        std::vector<std::uint64_t> lines(count);
+        executor_.for_chunks(count, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = begin; i < end; ++i)
+                lines[i] = count_rows(text_.substr(cuts[i], cuts[i + 1] - cuts[i]), rows_.comment);
+        });
+        lines_ = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            ranges_[i] = {cuts[i], cuts[i + 1], lines_, rows_.rows};
+            lines_ += lines[i];
+        }
+        executor_.for_chunks(count, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = begin; i < end; ++i) {
+                if (ranges_[i].first_row < rows_.rows)
+                    read_piece(text_, ranges_[i], rows_, layout_, pieces_[i]);
+                count_piece(pieces_[i], limits_);
+                progress_.add(cuts[i + 1] - cuts[i]);
+            }
+        });
+        for (const FacePiece& piece : pieces_)
+            if (const auto& fault = piece.fault) {
+                fail(*fault);
+                return;
+            }
+        if (lines_ < rows_.rows)
+            fail_at_end(lines_, rows_.rows);
+    }
+
+    /// Only where a row has ended is it known where the next one begins, so this is a single walk.
+    void read_words() {
+        start(RowLayout::words, 0);
+        const std::uint64_t all_rows = rows_.rows + rows_.more_rows;
+        const char* const end = text_.data() + text_.size();
+        RowWords words(text_, skip_blanks(text_.data() + rows_.begin, end), layout_);
+        for (std::uint64_t row = 0; row < all_rows;) {
+            executor_.check_cancelled();
+            ranges_.push_back({words.offset(), text_.size(), row, all_rows});
+            RowRange& range = ranges_.back();
+            FacePiece& piece = pieces_.emplace_back();
+            constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+            try {
+                for (; row < all_rows && words.offset() - range.begin < piece_bytes; ++row)
+                    rows_.read_row(row, words, piece);
+            } catch (const TextFault& fault) {
+                if (fault.offset == text_.size())
+                    fail_at_end(row, all_rows);
+                else
+                    fail(fault);
+                return;
+            }
+            range.last_row = row;
+            count_piece(piece, limits_);
+        }
+        words.move_to(skip_blanks(text_.data() + words.offset(), end));
+        if (words.offset() != text_.size())
+            fail({words.offset(),
+                  fmt::format("the end of the file after the {} rows of {}", all_rows, rows_.counted_where)});
+    }
+
+    void read_other_layouts() {
+        const std::size_t first_odd_line = failure_->offset;
+        read_words();
+        if (!failure_ || lines_ != rows_.rows + rows_.more_rows)
+            return;
+        read_lines(RowLayout::lines);
+        if (!failure_)
+            remarks_.add(
+                fmt::format("line {}: left out what the line has beyond the values of its row (this is "
+                            "the first)",
+                            line_at(text_, first_odd_line)));
+    }
+
+    void start(RowLayout layout, std::size_t pieces) {
+        layout_ = layout;
+        failure_.reset();
+        for (const FacePiece& piece : pieces_)
+            give_back_piece(piece, limits_);
+        pieces_.clear();
+        pieces_.resize(pieces);
+        ranges_.assign(pieces, {});
+    }
+
+    void fail(const TextFault& fault) {
+        failure_ = {fault.offset, found_instead(text_, fault.offset, fault.expected)};
+    }
+
+    void fail_at_end(std::uint64_t found, std::uint64_t expected) {
+        failure_ = {
+            text_.size(),
+            fmt::format("line {}: the file ends after {} rows, expected {} by {} (it is cut off, or the "
+                        "numbers there are wrong)",
+                        line_at(text_, text_.size()), found, expected, rows_.counted_where)};
+    }
+
+    void tell_thin_faces() {
+        std::uint64_t thin = 0;
+        std::size_t first_thin = FacePiece::nowhere;
+        for (const FacePiece& piece : pieces_) {
+            thin += piece.thin_faces;
+            first_thin = std::min(first_thin, piece.first_thin);
+        }
+        if (thin != 0)
+            remarks_.add(
+                fmt::format("line {}: left out {} {} of fewer than three corners (this is the first)",
+                            line_at(text_, first_thin), thin, thin == 1 ? "face" : "faces"));
+    }
+
+    const ByteSource& source_;
+    const FaceRows& rows_;
+    Remarks& remarks_;
+    ReadLimits& limits_;
+    Executor executor_;
+    ProgressMeter progress_;
+    std::string_view text_;
+
+    RowLayout layout_ = RowLayout::lines;
+    std::vector<RowRange> ranges_; ///< of the pieces
+    std::vector<FacePiece> pieces_;
+    std::uint64_t lines_ = 0; ///< that hold a word
+    std::optional<Failure> failure_;
+};
+
+} // namespace
+
 MeshFile read_face_rows(const ByteSource& source, const FaceRows& rows, Remarks& remarks, ReadLimits& limits,
                         const Execution& execution) {
-    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
-    const std::vector<std::size_t> cuts = cut_at_lines(text, rows.begin);
-    std::vector<FacePiece> pieces(cuts.size() - 1);
-    std::vector<std::uint64_t> first_row(pieces.size() + 1);
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, text.size());
-    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i)
-            first_row[i + 1] = count_rows(text.substr(cuts[i], cuts[i + 1] - cuts[i]), rows.comment);
-    });
-    for (std::size_t i = 1; i < first_row.size(); ++i)
-        first_row[i] += first_row[i - 1];
-    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            if (first_row[i] < rows.rows)
-                read_piece(text, cuts[i], cuts[i + 1], first_row[i], rows, pieces[i]);
-            count_piece(pieces[i], limits);
-            progress.add(cuts[i + 1] - cuts[i]);
-        }
-    });
-
-    std::uint64_t thin = 0;
-    std::size_t first_thin = FacePiece::nowhere;
-    std::vector<std::uint64_t> ends; // of the pieces, in triangles
-    for (const FacePiece& piece : pieces) {
-        if (const auto& fault = piece.fault)
-            throw Error(ErrorKind::input, fmt::format("{}: {}", source.name,
-                                                      found_instead(text, fault->offset, fault->expected)));
-        thin += piece.thin_faces;
-        first_thin = std::min(first_thin, piece.first_thin);
-        ends.push_back((ends.empty() ? 0 : ends.back()) + piece.triangles.size());
-    }
-    if (first_row.back() < rows.rows)
-        throw Error(
-            ErrorKind::input,
-            fmt::format("{}: line {}: the file ends after {} rows, expected {} by {} (it is cut off, or the "
-                        "numbers there are wrong)",
-                        source.name, line_at(text, text.size()), first_row.back(), rows.rows,
-                        rows.counted_where));
-    if (thin != 0)
-        remarks.add(fmt::format("line {}: left out {} {} of fewer than three corners (this is the first)",
-                                line_at(text, first_thin), thin, thin == 1 ? "face" : "faces"));
-    const auto place = [&](std::uint64_t triangle) {
-        const auto i =
-            static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
-        FacePiece again;
-        const std::size_t offset = read_piece(text, cuts[i], cuts[i + 1], first_row[i], rows, again,
-                                              triangle - (i == 0 ? 0 : ends[i - 1]));
-        return fmt::format("line {}", line_at(text, offset));
-    };
-    MeshFile file = make_mesh_file(join(pieces, executor), source.name, 0, place, remarks, executor);
-    progress.finish();
-    return file;
+    return RowsReader(source, rows, remarks, limits, execution).run();
 }
 
 } // namespace lamella

@@ -15,6 +15,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace lamella {
 
@@ -63,59 +64,65 @@ PlyPlaces find_places(const PlyHeader& header, const std::string& file) {
     return places;
 }
 
+void skip_value(const PlyProperty& property, RowWords& words) {
+    if (property.list_length)
+        words.skip_list();
+    else
+        words.skip_word();
+}
+
 void read_vertex(const PlyElement& element, const PlyPlaces& places, RowWords& words, FacePiece& piece) {
     std::array<double, 3> p{};
-    const std::size_t last = std::ranges::max(places.coordinates);
-    for (std::size_t i = 0; i <= last; ++i) {
-        const PlyProperty& property = element.properties[i];
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const auto* const axis = std::ranges::find(places.coordinates, i);
         if (axis != places.coordinates.end())
             p[static_cast<std::size_t>(axis - places.coordinates.begin())] = words.coordinate();
-        else if (property.list_length)
-            for (std::int64_t k = words.integer(); k > 0; --k)
-                words.skip_word();
         else
-            words.skip_word();
+            skip_value(element.properties[i], words);
     }
     piece.vertices.push_back({p[0], p[1], p[2]});
 }
 
 void read_face(const PlyElement& element, const PlyPlaces& places, RowWords& words, FacePiece& piece) {
-    for (std::size_t i = 0; i < places.corners; ++i) {
-        const bool list = element.properties[i].list_length.has_value();
-        for (std::int64_t k = list ? words.integer() : 1; k > 0; --k)
-            words.skip_word();
+    for (std::size_t i = 0; i < element.properties.size(); ++i)
+        if (i != places.corners)
+            skip_value(element.properties[i], words);
+        else if (places.strips)
+            words.add_strips(piece);
+        else
+            words.add_face(piece);
+}
+
+/// Where the rows of each element end. What has no properties has no words, and so no rows.
+std::vector<std::uint64_t> row_ends(const PlyHeader& header) {
+    std::vector<std::uint64_t> ends;
+    std::uint64_t sum = 0;
+    for (const PlyElement& element : header.elements) {
+        if (!element.properties.empty())
+            sum += std::min(element.rows, std::numeric_limits<std::uint64_t>::max() - sum);
+        ends.push_back(sum);
     }
-    if (places.strips)
-        words.add_strips(piece);
-    else
-        words.add_face(piece);
+    return ends;
 }
 
 MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places,
                     Remarks& remarks, ReadLimits& limits, const Execution& execution) {
-    // Rows of the elements in turn; each begins where the one before it ends.
-    const auto first_row = [&](std::size_t element) {
-        std::uint64_t sum = 0;
-        for (std::size_t i = 0; i < element; ++i)
-            sum += std::min(header.elements[i].rows, std::numeric_limits<std::uint64_t>::max() - sum);
-        return sum;
-    };
-    const PlyElement& vertex = header.elements[places.vertex];
-    const PlyElement& face = header.elements[places.face];
-    const std::uint64_t vertex_begin = first_row(places.vertex);
-    const std::uint64_t vertex_end = first_row(places.vertex + 1);
-    const std::uint64_t face_begin = first_row(places.face);
-    const std::uint64_t face_end = first_row(places.face + 1);
+    const std::vector<std::uint64_t> ends = row_ends(header);
     FaceRows rows;
     rows.begin = header.end;
-    rows.rows = std::max(vertex_end, face_end);
+    rows.rows = ends[std::max(places.vertex, places.face)];
+    rows.more_rows = ends.back() - rows.rows;
+    rows.any_lines = true;
     rows.counted_where = "the head";
     rows.read_row = [&](std::uint64_t row, RowWords& words, FacePiece& piece) {
-        if (row >= vertex_begin && row < vertex_end)
-            read_vertex(vertex, places, words, piece);
-        else if (row >= face_begin && row < face_end)
-            read_face(face, places, words, piece);
+        const auto element = static_cast<std::size_t>(std::ranges::upper_bound(ends, row) - ends.begin());
+        if (element == places.vertex)
+            read_vertex(header.elements[element], places, words, piece);
+        else if (element == places.face)
+            read_face(header.elements[element], places, words, piece);
+        else
+            for (const PlyProperty& property : header.elements[element].properties)
+                skip_value(property, words);
     };
     return read_face_rows(source, rows, remarks, limits, execution);
 }

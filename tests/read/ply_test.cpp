@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <random>
 
 namespace lamella::mesh_test {
 namespace {
@@ -203,6 +204,96 @@ std::string strip(int faces, bool even, bool swapped) {
            bytes.text;
 }
 
+/// An ASCII file with elements of all kinds before, between and behind what is wanted; a row is a line.
+std::string ascii_with_all(unsigned vertices) {
+    std::string text = fmt::format(
+        "ply\nformat ascii 1.0\nelement nothing 1000000000000\nelement camera 1\nproperty list uchar float "
+        "f\n"
+        "element vertex {0}\nproperty float q\nproperty float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nelement edge 2\nproperty int a\nproperty int b\nelement face {1}\n"
+        "property int flags\nproperty list uchar int vertex_indices\nproperty list uchar float uv\n"
+        "element material 1\nproperty int m\nend_header\n4 .1 .2 .3 .4\n",
+        vertices, vertices - 2);
+    for (unsigned i = 0; i < vertices; ++i)
+        text += fmt::format("7 {} {}.25 -{} 200\n", i, i % 2, i % 3);
+    text += "0 1\n1 2\n";
+    for (unsigned i = 0; i + 2 < vertices; ++i)
+        text += i + 3 < vertices && i % 4 == 0 ? fmt::format("1 4 {} {} {} {} 0\n", i, i + 1, i + 3, i + 2)
+                                               : fmt::format("1 3 {} {} {} 2 .5 .5\n", i, i + 1, i + 2);
+    return text + "9\n";
+}
+
+/// The same words with other blanks between them, behind the head.
+std::string laid_out(const std::string& text, std::mt19937& random, const std::vector<std::string>& blanks) {
+    const std::size_t begin = text.find("end_header\n") + 11;
+    std::string result = text.substr(0, begin);
+    for (const char c : text.substr(begin))
+        result += c == ' ' || c == '\n' ? blanks[random() % blanks.size()] : std::string(1, c);
+    return result;
+}
+
+TEST(Ply, TakesTheWordsOfTextInAnyLayout) {
+    std::mt19937 random(11);
+    const std::vector<std::vector<std::string>> layouts{
+        {" "}, {"\n"}, {" ", " ", "\n"}, {" ", "\r\n"}, {"\t", "\r", "\n\n \n"}, {" ", " ", " ", " ", "\n"}};
+    for (const unsigned vertices : {3U, 4U, 50U, 40'000U}) { // the last takes more than a piece
+        const std::string text = ascii_with_all(vertices);
+        const MeshFile by_lines = read(text, name);
+        EXPECT_EQ(mesh_of(by_lines).vertices.size(), vertices);
+        EXPECT_EQ(by_lines.warnings, std::vector<std::string>{});
+        for (const auto& blanks : layouts) {
+            const std::string other = laid_out(text, random, blanks);
+            expect_mesh(other, name, mesh_of(by_lines).vertices, mesh_of(by_lines).triangles);
+            expect_mesh(other.substr(0, other.find_last_of('9') + 1), name, mesh_of(by_lines).vertices,
+                        mesh_of(by_lines).triangles);
+        }
+    }
+    const std::string strips =
+        strips_head("ascii", "int", 2) + "0 0 0 1 0 0\n0 1 0 1 1\n0 0 2 1 6 0 1 2\n-1 2 3 3\n4 3 2";
+    EXPECT_EQ(mesh_of(read(strips, name)).triangles, (std::vector<Corners>{{0, 1, 2}, {4, 3, 2}}));
+}
+
+TEST(Ply, NamesPlacesInTextOfAnyLayout) {
+    const auto expect = [](const std::string& rows_of_text, const std::string& error) {
+        EXPECT_EQ(error_of(head("ascii") + rows_of_text, name), name + ": " + error);
+    };
+    expect("0 0\n0 1\n0 0 0\n1 1,5 3 0\n1 2\n",
+           "line 14: found '1,5', expected a number with a decimal point and no comma");
+    expect("0 0\n0 1\n0 0 0\n1 1 3 0\n1 2.5\n", "line 15: found '2.5', expected a whole number");
+    expect("0 0\n0 1 0 0 0\n1 1\n\n-3 0\n1 2\n",
+           "line 15: found '-3', expected how many corners the face has");
+    expect("0 0 0 1 0 0 0 1 1\n3\n0 1 3\n",
+           "line 12: a face names a vertex that is not there; expected numbers from 0 to 2");
+    expect("0 0\n0 1\n0 0 0\n1 1 3 0\n1\n",
+           "line 16: the file ends after 3 rows, expected 4 by the head (it is cut "
+           "off, or the numbers there are wrong)");
+    expect("0 0\n0 1 0 0 0\n1 1\n3 0\n1 2 4\n",
+           "line 15: found '4', expected the end of the file after the 4 rows of the head");
+    // There are as many lines as rows, so that a row is a line.
+    expect("0 0\n0 1 0\n0 0 1\n3 0 1 2\n", "line 11: found the end of the line, expected a number");
+    expect("0 0 0\n0 1 0\n0 0 1\n3 0 1\n", "line 14: found the end of the line, expected a whole number");
+    expect_warning(head("ascii", 3, 2) + "0 0 0 1 0 0 0 1\n1 2\n0 1 3 0\n1 2\n", name, 1,
+                   "line 12: left out 1 face of fewer than three corners (this is the first)");
+}
+
+TEST(Ply, LeavesOutWhatLinesHaveBeyondTheirRows) {
+    const std::string text = head("ascii") + "0 0 0\n1 0 0 255 9\n0 1 0 255\n3 0 1 2\n";
+    expect_warning(text, name, 1,
+                   "line 12: left out what the line has beyond the values of its row (this is the first)");
+    EXPECT_EQ(mesh_of(read(text, name)).vertices, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+}
+
+TEST(Ply, CountsTextOfAnyLayoutOnceOnly) {
+    std::mt19937 random(3);
+    const std::string text = laid_out(ascii_with_all(1002), random, {" ", "\n"});
+    const std::uint64_t bytes = 1002 * sizeof(Point3) + 1000 * sizeof(Corners);
+    const auto triangles = read(text, name).stored_triangles;
+    EXPECT_EQ(read(text, name, {.max_triangles = triangles, .max_memory = 2 * bytes}).stored_triangles,
+              triangles);
+    EXPECT_EQ(error_of(text, name, {.max_triangles = 999}, ErrorKind::limit),
+              name + ": holds more than the 999 triangles of --max-triangles");
+}
+
 TEST(Ply, IsTheSameForAnyThreads) {
     for (const bool even : {false, true})
         for (const bool swapped : {false, true}) {
@@ -252,7 +343,8 @@ TEST(Ply, NamesPlaceOfAnErrorInTheRows) {
     const auto expect = [](const std::string& text, const std::string& error) {
         EXPECT_EQ(error_of(text, name), name + ": " + error);
     };
-    expect(head("ascii") + "0 0\n", "line 11: found the end of the line, expected a number");
+    expect(head("ascii") + "0 0\n", "line 12: the file ends after 0 rows, expected 4 by the head (it is cut "
+                                    "off, or the numbers there are wrong)");
     expect(head("ascii") + "0 0 0\n1 0 0\n0 1 x\n3 0 1 2\n", "line 13: found 'x', expected a number");
     expect(head("ascii") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
            "line 14: a face names a vertex that is not there; expected numbers from 0 to 2");
@@ -311,7 +403,7 @@ TEST(Ply, StopsAtTheLimits) {
 TEST(Ply, SurvivesHostility) {
     survive_hostility(
         {head("ascii") + rows, head(little) + binary_rows(false), head(big) + binary_rows(true),
-         strip(7, false, false),
+         strip(7, false, false), ascii_with_all(5), head("ascii") + "0 0\n0 1 0 0 0\n1.5 -0.25 3 0\n1 2",
          strips_head("ascii", "int", 1) + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 1\n6 0 1 2 -1 3 4\n",
          strips_head(little, "int", 1) + std::string(60, '\0') + std::string("\1\0\0\0\2\0\0\0", 8)},
         name,
