@@ -65,9 +65,20 @@ double parse_positive(std::string_view text) {
 
 std::uint64_t parse_count(std::string_view text) {
     std::uint64_t value = 0;
-    if (!read(text, value))
-        refuse(text, "a whole number such as 4");
+    if (!read(text, value)) {
+        const bool digits_only = text.find_first_not_of("0123456789") == std::string_view::npos;
+        refuse(text, digits_only && !text.empty()
+                         ? fmt::format("a number up to {}", std::numeric_limits<std::uint64_t>::max())
+                         : "a whole number such as 4");
+    }
     return value;
+}
+
+std::uint32_t parse_count_within(std::string_view text, std::uint32_t least, std::uint32_t most) {
+    std::uint64_t value = 0;
+    if (!read(text, value) || value < least || value > most)
+        refuse(text, fmt::format("a whole number from {} to {}", least, most));
+    return static_cast<std::uint32_t>(value);
 }
 
 std::uint64_t parse_byte_size(std::string_view text) {

@@ -16,6 +16,9 @@ namespace lamella::app {
 [[nodiscard]] double parse_number(std::string_view text);
 [[nodiscard]] double parse_positive(std::string_view text);
 [[nodiscard]] std::uint64_t parse_count(std::string_view text);
+/// Both ends included.
+[[nodiscard]] std::uint32_t parse_count_within(std::string_view text, std::uint32_t least,
+                                               std::uint32_t most);
 /// "2G", "500M", "64k" (powers of 1000), "1GiB" (of 1024), or plain bytes.
 [[nodiscard]] std::uint64_t parse_byte_size(std::string_view text);
 /// "1,2,3" or "1 2 3".

@@ -61,6 +61,12 @@ Option positive(std::string name, std::string placeholder, std::string help, std
                [&target](const std::string& text) { target = parse_positive(text); });
 }
 
+Option count_within(std::string name, std::string help, std::uint32_t least, std::uint32_t most,
+                    std::optional<std::uint32_t>& target) {
+    return row(std::move(name), ValueKind::count, "N", std::move(help),
+               [=, &target](const std::string& text) { target = parse_count_within(text, least, most); });
+}
+
 /// The time that builds agree upon, so that results can be compared (reproducible-builds.org).
 std::int64_t source_date() {
     const char* const text = std::getenv("SOURCE_DATE_EPOCH");
@@ -78,23 +84,19 @@ std::int64_t source_date() {
     return static_cast<std::int64_t>(seconds);
 }
 
-std::uint32_t limited(std::uint64_t value) {
-    return static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(value, std::numeric_limits<std::uint32_t>::max()));
-}
-
 } // namespace
 
 OptionGroup picture_options(PictureArguments& target) {
-    Option antialias = count("antialias", "N",
-                             "1 is black and white, by the middles of pixels; 2 to 64: grey by the covered "
-                             "part of each pixel, exact for up to N corners close together; 8 unless given",
-                             target.antialias);
+    Option antialias =
+        count_within("antialias",
+                     "1 is black and white, by the middles of pixels; 2 to 64: grey by the covered "
+                     "part of each pixel, exact for up to N corners close together; 8 unless given",
+                     1, most_antialias, target.antialias);
     Option gamma = positive(
         "gamma", "G", "grey becomes 255 times the covered part to this power; 1 unless given", target.gamma);
-    Option fade = count("fade-layers", "N",
-                        "sl1: layers in which the first exposure fades to the normal one; 10 unless given",
-                        target.fade_layers);
+    Option fade = count_within(
+        "fade-layers", "sl1: layers in which the first exposure fades to the normal one; 10 unless given", 0,
+        std::numeric_limits<std::uint32_t>::max(), target.fade_layers);
     return {"Pictures (png, png-zip, sl1, sl1s)",
             {lengths("pixel-size", "MM|X,Y", "of a pixel; for png and png-zip 0.05 unless given",
                      target.pixel_mm),
@@ -142,11 +144,11 @@ void PictureArguments::apply(const LayerFormat& format, LayerWriteOptions& optio
         picture.mirror_x = mirror.starts_with('x');
         picture.mirror_y = mirror.ends_with('y');
     }
-    picture.raster.antialias = limited(antialias.value_or(picture.raster.antialias));
+    picture.raster.antialias = antialias.value_or(picture.raster.antialias);
     picture.raster.gamma = gamma.value_or(picture.raster.gamma);
     options.exposure.normal_s = exposure_s;
     options.exposure.first_s = first_exposure_s;
-    options.exposure.fade_layers = limited(fade_layers.value_or(options.exposure.fade_layers));
+    options.exposure.fade_layers = fade_layers.value_or(options.exposure.fade_layers);
     if (std::ranges::find(job_formats, format.name) != job_formats.end())
         options.exposure.created_s = source_date();
 }

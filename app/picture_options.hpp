@@ -19,11 +19,11 @@ struct PictureArguments {
     std::optional<AlongXY<double>> display_mm = {};
     std::string orientation = {};
     std::string mirror = {};
-    std::optional<std::uint64_t> antialias = {};
+    std::optional<std::uint32_t> antialias = {};
     std::optional<double> gamma = {};
     std::optional<double> exposure_s = {};
     std::optional<double> first_exposure_s = {};
-    std::optional<std::uint64_t> fade_layers = {};
+    std::optional<std::uint32_t> fade_layers = {};
 
     /// Throws Error{usage} where options do not go with the format, and for a SOURCE_DATE_EPOCH that is no
     /// time.
