@@ -196,14 +196,17 @@ class Sl1Writer final : public LayerWriter {
         const auto flag = [](bool on) {
             return std::string(on ? "1" : "0");
         };
+        const std::string width = number(display_.width_mm());
+        const std::string height = number(display_.height_mm());
         return {{"area_fill", number(printer_.large_area * 100)},
-                {"display_height", number(display_.height_mm())},
+                {"bed_shape", fmt::format("0x0,{0}x0,{0}x{1},0x{1}", width, height)},
+                {"display_height", height},
                 {"display_mirror_x", flag(display_.mirror_x)},
                 {"display_mirror_y", flag(display_.mirror_y)},
                 {"display_orientation", display_.portrait ? "portrait" : "landscape"},
                 {"display_pixels_x", fmt::to_string(display_.pixels.x)},
                 {"display_pixels_y", fmt::to_string(display_.pixels.y)},
-                {"display_width", number(display_.width_mm())},
+                {"display_width", width},
                 {"exposure_time", number(normal_s_)},
                 {"faded_layers", fmt::to_string(fade_layers_)},
                 {"fast_tilt_time", number(printer_.small_pause_s)},
