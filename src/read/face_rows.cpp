@@ -125,7 +125,11 @@ std::uint64_t count_rows(std::string_view text, char comment) {
 
 /// Skips blanks before the next word of the row.
 inline void RowWords::to_word(std::string_view expected) {
-    at_ = layout_ == RowLayout::words ? skip_blanks(at_, end_) : skip_spaces(at_, end_);
+    at_ = skip_spaces(at_, end_);
+    if (at_ != end_ && !is_line_end(*at_))
+        return;
+    if (layout_ == RowLayout::words)
+        at_ = skip_blanks(at_, end_);
     if (at_ == end_ || is_line_end(*at_))
         throw TextFault{offset(), std::string(expected)};
 }
@@ -233,17 +237,13 @@ void RowWords::add_strips(FacePiece& piece) {
 }
 
 const char* RowWords::end_row() {
-    switch (layout_) {
-    case RowLayout::lines:
-        at_ = skip_to_line_end(at_, end_);
-        break;
-    case RowLayout::exact_lines:
-        at_ = skip_spaces(at_, end_);
-        if (at_ != end_ && !is_line_end(*at_))
+    if (layout_ == RowLayout::words)
+        return at_;
+    at_ = skip_spaces(at_, end_);
+    if (at_ != end_ && !is_line_end(*at_)) {
+        if (layout_ == RowLayout::exact_lines)
             throw TextFault{offset(), "the end of the line"};
-        break;
-    case RowLayout::words:
-        break;
+        at_ = skip_to_line_end(at_, end_);
     }
     return at_;
 }

@@ -93,36 +93,49 @@ void read_face(const PlyElement& element, const PlyPlaces& places, RowWords& wor
             words.add_face(piece);
 }
 
-/// Where the rows of each element end. What has no properties has no words, and so no rows.
-std::vector<std::uint64_t> row_ends(const PlyHeader& header) {
-    std::vector<std::uint64_t> ends;
-    std::uint64_t sum = 0;
+struct Rows {
+    std::uint64_t begin = 0;
+    std::uint64_t end = 0;
+
+    [[nodiscard]] bool hold(std::uint64_t row) const { return row >= begin && row < end; }
+};
+
+/// The rows of each element. What has no properties has no words, and so no rows.
+std::vector<Rows> rows_of(const PlyHeader& header) {
+    std::vector<Rows> rows;
+    std::uint64_t begin = 0;
     for (const PlyElement& element : header.elements) {
-        if (!element.properties.empty())
-            sum += std::min(element.rows, std::numeric_limits<std::uint64_t>::max() - sum);
-        ends.push_back(sum);
+        const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() - begin;
+        const std::uint64_t end = begin + (element.properties.empty() ? 0 : std::min(element.rows, most));
+        rows.push_back({begin, end});
+        begin = end;
     }
-    return ends;
+    return rows;
 }
 
 MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places,
                     Remarks& remarks, ReadLimits& limits, const Execution& execution) {
-    const std::vector<std::uint64_t> ends = row_ends(header);
+    const std::vector<Rows> element_rows = rows_of(header);
+    const Rows vertex_rows = element_rows[places.vertex];
+    const Rows face_rows = element_rows[places.face];
+    const PlyElement& vertex = header.elements[places.vertex];
+    const PlyElement& face = header.elements[places.face];
     FaceRows rows;
     rows.begin = header.end;
-    rows.rows = ends[std::max(places.vertex, places.face)];
-    rows.more_rows = ends.back() - rows.rows;
+    rows.rows = std::max(vertex_rows.end, face_rows.end);
+    rows.more_rows = element_rows.back().end - rows.rows;
     rows.any_lines = true;
     rows.counted_where = "the head";
     rows.read_row = [&](std::uint64_t row, RowWords& words, FacePiece& piece) {
-        const auto element = static_cast<std::size_t>(std::ranges::upper_bound(ends, row) - ends.begin());
-        if (element == places.vertex)
-            read_vertex(header.elements[element], places, words, piece);
-        else if (element == places.face)
-            read_face(header.elements[element], places, words, piece);
-        else
-            for (const PlyProperty& property : header.elements[element].properties)
+        if (vertex_rows.hold(row)) {
+            read_vertex(vertex, places, words, piece);
+        } else if (face_rows.hold(row)) {
+            read_face(face, places, words, piece);
+        } else {
+            const auto other = std::ranges::upper_bound(element_rows, row, {}, &Rows::end);
+            for (const PlyProperty& property : header.elements[other - element_rows.begin()].properties)
                 skip_value(property, words);
+        }
     };
     return read_face_rows(source, rows, remarks, limits, execution);
 }
