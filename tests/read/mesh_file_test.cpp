@@ -171,7 +171,10 @@ TEST(MeshFile, ReadsOrRefusesTheSamples) {
           Sample{"ply-assimp/cube_binary_starts_with_nl.ply", 12},
           Sample{"ply-assimp/issue623.ply", -1, "24 vertices without an element 'face'"},
           Sample{"off-assimp/Cube.off", 12}, Sample{"off-assimp/Wuson.off", 3732},
-          Sample{"off-assimp/invalid.off", -1, "line 7: found the end of the line"}}) {
+          Sample{"off-assimp/invalid.off", -1, "line 7: found the end of the line"},
+          Sample{"sli-eos/Box.sli", -1, "is an SLI slice file of EOS"},
+          Sample{"own/ring.sli", -1, "is an SLI slice file of EOS"},
+          Sample{"own/ring_layer0.hpgl", -1, "is a text, but no mesh file"}}) {
         SCOPED_TRACE(sample.path);
         try {
             const MeshFile file = read_mesh((folder / sample.path).string());
