@@ -1,17 +1,13 @@
 // Any bytes as a mesh file of any format: an error of the input kind, or a mesh that welds, inspects and
 // slices to layers that keep their promises.
 
-#include <lamella/lamella.hpp>
+#include "promises.hpp"
 
-#include <cstdlib>
 #include <span>
 
 namespace {
 
-void require(bool promise) {
-    if (!promise)
-        std::abort();
-}
+using lamella::fuzz::require;
 
 void slice_and_check(const lamella::Mesh& mesh) {
     using namespace lamella;

@@ -1,22 +1,18 @@
 // Any bytes as rings on a small picture: rows that keep their promises and, without anti-aliasing, the pixels
 // whose middles have a winding number that is not zero.
 
-#include <lamella/lamella.hpp>
+#include "promises.hpp"
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <vector>
 
 namespace {
 
-using namespace lamella;
+using lamella::fuzz::require;
 
-void require(bool promise) {
-    if (!promise)
-        std::abort();
-}
+using namespace lamella;
 
 constexpr std::uint32_t width = 23;
 constexpr std::uint32_t height = 17;

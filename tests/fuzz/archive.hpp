@@ -1,0 +1,67 @@
+#pragma once
+
+// A zip archive around the bytes of a fuzzer, which would never hit upon its checksums.
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace lamella::fuzz {
+
+inline std::uint32_t crc32(std::string_view bytes) {
+    std::uint32_t crc = 0xFFFFFFFF;
+    for (const char byte : bytes) {
+        crc ^= static_cast<unsigned char>(byte);
+        for (int bit = 0; bit < 8; ++bit)
+            crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xEDB88320U : 0U);
+    }
+    return ~crc;
+}
+
+/// A zip archive of stored entries.
+class Archive {
+  public:
+    void add(std::string_view name, std::string_view content) {
+        const std::size_t place = file_.size();
+        const auto head = [&](std::string& out) {
+            put(out, {20, 0, 0, 0, 33}, 2);
+            put(out, {crc32(content), content.size(), content.size()}, 4);
+            put(out, {name.size(), 0}, 2);
+        };
+        put(file_, {0x04034b50}, 4);
+        head(file_);
+        file_.append(name).append(content);
+        put(directory_, {0x02014b50}, 4);
+        put(directory_, {20}, 2);
+        head(directory_);
+        put(directory_, {0, 0, 0}, 2);
+        put(directory_, {0, place}, 4);
+        directory_.append(name);
+        ++entries_;
+    }
+
+    std::string take() {
+        const std::size_t place = file_.size();
+        file_ += directory_;
+        put(file_, {0x06054b50}, 4);
+        put(file_, {0, 0, entries_, entries_}, 2);
+        put(file_, {directory_.size(), place}, 4);
+        put(file_, {0}, 2);
+        return std::move(file_);
+    }
+
+  private:
+    static void put(std::string& out, std::initializer_list<std::uint64_t> values, int bytes) {
+        for (const std::uint64_t value : values)
+            for (int i = 0; i < bytes; ++i)
+                out += static_cast<char>(value >> (8 * i));
+    }
+
+    std::string file_;
+    std::string directory_;
+    std::uint64_t entries_ = 0;
+};
+
+} // namespace lamella::fuzz
