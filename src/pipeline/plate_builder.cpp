@@ -64,6 +64,9 @@ void check_range(const Box3& box, const std::string& path) {
                             path));
 }
 
+/// As many as a 3MF file may place.
+constexpr std::uint64_t most_parts = std::uint64_t{1} << 20;
+
 } // namespace
 
 void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_of) {
@@ -90,6 +93,11 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
         check_range(instances.back().box, input.path);
         box.add(instances.back().box);
     }
+    if (input.copies > most_parts || instances_.size() + input.copies * instances.size() > most_parts)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{}: {} {} of {} {} are too many: a plate holds at most {} parts", input.path,
+                                input.copies, input.copies == 1 ? "copy" : "copies", instances.size(),
+                                instances.size() == 1 ? "part" : "parts", most_parts));
     const auto columns = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(input.copies))));
     for (std::uint64_t copy = 0; copy < input.copies; ++copy) {
         const double dx = static_cast<double>(copy % columns) * (box.max.x - box.min.x + input.spacing_mm);

@@ -76,6 +76,10 @@ class Plate(ProgramTest):
 
     def test_what_cannot_be(self):
         self.fail_with(2, "one at least", "slice", "box.stl", "--copies", "0", "-o", "a.cli")
+        self.fail_with(5, "box.stl: 99999999999 copies of 1 part are too many: a plate holds at most 1048576 parts", "slice",
+                       "box.stl", "--copies", "99999999999", "-o", "a.cli")
+        self.fail_with(5, "ball.stl: 2 copies of 1 part are too many", "slice", "box.stl", "--copies", "1048575", "ball.stl",
+                       "--copies", "2", "-o", "a.cli", "--spacing", "0")
         self.fail_with(2, "one file only", "slice", "-", "-", "-o", "a.cli")
         self.fail_with(3, "missing.stl", "slice", "box.stl", "missing.stl", "-o", "a.cli")
         self.fail_with(2, "ball.stl", "slice", "box.stl", "ball.stl", "-o", "ball.stl", "--format", "cli")
