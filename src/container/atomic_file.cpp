@@ -260,12 +260,17 @@ void AtomicFile::append(std::string_view bytes) {
     if (bytes.empty())
         return; // nothing may have no address
     bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
-    if (bytes.size() > buffer_size - buffered_) {
+    const std::size_t free = buffer_size - buffered_;
+    if (bytes.size() > free && buffered_ > 0) {
+        std::memcpy(buffer_.get() + buffered_, bytes.data(), free);
+        buffered_ = buffer_size;
         flush();
-        if (bytes.size() >= buffer_size) {
-            write_out(bytes);
-            return;
-        }
+        bytes.remove_prefix(free);
+    }
+    // Whole buffers at a time, so that each write fills the pages that it touches.
+    if (const std::size_t whole = bytes.size() - bytes.size() % buffer_size; whole > 0) {
+        write_out(bytes.substr(0, whole));
+        bytes.remove_prefix(whole);
     }
     std::memcpy(buffer_.get() + buffered_, bytes.data(), bytes.size());
     buffered_ += bytes.size();
