@@ -3,6 +3,8 @@
 // Bytes of a layer under construction, and their memory used again for the next one: fresh pages would cost
 // as much as the formatting.
 
+#include "core/pages.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -20,11 +22,11 @@ class ByteBuffer {
     /// Room for `size` bytes after the end; write there and tell `end_at` how far. Earlier pointers become
     /// invalid.
     [[nodiscard]] char* room(std::size_t size) {
-        if (capacity_ - size_ < size)
+        if (bytes_.size() - size_ < size)
             grow(size);
-        return bytes_.get() + size_;
+        return bytes_.data() + size_;
     }
-    void end_at(const char* end) noexcept { size_ = static_cast<std::size_t>(end - bytes_.get()); }
+    void end_at(const char* end) noexcept { size_ = static_cast<std::size_t>(end - bytes_.data()); }
 
     void append(std::string_view text) {
         if (text.empty())
@@ -35,22 +37,19 @@ class ByteBuffer {
     }
 
     void clear() noexcept { size_ = 0; }
-    [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
-    [[nodiscard]] std::string_view view() const noexcept { return {bytes_.get(), size_}; }
+    [[nodiscard]] std::size_t capacity() const noexcept { return bytes_.size(); }
+    [[nodiscard]] std::string_view view() const noexcept { return {bytes_.data(), size_}; }
 
   private:
     void grow(std::size_t size) {
-        const std::size_t capacity = std::max(size_ + size, capacity_ + capacity_ / 2);
-        auto bytes = std::make_unique_for_overwrite<char[]>(capacity);
+        PageArray<char> bytes(std::max(size_ + size, bytes_.size() + bytes_.size() / 2));
         if (size_ > 0)
-            std::memcpy(bytes.get(), bytes_.get(), size_);
+            std::memcpy(bytes.data(), bytes_.data(), size_);
         bytes_ = std::move(bytes);
-        capacity_ = capacity;
     }
 
-    std::unique_ptr<char[]> bytes_;
+    PageArray<char> bytes_;
     std::size_t size_ = 0;
-    std::size_t capacity_ = 0;
 };
 
 /// Buffers that wait to be used again. For any number of threads.
