@@ -1,5 +1,6 @@
 #include "lamella/contour/measure.hpp"
 
+#include "contour/fan_area.hpp"
 #include "core/vector_clones.hpp"
 
 #include <array>
@@ -10,24 +11,11 @@ namespace lamella {
 LAMELLA_VECTOR_CLONES double ring_area(std::span<const Point2> ring) noexcept {
     if (ring.size() < 3)
         return 0;
-    // A fan of triangles about the first point. Four running sums, added in a fixed order at the end: one
-    // would make each addition wait for the one before it.
-    const Point2 origin = ring.front();
-    const auto twice_area = [&](std::size_t i) {
-        const double ax = ring[i - 1].x - origin.x;
-        const double ay = ring[i - 1].y - origin.y;
-        const double bx = ring[i].x - origin.x;
-        const double by = ring[i].y - origin.y;
-        return ax * by - ay * bx;
-    };
-    std::array<double, 4> sums{};
-    std::size_t i = 2;
+    FanArea area(ring.front());
+    std::size_t i = FanArea::first;
     for (; i + 4 <= ring.size(); i += 4)
-        for (std::size_t k = 0; k < 4; ++k)
-            sums[k] += twice_area(i + k);
-    for (std::size_t k = 0; i + k < ring.size(); ++k)
-        sums[k] += twice_area(i + k);
-    return 0.5 * ((sums[0] + sums[1]) + (sums[2] + sums[3]));
+        area.add_four(ring, i);
+    return area.end(ring, i);
 }
 
 double contour_length(std::span<const Point2> contour, bool closed) noexcept {

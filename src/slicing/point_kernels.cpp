@@ -1,37 +1,18 @@
 #include "slicing/point_kernels.hpp"
 
+#include "core/vectors.hpp"
+
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <utility>
 
-// GCC and clang vectors. The width is a template parameter; each instantiation is inlined into a function
-// that is compiled for the instruction set of that width. Vectors are passed by reference only: by value they
-// would need a calling convention of their own.
+// The width of the vectors is a template parameter; each instantiation is inlined into a function that is
+// compiled for the instruction set of that width.
 
 namespace lamella {
 
 namespace {
-
-template <int width>
-struct Vector {
-    typedef double Doubles __attribute__((vector_size(width * sizeof(double)), may_alias));
-    /// One that may begin at any double. (A vector type that is aligned less does not do: clang 14 forgets
-    /// about the alignment behind a template.)
-    struct __attribute__((packed, may_alias)) Anywhere {
-        Doubles v;
-    };
-};
-
-template <int width>
-[[gnu::always_inline]] inline const typename Vector<width>::Anywhere& at(const double* from) {
-    return *reinterpret_cast<const typename Vector<width>::Anywhere*>(from);
-}
-
-template <int width>
-[[gnu::always_inline]] inline void store(const typename Vector<width>::Doubles& v, double* to) {
-    reinterpret_cast<typename Vector<width>::Anywhere*>(to)->v = v;
-}
 
 /// EdgeCut::shortened.
 template <int width>

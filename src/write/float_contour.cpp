@@ -3,12 +3,13 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
+#include "contour/fan_area.hpp"
 #include "core/vector_clones.hpp"
+#include "core/vectors.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -27,43 +28,81 @@ struct FloatPoint {
 };
 static_assert(sizeof(FloatPoint) == float_point_size);
 
-struct FloatBox {
-    FloatPoint least;
+struct Rounded {
+    FloatPoint least; // of the box
     FloatPoint most;
+    double area_mm2;
+    bool repeats; // whether two neighbours became equal
 };
 
-// Writes points, scaled and in single precision, and tells their box. What a large file spends its time in.
-LAMELLA_VECTOR_CLONES FloatBox to_floats(std::span<const Point2> points, double scale, char* out) {
-    // Of eight points at a time: x, y, x, y, ...
-    constexpr std::size_t lanes = 16;
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    std::array<float, lanes> low;
-    std::array<float, lanes> high;
-    low.fill(infinity);
-    high.fill(-infinity);
-    const double* from = &points.front().x;
-    const auto convert = [&](std::size_t n) {
-        std::array<float, lanes> values{};
-        for (std::size_t k = 0; k < n; ++k) {
-            // Adding zero turns a rounded -0 into +0.
-            values[k] = static_cast<float>(from[k] * scale) + 0.0F;
-            low[k] = values[k] < low[k] ? values[k] : low[k];
-            high[k] = values[k] > high[k] ? values[k] : high[k];
-        }
-        std::memcpy(out, values.data(), n * sizeof(float));
-        from += n;
-        out += n * sizeof(float);
+using FourDoubles = Vector<4>::Doubles;
+using FourFloats = Vector<4>::Floats;
+
+// Of numbers x, y, x, y: two points in single precision. Adding zero turns a rounded -0 into +0.
+[[gnu::always_inline]] inline FourFloats rounded_pair(const FourDoubles& pair, double scale) {
+    return __builtin_convertvector(pair * scale, FourFloats) + 0.0F;
+}
+
+// Whether two neighbours are equal.
+[[gnu::always_inline]] inline bool any_repeats(const char* points, std::size_t count) {
+    const auto words = [&](std::size_t i) -> const Vector<4>::WordsAnywhere& {
+        return *reinterpret_cast<const Vector<4>::WordsAnywhere*>(points + i * float_point_size);
     };
-    const std::size_t doubles = 2 * points.size();
-    for (std::size_t i = 0; i + lanes <= doubles; i += lanes)
-        convert(lanes);
-    convert(doubles % lanes);
-    FloatBox box{{low[0], low[1]}, {high[0], high[1]}};
-    for (std::size_t k = 2; k < lanes; k += 2) {
-        box.least = {std::min(box.least.x, low[k]), std::min(box.least.y, low[k + 1])};
-        box.most = {std::max(box.most.x, high[k]), std::max(box.most.y, high[k + 1])};
+    Vector<4>::Words equal{};
+    std::size_t i = 1;
+    for (; i + 4 <= count; i += 4)
+        equal |= words(i).v == words(i - 1).v;
+    bool any = (equal[0] | equal[1] | equal[2] | equal[3]) != 0;
+    for (std::size_t k = 0; k < 3 && i + k < count; ++k)
+        any |= std::memcmp(points + (i + k) * float_point_size, points + (i + k - 1) * float_point_size,
+                           float_point_size) == 0;
+    return any;
+}
+
+// Writes points, scaled and in single precision, and finds out on the way what the rest of the work needs to
+// know of them: what a large file spends its time in is to fetch the points from memory.
+LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, double scale, char* out) {
+    // Contours follow one another in memory, so what lies a page ahead is needed soon; processors by
+    // themselves look ahead no further than the page, and find a new direction only after some lines. Of
+    // rings of 45 points, formatting takes 11 ms instead of 15.
+    constexpr std::size_t ahead = 4096 / sizeof(Point2);
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    FourFloats least = FourFloats{} + infinity;
+    FourFloats most = FourFloats{} - infinity;
+    const auto put_pair = [&](std::size_t i) __attribute__((always_inline)) {
+        const FourFloats pair = rounded_pair(at<4>(&points[i].x).v, scale);
+        least = pair < least ? pair : least;
+        most = pair > most ? pair : most;
+        reinterpret_cast<Vector<4>::FloatsAnywhere*>(out + i * float_point_size)->v = pair;
+    };
+    FanArea area(points.front());
+    std::size_t i = 0;
+    if (points.size() >= 2) {
+        put_pair(0);
+        for (i = 2; i + 4 <= points.size(); i += 4) {
+            __builtin_prefetch(points.data() + i + ahead);
+            put_pair(i);
+            put_pair(i + 2);
+            area.add_four(points, i);
+        }
     }
-    return box;
+    const std::size_t left = i;
+    if (i + 2 <= points.size()) {
+        put_pair(i);
+        i += 2;
+    }
+    if (i < points.size()) {
+        const Point2& last = points.back();
+        const FourFloats pair = rounded_pair(FourDoubles{last.x, last.y, last.x, last.y}, scale);
+        least = pair < least ? pair : least;
+        most = pair > most ? pair : most;
+        const FloatPoint p{pair[0], pair[1]};
+        std::memcpy(out + i * float_point_size, &p, sizeof p);
+    }
+    return {{std::min(least[0], least[2]), std::min(least[1], least[3])},
+            {std::max(most[0], most[2]), std::max(most[1], most[3])},
+            points.size() < 3 ? 0 : area.end(points, left),
+            any_repeats(out, points.size())};
 }
 
 FloatPoint load(const char* points, std::size_t i) {
@@ -82,18 +121,15 @@ double area_of_floats(const char* points, std::size_t count) {
     return ring_area(ring);
 }
 
-// Removes points that rounding made equal to the one before; returns how many stay.
-std::size_t without_repeats(char* points, std::size_t count, bool closed) {
+// Removes points that rounding made equal to the one before, if there are any; returns how many stay.
+std::size_t without_repeats(char* points, std::size_t count, bool repeats, bool closed) {
     const auto bits = [&](std::size_t i) {
         std::uint64_t b = 0;
         std::memcpy(&b, points + i * sizeof b, sizeof b);
         return b;
     };
-    std::size_t repeats = 0;
-    for (std::size_t i = 1; i < count; ++i)
-        repeats += bits(i) == bits(i - 1) ? 1 : 0;
     std::size_t kept = count;
-    if (repeats != 0) {
+    if (repeats) {
         kept = 1;
         for (std::size_t i = 1; i < count; ++i) {
             const std::uint64_t b = bits(i);
@@ -115,46 +151,47 @@ void reverse(char* points, std::size_t count) {
     }
 }
 
+void check_range(const Rounded& rounded, std::uint64_t layer) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto& [least, most, area, repeats] = rounded;
+    if (!(least.x > -infinity && least.y > -infinity && most.x < infinity && most.y < infinity))
+        throw Error(ErrorKind::usage,
+                    fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
+}
+
+// A bound on how much rounding has changed the area of a ring, in squares of what is written. Each point
+// moves by half a unit in the last place at most, and a term of the area with it by that times the lengths of
+// its two edges. Twice is for the rounding of this and of the area itself.
+double moved_area(const Rounded& rounded, std::size_t points) {
+    const auto& [least, most, area, repeats] = rounded;
+    const double extent = (double{most.x} - double{least.x}) + (double{most.y} - double{least.y});
+    const double largest = std::max({-double{least.x}, -double{least.y}, double{most.x}, double{most.y}});
+    const double moved = largest * double{std::numeric_limits<float>::epsilon()};
+    return 2 * static_cast<double>(points) * moved * (extent + moved);
+}
+
 } // namespace
 
 FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, std::uint64_t layer,
                                 char* out) const {
-    const double moved_area = convert(contour, layer, out);
-    const std::size_t count = without_repeats(out, contour.size(), closed);
+    const Rounded rounded = round_points(contour, per_mm_, out);
+    check_range(rounded, layer);
+    const std::size_t count = without_repeats(out, contour.size(), rounded.repeats, closed);
     if (count < (closed ? 3U : 2U))
         return {};
     if (!closed)
         return {count, 0};
-    const double area = ring_area(contour);
     // Only of a thin ring can rounding have turned the area over.
-    const bool thin = !(std::abs(area) * per_mm_ * per_mm_ > moved_area);
-    if (thin && area * area_of_floats(out, count) < 0)
+    const bool thin = !(std::abs(rounded.area_mm2) * per_mm_ * per_mm_ > moved_area(rounded, contour.size()));
+    if (thin && rounded.area_mm2 * area_of_floats(out, count) < 0)
         reverse(out, count);
     std::memcpy(out + count * float_point_size, out, float_point_size);
-    return {count + 1, area};
+    return {count + 1, rounded.area_mm2};
 }
 
 void FloatContours::put_points(std::span<const Point2> points, std::uint64_t layer, char* out) const {
     if (!points.empty())
-        convert(points, layer, out);
-}
-
-// Returns a bound on how much the area of a ring of these points changes, in squares of what is written.
-double FloatContours::convert(std::span<const Point2> points, std::uint64_t layer, char* out) const {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    const FloatBox box = to_floats(points, per_mm_, out);
-    if (!(box.least.x > -infinity && box.least.y > -infinity && box.most.x < infinity &&
-          box.most.y < infinity))
-        throw Error(ErrorKind::usage,
-                    fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
-    // Each point moves by half a unit in the last place at most, and a term of the area with it by that
-    // times the lengths of its two edges. Twice is for the rounding of this and of the area itself.
-    const double extent =
-        (double{box.most.x} - double{box.least.x}) + (double{box.most.y} - double{box.least.y});
-    const double largest =
-        std::max({-double{box.least.x}, -double{box.least.y}, double{box.most.x}, double{box.most.y}});
-    const double moved = largest * double{std::numeric_limits<float>::epsilon()};
-    return 2 * static_cast<double>(points.size()) * moved * (extent + moved);
+        check_range(round_points(points, per_mm_, out), layer);
 }
 
 } // namespace lamella

@@ -37,8 +37,6 @@ class FloatContours {
     void put_points(std::span<const Point2> points, std::uint64_t layer, char* out) const;
 
   private:
-    double convert(std::span<const Point2> points, std::uint64_t layer, char* out) const;
-
     double per_mm_;
 };
 

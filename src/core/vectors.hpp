@@ -1,0 +1,36 @@
+#pragma once
+
+// GCC and clang vectors, for kernels that are compiled for the instruction sets of several processors. They
+// are passed by reference only: by value they would need a calling convention of their own.
+
+namespace lamella {
+
+template <int width>
+struct Vector {
+    typedef double Doubles __attribute__((vector_size(width * sizeof(double)), may_alias));
+    typedef float Floats __attribute__((vector_size(width * sizeof(float)), may_alias));
+    typedef long long Words __attribute__((vector_size(width * sizeof(long long)), may_alias));
+    /// Those that may begin at any number. (A vector type that is aligned less does not do: clang 14 forgets
+    /// about the alignment behind a template.)
+    struct __attribute__((packed, may_alias)) Anywhere {
+        Doubles v;
+    };
+    struct __attribute__((packed, may_alias)) FloatsAnywhere {
+        Floats v;
+    };
+    struct __attribute__((packed, may_alias)) WordsAnywhere {
+        Words v;
+    };
+};
+
+template <int width>
+[[gnu::always_inline]] inline const typename Vector<width>::Anywhere& at(const double* from) {
+    return *reinterpret_cast<const typename Vector<width>::Anywhere*>(from);
+}
+
+template <int width>
+[[gnu::always_inline]] inline void store(const typename Vector<width>::Doubles& v, double* to) {
+    reinterpret_cast<typename Vector<width>::Anywhere*>(to)->v = v;
+}
+
+} // namespace lamella

@@ -1,0 +1,102 @@
+#include "lamella/contour/measure.hpp"
+
+#include "write/float_contour.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+struct Listed {
+    FloatContour contour;
+    std::vector<float> numbers;
+};
+
+Listed listed(const std::vector<Point2>& contour, bool closed, double per_mm = 1) {
+    std::vector<char> bytes((contour.size() + 1) * float_point_size);
+    Listed result{FloatContours(per_mm).put(contour, closed, 0, bytes.data()), {}};
+    result.numbers.resize(2 * result.contour.points);
+    std::memcpy(result.numbers.data(), bytes.data(), result.contour.points * float_point_size);
+    return result;
+}
+
+std::vector<Point2> random_contour(std::size_t points) {
+    std::mt19937 random(static_cast<unsigned>(points));
+    std::uniform_real_distribution<double> coordinate(-100, 100);
+    std::vector<Point2> contour(points);
+    for (Point2& p : contour)
+        p = {coordinate(random), coordinate(random)};
+    return contour;
+}
+
+std::vector<float> nearest_singles(const std::vector<Point2>& points, double per_mm) {
+    std::vector<float> numbers;
+    for (const Point2& p : points) {
+        numbers.push_back(static_cast<float>(p.x * per_mm));
+        numbers.push_back(static_cast<float>(p.y * per_mm));
+    }
+    return numbers;
+}
+
+TEST(FloatContours, RoundEveryPointOfContoursOfAnySize) {
+    constexpr double per_mm = 1 / 0.003;
+    for (std::size_t n = 3; n < 60; ++n) {
+        std::vector<Point2> contour = random_contour(n);
+        EXPECT_EQ(listed(contour, false, per_mm).numbers, nearest_singles(contour, per_mm)) << n;
+        const Listed ring = listed(contour, true, per_mm);
+        EXPECT_EQ(ring.contour.area_mm2, ring_area(contour)) << n;
+        contour.push_back(contour.front());
+        EXPECT_EQ(ring.numbers, nearest_singles(contour, per_mm)) << n;
+    }
+}
+
+TEST(FloatContours, HaveNoMinusZero) {
+    for (const float number : listed({{-1e-60, 1}, {1, -1e-60}, {3, 3}}, true).numbers)
+        EXPECT_FALSE(std::signbit(number));
+}
+
+TEST(FloatContours, DropARepeatWhereverItIs) {
+    for (std::size_t n = 3; n < 20; ++n) {
+        const std::vector<Point2> contour = random_contour(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            std::vector<Point2> repeating = contour;
+            // A last point that equals the first one is dropped, too: of a ring, it is the one before it.
+            const auto place = repeating.begin() + static_cast<std::ptrdiff_t>(i);
+            repeating.insert(place, {contour[i].x * (1 + 1e-15), contour[i].y});
+            EXPECT_EQ(listed(repeating, false).numbers, nearest_singles(contour, 1)) << n << ' ' << i;
+            EXPECT_EQ(listed(repeating, true).contour.points, n + 1) << n << ' ' << i;
+        }
+        std::vector<Point2> ended = contour;
+        ended.push_back(contour.front());
+        EXPECT_EQ(listed(ended, true).contour.points, n + 1) << n;
+    }
+}
+
+TEST(FloatContours, KeepTheDirectionOfRingsThatRoundingTurnsOver) {
+    // Far out, single precision has only every second millimetre.
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> coordinate(0, 8);
+    int turned = 0;
+    for (int i = 0; i < 2000; ++i) {
+        std::vector<Point2> ring(3);
+        for (Point2& p : ring)
+            p = {0x1p24 + coordinate(random), coordinate(random) / 16};
+        const Listed result = listed(ring, true);
+        if (result.contour.points == 0)
+            continue;
+        std::vector<Point2> rounded;
+        for (std::size_t k = 0; k < 6; k += 2)
+            rounded.push_back({result.numbers[k], result.numbers[k + 1]});
+        EXPECT_GE(ring_area(rounded) * ring_area(ring), 0);
+        turned += result.numbers[1] == static_cast<float>(ring[2].y) ? 1 : 0; // the last one is the first
+    }
+    EXPECT_GT(turned, 0);
+}
+
+} // namespace
+} // namespace lamella
