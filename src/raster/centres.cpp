@@ -1,43 +1,56 @@
 #include "raster/centres.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace lamella {
 
 namespace {
 
-/// The first row whose centres do not lie above v.
-std::uint32_t row_of_centres(double v, std::uint32_t height) noexcept {
-    return static_cast<std::uint32_t>(std::clamp(std::ceil(v - 0.5), 0.0, static_cast<double>(height)));
-}
-
-/// The first column of such a row.
-std::uint32_t column_of_centres(double u) noexcept {
-    return static_cast<std::uint32_t>(std::clamp(std::ceil(u - 0.5), 0.0, static_cast<double>(most_pixels)));
-}
+constexpr std::uint8_t full = 255; // whatever gamma is
 
 } // namespace
 
-RowRange CentreCrossing::rows(const PictureEdge& edge, std::uint32_t height) noexcept {
-    return {row_of_centres(edge.upper.y, height), row_of_centres(edge.lower.y, height)};
+void CentreRows::cover(std::uint32_t from, std::uint32_t to) {
+    if (from == to)
+        return;
+    covered_ += to - from;
+    if (!runs_.empty() && runs_.back().end == from) {
+        runs_.back().end = to;
+        return;
+    }
+    if (from > 0)
+        runs_.push_back({from, 0});
+    runs_.push_back({to, full});
 }
 
-std::uint32_t CentreRows::draw(std::uint32_t row, CoverageRow& out) {
-    if (crossings_.entries().empty() && crossings_.next_begin() > row)
-        return crossings_.next_begin() - row;
-    crossings_.advance(row);
-    int winding = 0;
-    bool upright = true;
-    for (const auto& crossing : crossings_.entries()) {
-        const PictureEdge& edge = crossings_.edge(crossing);
-        const int left = std::exchange(winding, winding + edge.winding);
-        if ((left == 0) != (winding == 0))
-            out.begin_at(column_of_centres(crossing.column), left == 0 ? 1 : -1);
-        upright = upright && edge.slope == 0;
+DrawnRow CentreRows::draw(std::uint32_t row) {
+    runs_.clear();
+    covered_ = 0;
+    std::uint32_t times = 0;
+    if (crossings_.entries().empty() && crossings_.next_begin() > row) {
+        times = crossings_.next_begin() - row;
+    } else {
+        crossings_.advance(row);
+        int winding = 0;
+        std::uint32_t from = 0;
+        bool upright = true;
+        for (const auto& crossing : crossings_.entries()) {
+            const PictureEdge& edge = crossings_.edge(crossing);
+            const int left = std::exchange(winding, winding + edge.winding);
+            // The first column whose centre does not lie to the left.
+            if (left == 0)
+                from = least_whole(crossing.column - 0.5, width_);
+            else if (winding == 0)
+                cover(from, least_whole(crossing.column - 0.5, width_));
+            upright = upright && edge.slope == 0;
+        }
+        if (winding != 0)
+            cover(from, width_);
+        times = upright ? crossings_.same_edges_until() - row : 1;
     }
-    return upright ? crossings_.same_edges_until() - row : 1;
+    if (runs_.empty() || runs_.back().end < width_)
+        runs_.push_back({width_, 0});
+    return {runs_, static_cast<double>(covered_), times};
 }
 
 } // namespace lamella

@@ -4,18 +4,21 @@
 
 #include "lamella/raster/picture.hpp"
 
-#include "raster/coverage_row.hpp"
+#include "raster/drawn_row.hpp"
 #include "raster/edges.hpp"
 #include "raster/row_sweep.hpp"
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace lamella {
 
 /// Where an edge crosses the centres of a row.
 struct CentreCrossing {
-    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept;
+    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept {
+        return {least_whole(edge.upper.y - 0.5, height), least_whole(edge.lower.y - 0.5, height)};
+    }
     CentreCrossing(const PictureEdge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }
     bool operator<(const CentreCrossing& other) const noexcept { return column < other.column; }
@@ -23,16 +26,22 @@ struct CentreCrossing {
     double column = 0;
 };
 
-/// Draws the rows of a picture from the top down, each into an empty CoverageRow of full coverage 1.
+/// Draws the rows of a picture from the top down.
 class CentreRows {
   public:
-    CentreRows(std::span<const PictureEdge> edges, std::uint32_t height) : crossings_(edges, height) {}
+    CentreRows(std::span<const PictureEdge> edges, const PixelGrid& grid)
+        : crossings_(edges, grid.height), width_(grid.width) {}
 
-    /// Says how many rows from there on look the same.
-    std::uint32_t draw(std::uint32_t row, CoverageRow& out);
+    [[nodiscard]] DrawnRow draw(std::uint32_t row);
 
   private:
+    /// Material from one column to another; none begins to the left of where the one before ended.
+    void cover(std::uint32_t from, std::uint32_t to);
+
     RowSweep<CentreCrossing> crossings_;
+    std::uint32_t width_;
+    std::vector<PixelRun> runs_;
+    std::uint32_t covered_ = 0;
 };
 
 } // namespace lamella

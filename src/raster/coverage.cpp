@@ -18,22 +18,7 @@ namespace {
 /// A gap no wider than this (in pixels) between two bodies is the rounding of a border that they share.
 constexpr double most_rounding = 1e-6;
 
-void draw_border(const PictureEdge& edge, double middle_column, double height, double weight,
-                 CoverageRow& out) {
-    const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
-    const double half =
-        std::min({0.5 * std::abs(height * edge.slope), middle_column - low, high - middle_column});
-    out.begin_along(middle_column - half, middle_column + half, weight);
-}
-
 } // namespace
-
-RowRange RowPiece::rows(const PictureEdge& edge, std::uint32_t height) noexcept {
-    const auto row = [height](double v) {
-        return static_cast<std::uint32_t>(std::clamp(v, 0.0, static_cast<double>(height)));
-    };
-    return {row(std::floor(edge.upper.y)), row(std::ceil(edge.lower.y))};
-}
 
 RowPiece::RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept {
     const bool begins = edge.upper.y >= row;
@@ -60,7 +45,13 @@ void RowPiece::reach(const PictureEdge& edge, std::uint32_t row, double top_colu
     }
 }
 
-std::uint32_t CoverageRows::draw(std::uint32_t row, CoverageRow& out) {
+DrawnRow CoverageRows::draw(std::uint32_t row) {
+    const std::uint32_t times = cover(row);
+    const std::span<const PixelRun> runs = coverage_.take();
+    return {runs, coverage_.covered(), times};
+}
+
+std::uint32_t CoverageRows::cover(std::uint32_t row) {
     if (pieces_.entries().empty() && pieces_.next_begin() > row)
         return pieces_.next_begin() - row;
     pieces_.advance(row);
@@ -82,9 +73,9 @@ std::uint32_t CoverageRows::draw(std::uint32_t row, CoverageRow& out) {
 
         const bool alone = end == begin + 1 && pieces[begin].through && pieces[begin].low > 0;
         if (!alone)
-            draw_knot(pieces.subspan(begin, end - begin), winding, row, out);
+            draw_knot(pieces.subspan(begin, end - begin), winding, row);
         else if ((winding == 0) != (right == 0))
-            out.begin_along(pieces[begin].low, pieces[begin].high, right != 0 ? 1 : -1);
+            coverage_.begin_along(pieces[begin].low, pieces[begin].high, right != 0 ? 1 : -1);
         winding = right;
         begin = end;
     }
@@ -92,15 +83,42 @@ std::uint32_t CoverageRows::draw(std::uint32_t row, CoverageRow& out) {
     return upright ? pieces_.same_edges_until() - row : 1;
 }
 
-void CoverageRows::draw_knot(Pieces knot, int left, std::uint32_t row, CoverageRow& out) {
+void CoverageRows::draw_knot(Pieces knot, int left, std::uint32_t row) {
+    if (knot.size() == 2 && draw_bend(knot, left, row))
+        return;
     if (find_slabs(knot, row)) {
         for (std::size_t i = 1; i < heights_.size(); ++i)
-            draw_slab(knot, left, heights_[i - 1], heights_[i], out);
+            draw_slab(knot, left, heights_[i - 1], heights_[i]);
         return;
     }
     const double strips = strips_;
     for (unsigned i = 0; i < strips_; ++i)
-        draw_slab(knot, left, row + i / strips, row + (i + 1) / strips, out);
+        draw_slab(knot, left, row + i / strips, row + (i + 1) / strips);
+}
+
+bool CoverageRows::draw_bend(Pieces knot, int left, std::uint32_t row) {
+    const bool in_order = knot[0].top < knot[1].top;
+    const auto& upper = knot[in_order ? 0 : 1];
+    const auto& lower = knot[in_order ? 1 : 0];
+    const double top = row;
+    const double bend = upper.bottom;
+    const double bottom = row + 1.0;
+    const PictureEdge& upper_edge = pieces_.edge(upper);
+    const PictureEdge& lower_edge = pieces_.edge(lower);
+    if (upper.top != top || lower.top != bend || lower.bottom != bottom ||
+        upper_edge.winding != lower_edge.winding)
+        return false;
+    const double upper_middle = 0.5 * (top + bend);
+    const double lower_middle = 0.5 * (bend + bottom);
+    if (!(upper_middle < bend && bend <= lower_middle && lower_middle < bottom))
+        return false; // a slab so thin that numbers end
+    const int right = left + upper_edge.winding;
+    if ((left == 0) == (right == 0))
+        return true;
+    const double sign = left == 0 ? 1 : -1;
+    draw_border(upper_edge, upper_edge.column(upper_middle), bend - top, sign * (bend - top));
+    draw_border(lower_edge, lower_edge.column(lower_middle), bottom - bend, sign * (bottom - bend));
+    return true;
 }
 
 bool CoverageRows::find_slabs(Pieces knot, std::uint32_t row) {
@@ -132,7 +150,14 @@ void CoverageRows::add_crossing(const RowPiece& a, const PictureEdge& edge_a, co
         heights_.push_back(from + (to - from) * (above / (above - below)));
 }
 
-void CoverageRows::draw_slab(Pieces knot, int left, double from, double to, CoverageRow& out) {
+void CoverageRows::draw_border(const PictureEdge& edge, double middle_column, double height, double weight) {
+    const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
+    const double half =
+        std::min({0.5 * std::abs(height * edge.slope), middle_column - low, high - middle_column});
+    coverage_.begin_along(middle_column - half, middle_column + half, weight);
+}
+
+void CoverageRows::draw_slab(Pieces knot, int left, double from, double to) {
     const double middle = 0.5 * (from + to);
     borders_.clear();
     for (const auto& piece : knot) {
@@ -151,18 +176,18 @@ void CoverageRows::draw_slab(Pieces knot, int left, double from, double to, Cove
         const int before = std::exchange(winding, winding + border.edge->winding);
         if (before == 0) {
             if (end != nullptr && border.column - end->column > most_rounding) {
-                draw_border(*end->edge, end->column, height, -height, out);
+                draw_border(*end->edge, end->column, height, -height);
                 end = nullptr;
             }
             if (end == nullptr)
-                draw_border(*border.edge, border.column, height, height, out);
+                draw_border(*border.edge, border.column, height, height);
             end = nullptr;
         } else if (winding == 0) {
             end = &border;
         }
     }
     if (end != nullptr)
-        draw_border(*end->edge, end->column, height, -height, out);
+        draw_border(*end->edge, end->column, height, -height);
 }
 
 } // namespace lamella

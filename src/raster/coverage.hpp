@@ -3,9 +3,11 @@
 // Pixels by the part of their area that is covered.
 
 #include "raster/coverage_row.hpp"
+#include "raster/drawn_row.hpp"
 #include "raster/edges.hpp"
 #include "raster/row_sweep.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,7 +17,10 @@ namespace lamella {
 
 /// The piece of an edge that lies in a row, from `top` to `bottom`.
 struct RowPiece {
-    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept;
+    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept {
+        const double above = std::clamp(edge.upper.y, 0.0, static_cast<double>(height));
+        return {static_cast<std::uint32_t>(above), least_whole(edge.lower.y, height)};
+    }
     RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept;
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept;
     bool operator<(const RowPiece& other) const noexcept { return low < other.low; }
@@ -31,16 +36,14 @@ struct RowPiece {
     void reach(const PictureEdge& edge, std::uint32_t row, double top_column) noexcept;
 };
 
-/// Draws the rows of a picture from the top down, each into an empty CoverageRow of full coverage 1.
+/// Draws the rows of a picture from the top down.
 class CoverageRows {
   public:
-    /// `strips`: see RasterOptions::antialias.
-    CoverageRows(std::span<const PictureEdge> edges, std::uint32_t width, std::uint32_t height,
-                 unsigned strips)
-        : pieces_(edges, height), width_(width), strips_(strips) {}
+    CoverageRows(std::span<const PictureEdge> edges, const PixelGrid& grid, const RasterOptions& options)
+        : pieces_(edges, grid.height), width_(grid.width), strips_(options.antialias),
+          coverage_(grid.width, 1, options.gamma) {}
 
-    /// Says how many rows from there on look the same.
-    std::uint32_t draw(std::uint32_t row, CoverageRow& out);
+    [[nodiscard]] DrawnRow draw(std::uint32_t row);
 
   private:
     using Pieces = std::span<const RowSweep<RowPiece>::Entry>;
@@ -51,16 +54,22 @@ class CoverageRows {
         const PictureEdge* edge;
     };
 
-    void draw_knot(Pieces knot, int left, std::uint32_t row, CoverageRow& out);
+    /// The same for the coverage; says how many rows from there on look the same.
+    std::uint32_t cover(std::uint32_t row);
+    void draw_knot(Pieces knot, int left, std::uint32_t row);
+    /// A knot of two that are one line with a bend, as most knots are; false where it is another.
+    bool draw_bend(Pieces knot, int left, std::uint32_t row);
     /// The heights between which nothing happens in a knot; false where that would be too many.
     bool find_slabs(Pieces knot, std::uint32_t row);
     void add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
                       const PictureEdge& edge_b);
-    void draw_slab(Pieces knot, int left, double from, double to, CoverageRow& out);
+    void draw_slab(Pieces knot, int left, double from, double to);
+    void draw_border(const PictureEdge& edge, double middle_column, double height, double weight);
 
     RowSweep<RowPiece> pieces_;
     std::uint32_t width_;
-    unsigned strips_;
+    unsigned strips_; ///< see RasterOptions::antialias
+    CoverageRow coverage_;
     std::vector<double> heights_;
     std::vector<Border> borders_;
 };

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace lamella {
 
 CoverageRow::CoverageRow(std::uint32_t width, double full, double gamma)
-    : width_(width), full_(full), changes_(std::size_t{width} + 2), changed_(changes_.size() / 64 + 1) {
+    : width_(width), full_(full), changes_(std::size_t{width} + 2), changed_(changes_.size() / 64 + 1),
+      runs_(std::size_t{width} + 1) {
     for (std::size_t i = 0; i < value_of_.size(); ++i)
         value_of_[i] =
             static_cast<std::uint8_t>(std::lround(255 * std::pow(static_cast<double>(i) / 255, gamma)));
@@ -60,38 +62,41 @@ void CoverageRow::begin_along(double from, double to, double weight) {
 }
 
 std::span<const PixelRun> CoverageRow::take() {
-    runs_.clear();
-    covered_ = 0;
+    // What the loop uses is kept out of the object: stores of bytes would have it fetched again each time.
+    const std::uint32_t width = width_;
+    const double full = full_;
+    const double most_value = 255 / full;
+    double* const changes = changes_.data();
+    PixelRun* next = runs_.data();
+    double covered = 0;
     double coverage = 0;
     double clamped = 0;
     std::uint32_t since = 0;
-    PixelRun run{};
+    std::uint8_t value = 0;
     for (std::size_t word = 0; word < changed_.size(); ++word) {
-        for (std::uint64_t bits = changed_[word]; bits != 0; bits &= bits - 1) {
+        for (std::uint64_t bits = std::exchange(changed_[word], 0); bits != 0; bits &= bits - 1) {
             const std::size_t column = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
-            coverage += changes_[column];
-            changes_[column] = 0;
+            coverage += changes[column];
+            changes[column] = 0;
             const auto here = static_cast<std::uint32_t>(column);
-            if (here >= width_)
+            if (here >= width)
                 continue;
-            covered_ += clamped * (here - since);
+            covered += clamped * (here - since);
             since = here;
-            clamped = std::clamp(coverage, 0.0, full_);
-            const std::uint8_t value = value_of_[static_cast<std::size_t>(clamped * (255 / full_) + 0.5)];
-            if (value == run.value)
-                continue;
-            if (here > 0) {
-                run.end = here;
-                runs_.push_back(run);
-            }
-            run.value = value;
+            clamped = coverage < 0 ? 0 : coverage; // not std::clamp, which is taken for two branches
+            clamped = full < clamped ? full : clamped;
+            // To 32 bits and signed: that is one instruction.
+            const std::uint8_t value_here =
+                value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(clamped * most_value + 0.5))];
+            // A run that ends here is written in any case, and stays where it has pixels and another value.
+            *next = {here, value};
+            next += value_here != value && here > 0 ? 1 : 0;
+            value = value_here;
         }
-        changed_[word] = 0;
     }
-    covered_ = (covered_ + clamped * (width_ - since)) / full_;
-    run.end = width_;
-    runs_.push_back(run);
-    return runs_;
+    covered_ = (covered + clamped * (width - since)) / full;
+    *next++ = {width, value};
+    return {runs_.data(), next};
 }
 
 } // namespace lamella

@@ -19,9 +19,8 @@ class CoverageRow {
     /// `full` is the coverage of a pixel that gets the value 255.
     CoverageRow(std::uint32_t width, double full, double gamma);
 
-    /// Material of the given weight from column `first` to the end of the row; a negative weight ends it.
-    void begin_at(std::uint32_t first, double weight) { change(first < width_ ? first : width_, weight); }
-    /// The same along a slope: from nothing at u = `from` to all of it at `to`.
+    /// Material of the given weight along a slope, from nothing at u = `from` to all of it at `to` and until
+    /// the end of the row; a negative weight ends it.
     void begin_along(double from, double to, double weight);
 
     /// The row as runs, which live until the next call. The row is empty afterwards.

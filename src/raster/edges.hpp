@@ -16,6 +16,17 @@ namespace lamella {
 /// Where edges lie of which only that they are to the left of the picture makes a difference.
 inline constexpr double left_of_picture = -1;
 
+/// The least whole number that is not below v, between 0 and `most`. (To ask std::ceil is a call, where
+/// processors of all kinds are compiled for.)
+[[nodiscard]] inline std::uint32_t least_whole(double v, std::uint32_t most) noexcept {
+    if (!(v > 0))
+        return 0;
+    if (v >= most)
+        return most;
+    const auto whole = static_cast<std::uint32_t>(v);
+    return whole + (whole < v ? 1 : 0);
+}
+
 /// An edge in columns and rows, from its upper to its lower end whichever way it runs: a border that two
 /// bodies share is one line.
 struct PictureEdge {

@@ -4,7 +4,7 @@
 
 #include "raster/centres.hpp"
 #include "raster/coverage.hpp"
-#include "raster/coverage_row.hpp"
+#include "raster/drawn_row.hpp"
 #include "raster/edges.hpp"
 
 #include <fmt/format.h>
@@ -37,15 +37,13 @@ void check(const PixelGrid& grid, const RasterOptions& options) {
 }
 
 template <class Rows>
-double draw(Rows rows, const PixelGrid& grid, const RasterOptions& options, const RowSink& sink) {
-    CoverageRow pixels(grid.width, 1, options.gamma);
+double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
     double covered = 0;
-    for (std::uint32_t row = 0; row < grid.height;) {
-        const std::uint32_t times = rows.draw(row, pixels);
-        const auto runs = pixels.take();
-        covered += pixels.covered() * times;
-        sink(runs, times);
-        row += times;
+    for (std::uint32_t row = 0; row < height;) {
+        const DrawnRow drawn = rows.draw(row);
+        covered += drawn.covered * drawn.times;
+        sink(drawn.runs, drawn.times);
+        row += drawn.times;
     }
     return covered;
 }
@@ -57,8 +55,8 @@ double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const Rast
     check(grid, options);
     const std::vector<PictureEdge> edges = picture_edges(parts, grid);
     if (options.antialias == 1)
-        return draw(CentreRows(edges, grid.height), grid, options, sink);
-    return draw(CoverageRows(edges, grid.width, grid.height, options.antialias), grid, options, sink);
+        return draw(CentreRows(edges, grid), grid.height, sink);
+    return draw(CoverageRows(edges, grid, options), grid.height, sink);
 }
 
 GreyPicture paint(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options) {

@@ -55,11 +55,14 @@ class RowSweep {
     /// To be called with ascending rows; those left out must not be one where an edge begins.
     void advance(std::uint32_t row) {
         std::size_t kept = 0;
-        for (Entry& entry : entries_) {
+        for (const Entry& entry : entries_) {
             if (rows_[entry.edge].end <= row)
                 continue;
-            entry.move_to(edges_[entry.edge], row);
-            entries_[kept++] = entry;
+            // Only where one has gone: an entry that is copied just after it was moved waits for its stores.
+            Entry& here = entries_[kept++];
+            if (&here != &entry)
+                here = entry;
+            here.move_to(edges_[here.edge], row);
         }
         entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(kept), entries_.end());
         sort_again();
@@ -75,14 +78,12 @@ class RowSweep {
 
     void sort_by_first_row(std::span<const PictureEdge> edges) {
         std::vector<std::uint32_t> ends(std::size_t{height_} + 2);
-        const auto rows_of = [&](const PictureEdge& edge) {
-            return Item::rows(edge, height_);
-        };
+        std::vector<RowRange> rows(edges.size());
         std::size_t used = 0;
-        for (const PictureEdge& edge : edges) {
-            const RowRange rows = rows_of(edge);
-            if (rows.first < rows.end) {
-                ++ends[rows.first + 1];
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            rows[i] = Item::rows(edges[i], height_);
+            if (rows[i].first < rows[i].end) {
+                ++ends[rows[i].first + 1];
                 ++used;
             }
         }
@@ -90,12 +91,11 @@ class RowSweep {
             ends[i] += ends[i - 1];
         edges_.resize(used);
         rows_.resize(used);
-        for (const PictureEdge& edge : edges) {
-            const RowRange rows = rows_of(edge);
-            if (rows.first < rows.end) {
-                const std::uint32_t place = ends[rows.first]++;
-                edges_[place] = edge;
-                rows_[place] = rows;
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            if (rows[i].first < rows[i].end) {
+                const std::uint32_t place = ends[rows[i].first]++;
+                edges_[place] = edges[i];
+                rows_[place] = rows[i];
             }
         }
     }

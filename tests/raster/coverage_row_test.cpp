@@ -32,7 +32,7 @@ double slope_in_column(double from, double to, double column) {
 TEST(CoverageRow, IsEmptyToBeginWithAndAfterItWasTaken) {
     CoverageRow row(100, 4, 1);
     EXPECT_EQ(values(row), std::vector<double>(100, 0));
-    row.begin_at(10, 4);
+    row.begin_along(10, 10, 4);
     EXPECT_EQ(row.take().size(), 2U);
     EXPECT_EQ(row.covered(), 90);
     EXPECT_EQ(values(row), std::vector<double>(100, 0));
@@ -41,11 +41,11 @@ TEST(CoverageRow, IsEmptyToBeginWithAndAfterItWasTaken) {
 
 TEST(CoverageRow, HoldsRunsThatDiffer) {
     CoverageRow row(70, 2, 1);
-    row.begin_at(0, 2);
-    row.begin_at(64, -1);
-    row.begin_at(65, 0);
-    row.begin_at(69, -1);
-    row.begin_at(200, -1); // beyond the row
+    row.begin_along(0, 0, 2);
+    row.begin_along(64, 64, -1);
+    row.begin_along(65, 65, 0);
+    row.begin_along(69, 69, -1);
+    row.begin_along(200, 200, -1); // beyond the row
     const auto runs = row.take();
     EXPECT_EQ(std::vector(runs.begin(), runs.end()), (std::vector<PixelRun>{{64, 255}, {69, 128}, {70, 0}}));
     EXPECT_EQ(row.covered(), 64 + 2.5);
@@ -93,8 +93,8 @@ TEST(CoverageRow, IsFullBetweenSlopesOfManyWeights) {
 
 TEST(CoverageRow, StaysWithinItsValues) {
     CoverageRow row(4, 1, 1);
-    row.begin_at(0, -3);
-    row.begin_at(1, 7);
+    row.begin_along(0, 0, -3);
+    row.begin_along(1, 1, 7);
     EXPECT_EQ(values(row), (std::vector<double>{0, 255, 255, 255}));
     EXPECT_EQ(row.covered(), 3);
 }
@@ -103,7 +103,7 @@ TEST(CoverageRow, BendsValuesByGamma) {
     for (const double gamma : {0.5, 1.0, 2.2}) {
         for (int part = 0; part <= 255; ++part) {
             CoverageRow row(1, 255, gamma);
-            row.begin_at(0, part);
+            row.begin_along(0, 0, part);
             EXPECT_NEAR(values(row).front(), 255 * std::pow(part / 255.0, gamma), 0.5 + 1e-9);
         }
     }
