@@ -64,36 +64,33 @@ std::uint32_t adler32_of(std::string_view bytes) {
 } // namespace
 
 bool PngEncoder::find_differences(std::span<const PixelRun> row) {
-    differences_.clear();
-    auto up = above_.begin();
-    for (std::size_t i = 0; i < row.size();) {
-        if (differences_.size() >= row.size())
+    if (differences_.size() < row.size())
+        differences_.resize(row.size());
+    PixelRun* last = differences_.data();
+    const PixelRun* const too_many = last + row.size() - 1;
+    const PixelRun* here = row.data();
+    const PixelRun* up = above_.data();
+    *last = {0, static_cast<std::uint8_t>(here->value - up->value)};
+    std::uint8_t value = last->value;
+    for (const PixelRun* const end = here + row.size(); here < end;) {
+        const auto difference = static_cast<std::uint8_t>(here->value - up->value);
+        const std::uint32_t both = std::min(here->end, up->end);
+        last += difference == value ? 0 : 1;
+        if (last == too_many)
             return false;
-        const PixelRun both{std::min(row[i].end, up->end),
-                            static_cast<std::uint8_t>(row[i].value - up->value)};
-        if (!differences_.empty() && differences_.back().value == both.value)
-            differences_.back().end = both.end;
-        else
-            differences_.push_back(both);
-        i += row[i].end == both.end ? 1 : 0;
-        up += up->end == both.end ? 1 : 0;
+        value = difference;
+        *last = {both, difference};
+        here += here->end == both ? 1 : 0;
+        up += up->end == both ? 1 : 0;
     }
-    return differences_.size() < row.size();
+    difference_count_ = static_cast<std::size_t>(last + 1 - differences_.data());
+    return true;
 }
 
 void PngEncoder::add_row(std::span<const PixelRun> row) {
-    std::span<const PixelRun> shown = row;
-    std::uint8_t kind = as_it_is;
-    if (!above_.empty() && find_differences(row)) {
-        shown = differences_;
-        kind = more_than_above;
-    }
-    deflater_.put(kind, 1);
-    std::uint32_t from = 0;
-    for (const PixelRun& run : shown) {
-        deflater_.put(run.value, run.end - from);
-        from = run.end;
-    }
+    const bool fewer = !above_.empty() && find_differences(row);
+    deflater_.put(fewer ? more_than_above : as_it_is, 1);
+    deflater_.put(fewer ? std::span<const PixelRun>(differences_).first(difference_count_) : row);
 }
 
 void PngEncoder::add(std::span<const PixelRun> row, std::uint32_t times) {

@@ -8,6 +8,7 @@
 #include "write/byte_buffer.hpp"
 #include "write/run_deflate.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,8 +35,9 @@ class PngEncoder {
 
     std::uint32_t width_;
     std::uint32_t height_;
-    std::vector<PixelRun> above_; ///< empty before the first row
-    std::vector<PixelRun> differences_;
+    std::vector<PixelRun> above_;       ///< empty before the first row
+    std::vector<PixelRun> differences_; ///< the first `difference_count_` of them; the rest is room
+    std::size_t difference_count_ = 0;
     RunDeflater deflater_;
 };
 

@@ -59,6 +59,9 @@ Parts parts_of(std::uint64_t count) noexcept {
     return rest < shortest_copy ? Parts{1 + rest, full, 0} : Parts{1, full, rest};
 }
 
+/// Runs of so many are few literals, or one and one copy: most of them.
+constexpr std::uint64_t longest_short_run = longest_copy + 1;
+
 struct Code {
     std::uint16_t bits = 0; ///< first bit lowest
     std::uint8_t length = 0;
@@ -133,21 +136,22 @@ std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencie
     return codes;
 }
 
-/// Writes bits to memory that is large enough.
+static_assert(std::endian::native == std::endian::little, "the lowest bits are those of the first byte");
+
+/// Writes bits to memory that is large enough, with some bytes to spare.
 class BitWriter {
   public:
     BitWriter(char* out, std::uint64_t bits, unsigned count) : out_(out), bits_(bits), count_(count) {}
 
-    /// Up to 32 bits.
+    /// Up to 56 bits. All whole bytes go out at once, and more behind them that the next ones overwrite: no
+    /// branch that a processor could guess wrong.
     void put(std::uint64_t bits, unsigned count) {
         bits_ |= bits << count_;
         count_ += count;
-        if (count_ >= 32) {
-            for (int i = 0; i < 4; ++i)
-                *out_++ = static_cast<char>(bits_ >> 8 * i & 0xff);
-            bits_ >>= 32;
-            count_ -= 32;
-        }
+        std::memcpy(out_, &bits_, sizeof bits_);
+        out_ += count_ / 8;
+        bits_ >>= count_ / 8 * 8;
+        count_ %= 8;
     }
     void put(const Code& code) { put(code.bits, code.length); }
     /// The same bits (at most 16) many times.
@@ -228,15 +232,85 @@ void put_lengths(const std::array<Code, symbols>& codes, BitWriter& out) {
     }
 }
 
-constexpr std::size_t most_head_bytes = 600; // 3 + 14 bits, 19 lengths, 287 lengths of 7 + 7 bits at most
+// 3 + 14 bits, 19 lengths, 287 lengths of 7 + 7 bits at most, and what a BitWriter has to have spare.
+constexpr std::size_t most_head_bytes = 600;
+
+/// What follows the first literal of a short run: a copy, if it is one that is long enough for it.
+struct CopyBits {
+    std::uint32_t bits = 0;
+    std::uint32_t count = 0;
+};
+
+std::array<CopyBits, longest_short_run + 1> copies_of(const std::array<Code, symbols>& codes) {
+    std::array<CopyBits, longest_short_run + 1> copies{};
+    for (std::size_t n = shortest_copy + 1; n <= longest_short_run; ++n) {
+        const CopyCode& copy = copy_codes[n - 1];
+        const Code& code = codes[copy.symbol];
+        // The last one is the bit 0 for distance 1.
+        copies[n] = {static_cast<std::uint32_t>(code.bits | copy.bits << code.length),
+                     code.length + copy.extra + 1U};
+    }
+    return copies;
+}
+
+void put_long_run(const Parts& parts, const Code& literal, const std::array<Code, symbols>& codes,
+                  BitWriter& out) {
+    for (std::uint64_t i = 0; i < parts.literals; ++i)
+        out.put(literal);
+    const Code& code = codes[longest_copy_symbol];
+    out.put_repeated(code.bits, code.length + 1U, parts.full);
+    if (parts.rest > 0) {
+        const CopyCode& copy = copy_codes[parts.rest];
+        out.put(codes[copy.symbol]);
+        out.put(copy.bits, copy.extra + 1U); // and the bit 0 for distance 1
+    }
+}
 
 } // namespace
 
 void RunDeflater::reduce_checksum() noexcept {
     constexpr std::uint64_t prime = 65521;
-    sum_ %= prime;
-    sum_of_sums_ %= prime;
+    checksum_.sum %= prime;
+    checksum_.sum_of_sums %= prime;
     unreduced_ = 0;
+}
+
+void RunDeflater::put(std::span<const PixelRun> row) {
+    static_assert(most_pixels < most_unreduced);
+    if (row.size() < 3) {
+        std::uint32_t from = 0;
+        for (const PixelRun& run : row) {
+            put(run.value, run.end - from);
+            from = run.end;
+        }
+        return;
+    }
+    // All but the first and the last are runs by themselves, and no count here comes near the longest. What
+    // changes with each is kept out of the object: stores of bytes would have it fetched again each time.
+    put(row.front().value, row.front().end);
+    end_run();
+    make_room_in_checksum(row.back().end - row.front().end);
+    Checksum checksum = checksum_;
+    std::uint32_t from = row.front().end;
+    for (std::size_t i = 1; i + 1 < row.size();) {
+        const std::size_t some = std::min(row.size() - 1 - i, most_runs - run_count_);
+        Run* to = runs_.data() + run_count_;
+        for (const PixelRun& run : row.subspan(i, some)) {
+            const std::uint32_t count = run.end - from;
+            from = run.end;
+            checksum.add(run.value, count);
+            *to++ = {count, run.value};
+        }
+        i += some;
+        run_count_ += some;
+        if (run_count_ == most_runs)
+            write_block(false);
+    }
+    const std::uint32_t count = row.back().end - from;
+    checksum.add(row.back().value, count);
+    checksum_ = checksum;
+    value_ = row.back().value;
+    count_ = count;
 }
 
 void RunDeflater::begin_stream() {
@@ -250,14 +324,22 @@ void RunDeflater::write_block(bool last) {
         begin_stream();
     std::array<std::uint64_t, symbols> frequencies{};
     frequencies[end_of_block] = 1;
-    for (const Run& run : runs_) {
-        const Parts parts = parts_of(run.count);
-        frequencies[run.value] += parts.literals;
-        frequencies[longest_copy_symbol] += parts.full;
-        if (parts.rest > 0)
-            ++frequencies[copy_codes[parts.rest].symbol];
+    const std::span<const Run> runs(runs_.data(), run_count_);
+    for (const Run& run : runs) {
+        if (run.count <= shortest_copy) {
+            frequencies[run.value] += run.count;
+        } else if (run.count <= longest_short_run) {
+            ++frequencies[run.value];
+            ++frequencies[copy_codes[run.count - 1].symbol];
+        } else {
+            const Parts parts = parts_of(run.count);
+            frequencies[run.value] += parts.literals;
+            frequencies[longest_copy_symbol] += parts.full;
+            if (parts.rest > 0)
+                ++frequencies[copy_codes[parts.rest].symbol];
+        }
     }
-    if (runs_.empty()) // a code needs two symbols
+    if (runs.empty()) // a code needs two symbols
         frequencies[0] = 1;
     const auto codes = huffman_codes(frequencies, longest_code);
 
@@ -269,25 +351,28 @@ void RunDeflater::write_block(bool last) {
     out.put(last ? 1 : 0, 1);
     out.put(2, 2); // with codes of its own
     put_lengths(codes, out);
-    for (const Run& run : runs_) {
-        const Parts parts = parts_of(run.count);
-        for (std::uint64_t i = 0; i < parts.literals; ++i)
-            out.put(codes[run.value]);
-        if (parts.full > 0) {
-            const Code& code = codes[longest_copy_symbol];
-            out.put_repeated(code.bits, code.length + 1U, parts.full);
-        }
-        if (parts.rest > 0) {
-            const CopyCode& copy = copy_codes[parts.rest];
-            out.put(codes[copy.symbol]);
-            out.put(copy.bits, copy.extra + 1U); // and the bit 0 for distance 1
+    const auto copies = copies_of(codes);
+    for (const Run& run : runs) {
+        const Code& literal = codes[run.value];
+        if (run.count <= shortest_copy) {
+            const std::uint64_t twice = std::uint64_t{literal.bits} << literal.length | literal.bits;
+            const std::uint64_t thrice = twice << literal.length | literal.bits;
+            out.put(run.count == 1   ? literal.bits
+                    : run.count == 2 ? twice
+                                     : thrice,
+                    run.count * literal.length);
+        } else if (run.count <= longest_short_run) {
+            const CopyBits& copy = copies[run.count];
+            out.put(literal.bits | std::uint64_t{copy.bits} << literal.length, literal.length + copy.count);
+        } else {
+            put_long_run(parts_of(run.count), literal, codes, out);
         }
     }
     out.put(codes[end_of_block]);
     stream_.end_at(out.out());
     bits_ = out.bits();
     bit_count_ = out.count();
-    runs_.clear();
+    run_count_ = 0;
 }
 
 std::string_view RunDeflater::finish() {
@@ -298,14 +383,13 @@ std::string_view RunDeflater::finish() {
         stream_.append({&byte, 1});
     }
     reduce_checksum();
-    const std::uint64_t checksum = sum_of_sums_ << 16 | sum_;
+    const std::uint64_t checksum = checksum_.sum_of_sums << 16 | checksum_.sum;
     std::array<char, 4> ending;
     for (unsigned i = 0; i < 4; ++i)
         ending[i] = static_cast<char>(checksum >> (24 - 8 * i) & 0xff);
     stream_.append({ending.data(), ending.size()});
     bits_ = 0;
-    sum_ = 1;
-    sum_of_sums_ = 0;
+    checksum_ = {};
     begun_ = false;
     return stream_.view();
 }

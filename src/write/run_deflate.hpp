@@ -2,10 +2,14 @@
 
 // Compression of bytes that come as runs of equal ones.
 
+#include "lamella/raster/picture.hpp"
+
 #include "write/byte_buffer.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +35,9 @@ class RunDeflater {
         count_ += count;
     }
 
+    /// Appends the pixels of a row, a byte each (see RowSink).
+    void put(std::span<const PixelRun> row);
+
     /// Ends the stream. It lives until the next call.
     [[nodiscard]] std::string_view finish();
 
@@ -41,24 +48,39 @@ class RunDeflater {
         std::uint8_t value;
     };
 
-    // Adler-32 of n equal bytes v: the sum grows by n v, the sum of sums by n times the old sum and
-    // n (n + 1) / 2 times v. Both are reduced now and then only, long before they overflow.
-    void add_to_checksum(std::uint8_t value, std::uint64_t n) noexcept {
+    /// The two halves of Adler-32, which are reduced now and then only, long before they overflow.
+    struct Checksum {
+        std::uint64_t sum = 1;
+        std::uint64_t sum_of_sums = 0;
+
+        /// Of n equal bytes v: the sum grows by n v, the sum of sums by n times the old sum and n (n + 1) / 2
+        /// times v.
+        void add(std::uint8_t v, std::uint64_t n) noexcept {
+            sum_of_sums += n * sum + n * (n + 1) / 2 * v;
+            sum += n * v;
+        }
+    };
+    void make_room_in_checksum(std::uint64_t n) noexcept {
         if (unreduced_ + n > most_unreduced)
             reduce_checksum();
         unreduced_ += n;
-        sum_of_sums_ += n * sum_ + n * (n + 1) / 2 * value;
-        sum_ += n * value;
+    }
+    void add_to_checksum(std::uint8_t value, std::uint64_t n) noexcept {
+        make_room_in_checksum(n);
+        checksum_.add(value, n);
     }
     void reduce_checksum() noexcept;
     void end_run() {
         while (count_ > 0) {
             const std::uint64_t count = std::min(count_, longest_run);
-            runs_.push_back({static_cast<std::uint32_t>(count), value_});
+            add_run({static_cast<std::uint32_t>(count), value_});
             count_ -= count;
-            if (runs_.size() == most_runs)
-                write_block(false);
         }
+    }
+    void add_run(const Run& run) {
+        runs_[run_count_++] = run;
+        if (run_count_ == most_runs)
+            write_block(false);
     }
     void begin_stream();
     void write_block(bool last);
@@ -67,12 +89,12 @@ class RunDeflater {
     static constexpr std::size_t most_runs = 1 << 14; ///< of a block: these stay in the cache
     static constexpr std::uint64_t longest_run = std::uint64_t{1} << 31;
 
-    std::vector<Run> runs_;
+    std::vector<Run> runs_ = std::vector<Run>(most_runs);
+    std::size_t run_count_ = 0;
     std::uint64_t count_ = 0; ///< of the run that is not yet among them
     std::uint8_t value_ = 0;
-    std::uint64_t sum_ = 1; ///< the two halves of Adler-32, before they are reduced
-    std::uint64_t sum_of_sums_ = 0;
-    std::uint64_t unreduced_ = 0; ///< bytes that were added since
+    Checksum checksum_;
+    std::uint64_t unreduced_ = 0; ///< bytes that were added to it since it was reduced
     ByteBuffer stream_;
     std::uint64_t bits_ = 0; ///< not yet written
     unsigned bit_count_ = 0;

@@ -121,6 +121,29 @@ TEST(RunDeflater, DependsOnBytesOnlyAndStartsAfreshEachTime) {
     EXPECT_EQ(deflated(deflater, {{0, 900}, {9, 2}, {0, 40}}), whole);
 }
 
+TEST(RunDeflater, TakesRowsAsTheirRuns) {
+    Random random(7);
+    RunDeflater by_rows;
+    RunDeflater by_runs;
+    for (int i = 0; i < 3000; ++i) { // some blocks of them
+        std::vector<PixelRun> row;
+        std::uint32_t end = 0;
+        for (std::int64_t k = random.integer(1, 40); k > 0; --k) {
+            end += static_cast<std::uint32_t>(random.integer(1, k % 3 == 0 ? 900 : 4));
+            const auto step = static_cast<std::uint8_t>(random.integer(1, 255));
+            const std::uint8_t before = row.empty() ? std::uint8_t{0} : row.back().value;
+            row.push_back({end, static_cast<std::uint8_t>(before + step)});
+        }
+        by_rows.put(row);
+        std::uint32_t from = 0;
+        for (const PixelRun& run : row) {
+            by_runs.put(run.value, run.end - from);
+            from = run.end;
+        }
+    }
+    EXPECT_TRUE(by_rows.finish() == by_runs.finish());
+}
+
 TEST(RunDeflater, NeedsTwoBitsForTheLongestCopies) {
     RunDeflater deflater;
     EXPECT_LT(deflated(deflater, {{0, 258 * 40000}}).size(), 2 * 40000 / 8 + 50U);
