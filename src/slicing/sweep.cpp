@@ -173,7 +173,7 @@ class alignas(128) SlabSweep {
 
     /// Several walks at a time hide the memory's latency where nodes lie scattered; one is enough where the
     /// graph fits the cache.
-    static constexpr std::size_t most_walkers = 12;
+    static constexpr std::size_t most_walkers = 20;
     static constexpr std::uint64_t candidates_per_walker = 64;
 
     void walk_plane(std::uint32_t plane) {
@@ -256,6 +256,7 @@ class alignas(128) SlabSweep {
         walker.node = next;
         __builtin_prefetch(&visited_until_[next], 1);
         __builtin_prefetch(&graph_.nodes[next]);
+        __builtin_prefetch(&graph_.nodes[next].ends);
         return true;
     }
 
