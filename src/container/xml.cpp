@@ -16,7 +16,7 @@ namespace lamella {
 
 namespace {
 
-constexpr int deepest = 256;
+constexpr int deepest_element = 256;
 constexpr std::size_t most_attributes = 1000;
 // A token that is not whole is gone through again with each piece that is parsed.
 constexpr std::size_t piece = std::size_t{4} << 20;
@@ -84,9 +84,9 @@ class Parse {
     static void on_start(void* data, const XML_Char* name, const XML_Char** attributes) {
         Parse& parse = self(data);
         parse.guarded([&] {
-            if (++parse.depth_ > deepest)
-                parse.fail(
-                    fmt::format("found elements nested deeper than {}; no file of this kind is", deepest));
+            if (++parse.depth_ > deepest_element)
+                parse.fail(fmt::format("found elements nested deeper than {}; no file of this kind is",
+                                       deepest_element));
             if (attributes[0] != nullptr &&
                 static_cast<std::size_t>(XML_GetSpecifiedAttributeCount(parse.parser_.get())) / 2 >
                     most_attributes)

@@ -7,6 +7,7 @@
 
 #include "container/inflate.hpp"
 #include "container/text_place.hpp"
+#include "container/zip_format.hpp"
 #include "core/pages.hpp"
 
 #include <fmt/format.h>
@@ -22,9 +23,6 @@ namespace lamella {
 
 namespace {
 
-constexpr std::uint64_t full16 = 0xFFFF;
-constexpr std::uint64_t full32 = 0xFFFFFFFF;
-
 constexpr std::uint32_t entry_mark = 0x04034b50;
 constexpr std::uint32_t directory_mark = 0x02014b50;
 constexpr std::uint32_t end_mark = 0x06054b50;
@@ -38,7 +36,6 @@ constexpr std::size_t end64_head = 56;
 constexpr std::size_t end64_place_size = 20;
 
 constexpr unsigned flag_encrypted = 1U;
-constexpr unsigned flag_sizes_behind = 1U << 3;
 constexpr unsigned flag_strongly_encrypted = 1U << 6;
 constexpr unsigned flag_masked = 1U << 13;
 

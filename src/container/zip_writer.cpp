@@ -5,6 +5,7 @@
 
 #include "container/deflate.hpp"
 #include "container/inflate.hpp"
+#include "container/zip_format.hpp"
 
 #include <fmt/format.h>
 
@@ -15,14 +16,10 @@ namespace lamella {
 
 namespace {
 
-constexpr std::uint64_t full16 = 0xFFFF;
-constexpr std::uint64_t full32 = 0xFFFFFFFF;
-
 // What a reader has to understand: 2.0 is Deflate and folders, 4.5 is zip64.
 constexpr unsigned version_plain = 20;
 constexpr unsigned version_zip64 = 45;
 
-constexpr unsigned flag_sizes_behind = 1U << 3;
 constexpr unsigned flag_utf8_name = 1U << 11;
 constexpr unsigned midnight = 0;
 constexpr unsigned first_of_january_1980 = (0U << 9) | (1U << 5) | 1U;

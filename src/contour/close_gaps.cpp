@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "contour/distance.hpp"
 #include "core/orientation.hpp"
 
 #include <fmt/format.h>
@@ -15,10 +16,6 @@
 namespace lamella {
 
 namespace {
-
-double distance(const Point2& a, const Point2& b) noexcept {
-    return std::hypot(a.x - b.x, a.y - b.y);
-}
 
 /// From the last point of one chain to the first point of another.
 struct Candidate {

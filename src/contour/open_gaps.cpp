@@ -1,5 +1,7 @@
 #include "lamella/contour/open_gaps.hpp"
 
+#include "contour/distance.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,10 +19,6 @@ namespace lamella {
 namespace {
 
 constexpr std::size_t none = ~std::size_t{0};
-
-double distance(const Point2& a, const Point2& b) noexcept {
-    return std::hypot(a.x - b.x, a.y - b.y);
-}
 
 /// Points of which the nearest is asked for, and which are taken away one by one. A tree of medians along the
 /// longer side: the middle of a range is the median of it, those before it are no greater. Ranges know their

@@ -15,12 +15,12 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Segment {
+struct ContourEdge {
     Point2 a;
     Point2 b;
 };
 
-double distance_squared(const Point2& p, const Segment& s) {
+double distance_squared(const Point2& p, const ContourEdge& s) {
     const double dx = s.b.x - s.a.x;
     const double dy = s.b.y - s.a.y;
     const double length = dx * dx + dy * dy;
@@ -90,9 +90,10 @@ class NearestSegment {
         const auto place = [&](std::size_t i) {
             return segments_.begin() + static_cast<std::ptrdiff_t>(i);
         };
-        std::nth_element(place(begin), place(middle), place(end), [&](const Segment& s, const Segment& t) {
-            return along_x ? s.a.x + s.b.x < t.a.x + t.b.x : s.a.y + s.b.y < t.a.y + t.b.y;
-        });
+        std::nth_element(place(begin), place(middle), place(end),
+                         [&](const ContourEdge& s, const ContourEdge& t) {
+                             return along_x ? s.a.x + s.b.x < t.a.x + t.b.x : s.a.y + s.b.y < t.a.y + t.b.y;
+                         });
         build(begin, middle);
         nodes_[at].right = nodes_.size();
         build(middle, end);
@@ -119,7 +120,7 @@ class NearestSegment {
             search(far, p, enough, best);
     }
 
-    std::vector<Segment> segments_;
+    std::vector<ContourEdge> segments_;
     std::vector<Node> nodes_;
 };
 

@@ -77,9 +77,9 @@ class Groups {
     std::uint64_t news_ = 0;
 };
 
-class Search {
+class ContactSearch {
   public:
-    Search(const Layer& layer, const MonotoneChains& chains)
+    ContactSearch(const Layer& layer, const MonotoneChains& chains)
         : layer_(layer), all_(chains), groups_(layer.rings) {}
 
     Contacts run(const ChainGrid* grid) && {
@@ -369,7 +369,7 @@ Contacts find_contacts(const Layer& layer, const MonotoneChains& chains, const C
     if (layer.points.size() >= Contacts::none)
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967294 points; contacts are found in smaller ones");
-    return Search(layer, chains).run(grid);
+    return ContactSearch(layer, chains).run(grid);
 }
 
 } // namespace lamella

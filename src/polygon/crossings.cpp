@@ -166,11 +166,11 @@ bool cross(const Segment& s, const Segment& t) noexcept {
 /// in every crossing.
 ///
 /// Two segments can meet in several cells: a crossing counts in the one cell that holds its computed place.
-class Search {
+class CrossingSearch {
   public:
     /// Among the contours that chosen(c) says.
     template <class Chosen>
-    Search(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough)
+    CrossingSearch(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough)
         : layer_(layer), keep_(keep), enough_(enough), frame_(layer.points.span()) {
         segments_.resize(layer.points.size());
         ids_.reserve(layer.points.size());
@@ -459,10 +459,10 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
             const auto in_contact = [&contacts](std::size_t ring) {
                 return contacts.group[ring] != Contacts::none;
             };
-            return Search(layer, in_contact, keep, enough).run();
+            return CrossingSearch(layer, in_contact, keep, enough).run();
         }
     }
-    return Search(layer, all, keep, enough).run();
+    return CrossingSearch(layer, all, keep, enough).run();
 }
 
 } // namespace

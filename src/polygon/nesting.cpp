@@ -372,10 +372,10 @@ Surroundings surroundings(const EdgesByAbscissa& edges, const Edge& left_end) {
     }
 }
 
-class Search {
+class NestingSearch {
   public:
     /// `apart`: no two rings have a point in common, nor has one with itself.
-    Search(const Layer& layer, const MonotoneChains& chains, bool apart)
+    NestingSearch(const Layer& layer, const MonotoneChains& chains, bool apart)
         : layer_(layer), chains_(chains), apart_(apart), ends_(ends_of(layer, chains)),
           copies_(layer, ends_, apart) {
         for (std::uint32_t i = 0; i < ends_.size(); ++i)
@@ -640,7 +640,7 @@ Nesting nesting(const Layer& layer) {
 Nesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
                 const Contacts& contacts) {
     check_size(layer);
-    return Search(layer, chains, contacts.groups == 0).run(grid);
+    return NestingSearch(layer, chains, contacts.groups == 0).run(grid);
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {

@@ -149,9 +149,9 @@ struct IndexedCorners {
 
 /// Node numbers come in blocks from one counter, so that workers number nodes without waiting and the numbers
 /// stay dense.
-class NodePool {
+class CutNodePool {
   public:
-    NodePool(std::uint64_t capacity, std::uint32_t block) : capacity_(capacity), block_(block) {}
+    CutNodePool(std::uint64_t capacity, std::uint32_t block) : capacity_(capacity), block_(block) {}
 
     struct Cursor {
         std::uint32_t next = 0;
@@ -187,7 +187,7 @@ class alignas(128) Collector {
   public:
     /// `table_size` is a power of two.
     Collector(const Corners& corners, const CutGraph<Ends>& graph, const PageArray<EdgeHash>& hashes,
-              NodePool& pool, std::size_t table_size)
+              CutNodePool& pool, std::size_t table_size)
         : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), hashes_(hashes.data()),
           pool_(pool), table_(table_size, Fill::zero) {}
 
@@ -198,7 +198,7 @@ class alignas(128) Collector {
     }
 
     /// Numbers that were taken from the pool but not used.
-    [[nodiscard]] NodePool::Cursor unused() const { return cursor_; }
+    [[nodiscard]] CutNodePool::Cursor unused() const { return cursor_; }
 
   private:
     /// The node last seen with this part of a hash, + 1, so that zero is empty.
@@ -283,8 +283,8 @@ class alignas(128) Collector {
     Node* nodes_;
     PlaneSpan* spans_;
     EdgeHash* hashes_;
-    NodePool& pool_;
-    NodePool::Cursor cursor_;
+    CutNodePool& pool_;
+    CutNodePool::Cursor cursor_;
     PageArray<Slot> table_;
 };
 
@@ -313,7 +313,7 @@ class Builder {
         graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
         graph_.spans = PageArray<PlaneSpan>(capacity, Fill::zero);
         hashes_ = PageArray<EdgeHash>(capacity);
-        NodePool pool(capacity, static_cast<std::uint32_t>(block));
+        CutNodePool pool(capacity, static_cast<std::uint32_t>(block));
 
         collect(pool);
         graph_.count = pool.used();
@@ -337,7 +337,7 @@ class Builder {
         std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, repeated
     };
 
-    void collect(NodePool& pool) {
+    void collect(CutNodePool& pool) {
         const std::uint64_t expected = triangles_ * 3 / 2;
         const int table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
         worker_.resize(workers_);

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "slicing/require_height.hpp"
 #include "slicing/stacking.hpp"
 
 #include <fmt/format.h>
@@ -15,11 +16,6 @@
 namespace lamella {
 
 namespace {
-
-void require_height(double height, const char* what) {
-    if (!(std::isfinite(height) && height > 0))
-        throw Error(ErrorKind::usage, fmt::format("{} is {} mm; it must be a number above 0", what, height));
-}
 
 std::string text_of(const std::pair<std::uint64_t, std::uint64_t>& indices) {
     if (indices.second == std::numeric_limits<std::uint64_t>::max())

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
+#include "slicing/require_height.hpp"
 #include "slicing/stacking.hpp"
 
 #include <fmt/format.h>
@@ -17,11 +18,6 @@
 namespace lamella {
 
 namespace {
-
-void require_height(double height, const char* what) {
-    if (!(std::isfinite(height) && height > 0))
-        throw Error(ErrorKind::usage, fmt::format("{} is {} mm; it must be a number above 0", what, height));
-}
 
 /// Layers on one another: height_at(bottom) -> height, from z_min on as long as cuts meet the part.
 template <class HeightAt>

@@ -8,12 +8,12 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t longest = std::size_t{1} << 16;
+constexpr std::size_t longest_quote = std::size_t{1} << 16;
 
 template <class Escape>
 std::string escaped(std::string_view text, const Escape& escape) {
     std::string result;
-    for (const char c : printable(text, longest)) {
+    for (const char c : printable(text, longest_quote)) {
         const std::string_view instead = escape(c);
         if (instead.empty())
             result += c;
