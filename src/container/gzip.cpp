@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/growing_memory.hpp"
+#include "container/inflate.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -44,6 +45,7 @@ bool is_gzip(std::span<const std::byte> bytes) noexcept {
 ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const std::stop_token& cancel) {
     // Small enough for zlib's counters, and for a look at `cancel` now and then.
     constexpr std::size_t step = std::size_t{8} << 20;
+    const std::uint64_t most = max_bytes != 0 ? max_bytes : usual_most_unpacked(packed.bytes.size());
     Inflater inflater;
     const auto unpacked = std::make_shared<GrowingMemory>();
     std::size_t at = 0;
@@ -64,9 +66,14 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
         const int code = inflate(&*inflater, Z_NO_FLUSH);
         at += given - inflater->avail_in;
         unpacked->use(offered - inflater->avail_out);
-        if (max_bytes != 0 && unpacked->size() > max_bytes)
-            throw Error(ErrorKind::limit, fmt::format("{}: unpacks to more than the {} bytes of --max-memory",
-                                                      packed.name, max_bytes));
+        if (unpacked->size() > most)
+            throw Error(
+                ErrorKind::limit,
+                max_bytes != 0
+                    ? fmt::format("{}: unpacks to more than the {} bytes of --max-memory", packed.name, most)
+                    : fmt::format(
+                          "{}: unpacks to more than {} bytes, {} times its size; --max-memory allows more",
+                          packed.name, most, most / packed.bytes.size()));
         if (code == Z_STREAM_END) {
             const auto rest = packed.bytes.subspan(at);
             // Some programs fill up the last block with zeros.

@@ -183,12 +183,8 @@ bool is_zip(std::string_view bytes) noexcept {
 }
 
 ZipReader::ZipReader(ByteSource source, std::uint64_t max_unpacked)
-    : source_(std::move(source)), max_unpacked_(max_unpacked) {
-    if (max_unpacked_ == 0) {
-        constexpr std::uint64_t usual_most = std::uint64_t{4} << 30;
-        constexpr std::uint64_t usual_ratio = 64;
-        max_unpacked_ = std::max(usual_most, usual_ratio * source_.bytes.size());
-    }
+    : source_(std::move(source)),
+      max_unpacked_(max_unpacked != 0 ? max_unpacked : usual_most_unpacked(source_.bytes.size())) {
     read_directory();
 }
 
