@@ -318,11 +318,12 @@ class PieceParser {
 };
 
 /// The first place at or after `from`, and before `limit`, where "endfacet" is followed by "facet"; that of
-/// "facet". It is a guess: both words may belong to a name.
+/// "facet". It is a guess: both words may belong to a name. Nothing beyond the limit is looked at: blanks or
+/// a word of gigabytes would be walked over once for each piece.
 std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit) {
-    Words words(text, from);
+    Words words(text.substr(0, limit), from);
     words.skip_word(); // it may have begun before
-    while (words.skip_blanks(), words.offset() < limit && !words.at_end()) {
+    while (words.skip_blanks(), !words.at_end()) {
         if (!words.take("endfacet")) {
             words.skip_word();
             continue;
