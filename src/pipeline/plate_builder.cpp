@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -55,13 +58,30 @@ double unit_of(const MeshFile& file, const PlateInput& input) {
 }
 
 void check_range(const Box3& box, const std::string& path) {
-    for (const double bound : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
-        if (!std::isfinite(bound))
+    double farthest = 0;
+    double extent = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double from = std::array{box.min.x, box.min.y, box.min.z}[axis];
+        const double to = std::array{box.max.x, box.max.y, box.max.z}[axis];
+        if (!std::isfinite(from) || !std::isfinite(to))
             throw Error(
                 ErrorKind::usage,
                 fmt::format("{}: unit, scale and translation move the mesh beyond the largest number; "
                             "choose smaller ones",
                             path));
+        farthest = std::max({farthest, std::abs(from), std::abs(to)});
+        extent = std::max(extent, to - from);
+    }
+    // Numbers so far away are further apart than what can be told of the shape: it would become flat.
+    constexpr double coarsest = 1e-6;
+    if (const double step = farthest * std::numeric_limits<double>::epsilon();
+        extent > 0 && step > coarsest * extent)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format(
+                "{}: the mesh is {:.6g} mm wide and lies {:.6g} mm away, where numbers are {:.2g} mm apart; "
+                "move it closer to the origin",
+                path, extent, farthest, step));
 }
 
 /// As many as a 3MF file may place.

@@ -249,10 +249,10 @@ class SlabSource final : public LayerSource {
             throw Error(
                 ErrorKind::limit,
                 fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
-                            "--threads {} that takes {} MB of memory, above the {} MB of --max-memory; "
+                            "--threads {} that takes {} MB of memory, above the {:.3g} MB of --max-memory; "
                             "allow more, or use fewer threads",
                             plate_.files.front().path, plan.layers[where].z, survey.points(where), threads,
-                            (overhead + largest) / 1'000'000 + 1, memory_.limit / 1'000'000));
+                            (overhead + largest) / 1'000'000 + 1, static_cast<double>(memory_.limit) / 1e6));
         return divide_to_fit(survey, plan, slab, memory_.limit - overhead);
     }
 

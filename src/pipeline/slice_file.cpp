@@ -16,6 +16,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -62,6 +63,32 @@ Plan selected(const FileJob& job, Plan plan, const Box3& box) {
     return plan;
 }
 
+/// A layer height that is a thousand times too small asks for more layers than memory has notes for.
+void check_count(const FileJob& job, double height) {
+    double count = height / job.layers.layer_height;
+    if (const auto& range = job.layers.z_range)
+        count = std::min(count, (range->second - range->first) / job.layers.layer_height);
+    if (const auto& range = job.layers.index_range)
+        count = std::min(count, static_cast<double>(range->second - range->first));
+    constexpr double few = 1e5; // take nothing to speak of
+    constexpr double most = std::numeric_limits<std::int32_t>::max();
+    if (!(count > few && count <= most))
+        return; // plan_uniform knows what to say of more
+    const JobMemory memory(job);
+    const std::uint64_t bytes = JobMemory::overhead(1, static_cast<std::uint64_t>(count));
+    constexpr double giga = 1e9;
+    if (bytes > memory.limit)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format(
+                "a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), for which "
+                "{:.3g} "
+                "GB of memory are needed, above the {:.3g} GB {}; choose a larger one, or fewer layers",
+                job.layers.layer_height, count, height, static_cast<double>(bytes) / giga,
+                static_cast<double>(memory.limit) / giga,
+                memory.asked ? "of --max-memory" : "that may be taken here"));
+}
+
 Plan uniform_plan(const FileJob& job, const Box3& box) {
     const double height = box.max.z - box.min.z;
     if (job.layers.layer_height > height)
@@ -70,6 +97,7 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
             fmt::format("the layer height of {:.6g} mm is above the part's height of {:.6g} mm; choose "
                         "a smaller one, or check the unit of the file",
                         job.layers.layer_height, height));
+    check_count(job, height);
     return plan_uniform(box.min.z, box.max.z, job.layers);
 }
 
