@@ -81,9 +81,8 @@ void check_count(const FileJob& job, double height) {
         throw Error(
             ErrorKind::limit,
             fmt::format(
-                "a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), for which "
-                "{:.3g} "
-                "GB of memory are needed, above the {:.3g} GB {}; choose a larger one, or fewer layers",
+                "a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), which take "
+                "{:.3g} GB of memory, above the {:.3g} GB {}; choose a larger one, or fewer layers",
                 job.layers.layer_height, count, height, static_cast<double>(bytes) / giga,
                 static_cast<double>(memory.limit) / giga,
                 memory.asked ? "of --max-memory" : "that may be taken here"));
