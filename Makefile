@@ -36,7 +36,7 @@ test: packages  ## build everything and run the tests: a few minutes
 	cmake --build build
 	$(CTEST) --test-dir build
 
-test-all: test-large test-asan test-tsan test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
+test-all: test-large test-asan test-tsan test-fuzz test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
@@ -56,6 +56,11 @@ test-tsan: packages-all
 	cmake --preset tsan
 	cmake --build build-tsan --target $(THREADED:%=lamella_%_test)
 	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$' --exclude-regex '^($(UNTHREADED))\.'
+
+test-fuzz: packages-all
+	cmake --preset fuzz
+	cmake --build build-fuzz
+	$(CTEST) --test-dir build-fuzz
 
 test-shared: packages-all
 	cmake --preset shared
@@ -141,6 +146,6 @@ clean:  ## remove what was built
 	rm -rf build build-* out
 
 .NOTPARALLEL:
-.PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
+.PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan test-fuzz \
         test-shared bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench page-bench paper \
         format format-check lint install clean

@@ -15,10 +15,6 @@ target_compile_options(
               -Woverloaded-virtual
               # The same bits on every processor: a*b+c is never fused (docs/conventions.md).
               -ffp-contract=off)
-# Names of a source's own do not shadow those of another that is compiled with it.
-if(CMAKE_UNITY_BUILD)
-    target_compile_options(lamella_options INTERFACE -Wno-shadow)
-endif()
 # GCC sees uninitialised values in the code that its own sanitizers add: there warnings stay warnings.
 if(LAMELLA_WERROR AND NOT (LAMELLA_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"))
     target_compile_options(lamella_options INTERFACE -Werror)
@@ -27,4 +23,8 @@ if(LAMELLA_SANITIZE)
     target_compile_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE} -fno-omit-frame-pointer
                                                      -fno-sanitize-recover=all)
     target_link_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE})
+endif()
+# libFuzzer steers by what it sees reached: the library must tell, not the fuzz targets alone.
+if(LAMELLA_FUZZ)
+    target_compile_options(lamella_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
