@@ -1,5 +1,7 @@
 #include "read/coordinate_text.hpp"
 
+#include "core/lower_case.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <limits>
@@ -7,13 +9,6 @@
 namespace lamella {
 
 namespace {
-
-/// `lower_case` is.
-bool begins(std::string_view word, std::string_view lower_case) {
-    return word.size() >= lower_case.size() &&
-           std::equal(lower_case.begin(), lower_case.end(), word.begin(),
-                      [](char k, char w) { return (w >= 'A' && w <= 'Z' ? w | 0x20 : w) == k; });
-}
 
 /// Whether a number that no T can hold is too large rather than too small, from the place of its first digit
 /// that is not 0.
@@ -39,7 +34,8 @@ const char* parse(const char* at, const char* end, T& value) {
     const std::string_view digits = word.substr(word[0] == '+' || word[0] == '-' ? 1 : 0);
     const T sign = word[0] == '-' ? T{-1} : T{1};
     const char* const stop = word.data() + word.size();
-    if (begins(digits, "nan") || begins(digits, "inf") || begins(digits, "1.#")) {
+    if (begins_with_keyword(digits, "nan") || begins_with_keyword(digits, "inf") ||
+        digits.starts_with("1.#")) {
         value = std::numeric_limits<T>::quiet_NaN();
         return stop;
     }

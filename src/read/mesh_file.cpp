@@ -6,6 +6,7 @@
 #include "container/byte_source.hpp"
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
+#include "core/lower_case.hpp"
 #include "read/amf.hpp"
 #include "read/foreign_files.hpp"
 #include "read/obj.hpp"
@@ -73,8 +74,7 @@ bool holds_amf(const ByteSource& source, const MeshReadOptions& options) {
 
 /// The extension of a name in lower case, without the one of gzip: "stl" of "PART.STL.gz".
 std::string extension_of(std::string name) {
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; });
+    name = lower_case(name);
     if (name.ends_with(".gz"))
         name.resize(name.size() - 3);
     const std::size_t point = name.find_last_of("./");

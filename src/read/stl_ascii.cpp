@@ -4,6 +4,7 @@
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
+#include "core/lower_case.hpp"
 #include "core/pages.hpp"
 #include "read/coordinate_text.hpp"
 #include "read/read_limits.hpp"
@@ -31,18 +32,10 @@ constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 /// What is parsed before triangles are counted again.
 constexpr std::size_t stretch_bytes = 32 * piece_bytes;
 
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
-}
-
 /// `keyword` is in lower case.
 bool matches(std::string_view word, std::string_view keyword) {
     return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
-                                                       [](char w, char k) { return lower(w) == k; });
-}
-
-bool begins(std::string_view word, std::string_view keyword) {
-    return matches(word.substr(0, keyword.size()), keyword);
+                                                       [](char w, char k) { return lower_case(w) == k; });
 }
 
 /// Walks over a text word by word.
@@ -101,7 +94,7 @@ class Words {
 /// A number, NaN or infinity may begin with it. The words of a facet that are not numbers never do.
 bool begins_like_number(std::string_view word) {
     return !word.empty() && (std::string_view("+-.0123456789").find(word[0]) != nowhere ||
-                             begins(word, "nan") || begins(word, "inf"));
+                             begins_with_keyword(word, "nan") || begins_with_keyword(word, "inf"));
 }
 
 /// Whether the word "facet" that begins here begins a facet, rather than being part of a name.

@@ -4,6 +4,7 @@
 #include "lamella/write/layer_page.hpp"
 
 #include "core/executor.hpp"
+#include "core/lower_case.hpp"
 #include "write/common_layer.hpp"
 #include "write/dxf.hpp"
 #include "write/geojson.hpp"
@@ -65,12 +66,6 @@ std::string names() {
         if (!format.extension.empty())
             text += fmt::format(" ({})", format.extension);
     }
-    return text;
-}
-
-std::string lower_case(std::string text) {
-    for (char& c : text)
-        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return text;
 }
 
