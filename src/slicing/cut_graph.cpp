@@ -31,12 +31,7 @@ namespace lamella {
 
 namespace {
 
-/// Mixes the hashes of an edge's ends well; those of the ends need not be.
-std::uint64_t hash_of_edge(std::uint64_t low, std::uint64_t high) {
-    return mix(low, high);
-}
-
-/// As it is kept: in halves, so that with a number beside it it takes 12 bytes, not 16.
+/// An edge's hash, as it is kept: in halves, so that with a number beside it it takes 12 bytes, not 16.
 struct EdgeHash {
     explicit EdgeHash(std::uint64_t hash)
         : high(static_cast<std::uint32_t>(hash >> 32)), low(static_cast<std::uint32_t>(hash)) {}
@@ -223,8 +218,8 @@ class alignas(128) Collector {
             const bool up = rank[from] < rank[to];
             const std::size_t low = up ? from : to;
             const std::size_t high = up ? to : from;
-            return find_or_add(corner[low], corner[high], hash_of_edge(hash[low], hash[high]),
-                               {rank[low], rank[high]}, up);
+            return find_or_add(corner[low], corner[high], mix(hash[low], hash[high]), {rank[low], rank[high]},
+                               up);
         };
         const std::uint32_t node01 = node_of(0, 1);
         const std::uint32_t node12 = node_of(1, 2);
@@ -269,7 +264,7 @@ class alignas(128) Collector {
         node.next_high = no_node;
         node.split = 0;
         node.triangle = 0;
-        node.last = span.last & 0x7FFFFFFF;
+        node.set_last(span.last);
         node.entered = static_cast<unsigned>(entered);
         Corners::store(low, node.ends.low);
         Corners::store(high, node.ends.high);

@@ -42,6 +42,8 @@ struct CutNode {
     }
     [[nodiscard]] bool left() const noexcept { return next_low != no_node; }
     [[nodiscard]] bool in_use() const noexcept { return last != 0; }
+    /// Planes are numbered in 31 bits (lamella/slicing/plan.hpp).
+    void set_last(std::uint32_t rank) noexcept { last = rank & 0x7FFFFFFF; }
 };
 
 /// The planes [first, last) that cut an edge: from the rank of its lower end to that of its upper one.

@@ -198,7 +198,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             to.next_high = from.next_high;
             to.split = from.split;
             to.triangle = from.triangle;
-            to.last = span.last & 0x7FFFFFFF;
+            to.set_last(span.last);
             graph.spans[node] = span;
             placed[link] = true;
         };
