@@ -2,6 +2,8 @@
 
 // A zip archive around the bytes of a fuzzer, which would never hit upon its checksums.
 
+#include <zlib.h>
+
 #include <cstdint>
 #include <initializer_list>
 #include <string>
@@ -10,14 +12,8 @@
 
 namespace lamella::fuzz {
 
-inline std::uint32_t crc32(std::string_view bytes) {
-    std::uint32_t crc = 0xFFFFFFFF;
-    for (const char byte : bytes) {
-        crc ^= static_cast<unsigned char>(byte);
-        for (int bit = 0; bit < 8; ++bit)
-            crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xEDB88320U : 0U);
-    }
-    return ~crc;
+inline std::uint64_t checksum(std::string_view bytes) {
+    return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
 }
 
 /// A zip archive of stored entries.
@@ -27,7 +23,7 @@ class Archive {
         const std::size_t place = file_.size();
         const auto head = [&](std::string& out) {
             put(out, {20, 0, 0, 0, 33}, 2);
-            put(out, {crc32(content), content.size(), content.size()}, 4);
+            put(out, {checksum(content), content.size(), content.size()}, 4);
             put(out, {name.size(), 0}, 2);
         };
         put(file_, {0x04034b50}, 4);
