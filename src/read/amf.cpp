@@ -27,7 +27,7 @@ namespace lamella {
 namespace {
 
 constexpr std::size_t longest_preface = 1U << 16;
-constexpr std::size_t longest_name = 200;
+constexpr std::size_t longest_quote = 200;
 
 std::string_view view(const ByteSource& source) {
     return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
@@ -76,7 +76,7 @@ class AmfReader {
                              zip.entries().size()));
         if (count > 1)
             remarks_.add(fmt::format("the archive holds {} AMF files; took the first, '{}'", count,
-                                     printable(found->name, longest_name)));
+                                     printable(found->name, longest_quote)));
         ByteSource part = zip.read(*found);
         limits_.add_bytes(zip.unpacked());
         return part;
@@ -131,7 +131,7 @@ class AmfReader {
         const auto add = [&](const std::string& id, const std::string& name, std::size_t line,
                              std::string_view what) {
             const std::string place =
-                fmt::format("line {}: {} '{}'", line, what, printable(id, longest_name));
+                fmt::format("line {}: {} '{}'", line, what, printable(id, longest_quote));
             if (!numbers_.emplace(id, nodes_.size()).second)
                 fail(fmt::format("{}: the id is there for the second time", place));
             nodes_.push_back({name, {}, scaling(unit, unit, unit), {}, place});
@@ -148,7 +148,7 @@ class AmfReader {
                 const auto target = numbers_.find(instance.object);
                 if (target == numbers_.end())
                     fail(fmt::format("line {}: found objectid '{}', but there is nothing of that id",
-                                     instance.line, printable(instance.object, longest_name)));
+                                     instance.line, printable(instance.object, longest_quote)));
                 used[target->second] = true;
                 if (instance.number("printable", 1) == 0) {
                     ++not_printable_;

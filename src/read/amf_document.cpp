@@ -22,7 +22,7 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t longest_name = 200;
+constexpr std::size_t longest_label = 200;
 constexpr std::size_t longest_title = 1000;
 constexpr std::size_t longest_text = 1U << 16; ///< that anybody reads
 constexpr std::uint64_t node_bytes = 80;       ///< of a map, about
@@ -326,9 +326,9 @@ class DocumentReader {
         if (in == Where::amf)
             result_.name = printable(text, longest_title);
         else if (in == Where::object)
-            object().name = printable(text, longest_name);
+            object().name = printable(text, longest_label);
         else
-            result_.constellations.back().name = printable(text, longest_name);
+            result_.constellations.back().name = printable(text, longest_label);
     }
 
     Where start_number(std::string_view element) {
