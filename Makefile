@@ -36,7 +36,7 @@ test: packages  ## build everything and run the tests: a few minutes
 	cmake --build build
 	$(CTEST) --test-dir build
 
-test-all: test-large test-asan test-tsan test-fuzz test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
+test-all: test-large test-asan test-tsan test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
@@ -57,15 +57,11 @@ test-tsan: packages-all
 	cmake --build build-tsan --target $(THREADED:%=lamella_%_test)
 	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$' --exclude-regex '^($(UNTHREADED))\.'
 
-test-fuzz: packages-all
-	cmake --preset fuzz
-	cmake --build build-fuzz
-	$(CTEST) --test-dir build-fuzz
-
+# What was compiled for the static library serves the shared one.
 test-shared: packages-all
-	cmake --preset shared
-	cmake --build build-shared --target lamella_programs lamella_app_files examples/all
-	$(CTEST) --test-dir build-shared --label-regex '^house$$'
+	cmake --preset release -D BUILD_SHARED_LIBS=ON
+	cmake --build build --target lamella_programs lamella_app_files examples/all
+	$(CTEST) --test-dir build --label-regex '^house$$'
 
 bench: packages  ## build and run the benchmarks (bench/README.md)
 	@tools/install_packages.sh tools/packages-bench.txt
@@ -135,8 +131,8 @@ format-check:  ## fail where `make format` would change something
 
 lint: packages  ## static analysis by .clang-tidy
 	@tools/install_packages.sh tools/packages-lint.txt
-	cmake --preset release
-	run-clang-tidy -quiet -j $(JOBS) -p build
+	cmake --preset debug
+	run-clang-tidy -quiet -j $(JOBS) -p build-debug
 
 install: build  ## install to PREFIX (default /usr/local)
 	cmake --build build --target lamella_app_files
@@ -146,6 +142,6 @@ clean:  ## remove what was built
 	rm -rf build build-* out
 
 .NOTPARALLEL:
-.PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan test-fuzz \
+.PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
         test-shared bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench page-bench paper \
         format format-check lint install clean

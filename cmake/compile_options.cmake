@@ -8,7 +8,8 @@ target_compile_options(
     INTERFACE -Wall
               -Wextra
               -Wpedantic
-              -Wshadow
+              # In sources that are compiled together, names of their own would shadow those of others.
+              $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>
               -Wconversion
               -Wno-sign-conversion
               -Wnon-virtual-dtor
@@ -24,7 +25,13 @@ if(LAMELLA_SANITIZE)
                                                      -fno-sanitize-recover=all)
     target_link_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE})
 endif()
-# libFuzzer steers by what it sees reached: the library must tell, not the fuzz targets alone.
-if(LAMELLA_FUZZ)
-    target_compile_options(lamella_options INTERFACE -fsanitize=fuzzer-no-link)
-endif()
+
+# Compiles the sources of a target some at a time, since their headers take longer than they do. ALONE: sources whose
+# own names are those of others, too. With -D CMAKE_UNITY_BUILD=OFF each is compiled by itself.
+function(lamella_compile_together target)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "AT_A_TIME" "ALONE")
+    if(NOT DEFINED CMAKE_UNITY_BUILD OR CMAKE_UNITY_BUILD)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${arg_AT_A_TIME})
+        set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+endfunction()
