@@ -3,9 +3,10 @@
 // Which of many keys are equal? In parallel, in expected linear time, and the same answer for any number of
 // threads. The heart of welding, and of whatever else pairs things up.
 //
-//     partition   each key goes to the partition that the top bits of its hash name; partitions are small
-//                 enough to be worked on within a core's cache, and the order of the keys is kept
-//     join        within a partition, a small hash table finds for each key the first one equal to it
+//     partition   each key goes to the partition that the top bits of its hash name, a block of keys at a
+//                 time while it is in a core's cache; the order of the keys is kept
+//     join        within a partition, which fits into the cache, too, a small hash table finds for each key
+//                 the first one equal to it
 //
 // Keys come from files, and files may be hostile: where a probe in a table gets long, the partition is sorted
 // instead. Crafted keys cost O(n log n), never O(n^2).
@@ -14,12 +15,14 @@
 #include "core/pages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -31,22 +34,14 @@ namespace lamella {
     return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
 }
 
-/// Calls found(first, other, worker) for every key that is not the first of its kind: `first` is the lowest
-/// id of an equal key, `worker` the one that makes the call. The ids of keys are their positions in all parts
-/// together, one part after the other; below 2^32 in all.
-///
-/// hash(key) gives 64 bits, equal for equal keys. Calls come from all workers at once; those for equal keys
-/// come from one worker and with ascending `other`. Hands out parts to workers, so there should be as many.
-template <class Key, class Hash, class Found>
-requires std::is_trivially_copyable_v<Key> && std::totally_ordered<Key>
-void join_equal_keys(Executor& executor, std::span<const std::span<const Key>> parts, const Hash& hash,
-                     const Found& found);
-
 namespace key_groups {
 
 /// Keys per partition: keys and table stay within the second-level cache.
 inline constexpr std::size_t partition_keys = std::size_t{1} << 13;
 inline constexpr unsigned most_partition_bits = 12;
+/// Keys of a block that a partition gets, at least, on average: what lies apart is slow to collect.
+inline constexpr std::size_t partition_share = 8;
+inline constexpr std::size_t least_block = std::size_t{1} << 14;
 /// With tables at most half full, a probe this long does not happen by chance.
 inline constexpr unsigned longest_probe = 64;
 
@@ -106,58 +101,128 @@ void join_partition(std::span<const Record<Key>> records, std::vector<std::uint3
 
 } // namespace key_groups
 
+/// Keys with ids, sorted into partitions block by block, to be joined when all are there. Keys of the same
+/// kind must have the same hash; what a hash says already need not be in the key.
+template <class Key>
+class KeyPartitions {
+    static_assert(std::is_trivially_copyable_v<Key> && std::totally_ordered<Key>);
+
+  public:
+    using Record = key_groups::Record<Key>;
+
+    /// For about so many keys.
+    explicit KeyPartitions(std::uint64_t expected)
+        : bits_(std::min(static_cast<unsigned>(
+                             std::countr_zero(std::bit_ceil(expected / key_groups::partition_keys + 1))),
+                         key_groups::most_partition_bits)) {}
+
+    /// How many keys a block holds at most; no more than 2^15, which 16 bits count.
+    [[nodiscard]] std::uint32_t block_size() const noexcept {
+        return static_cast<std::uint32_t>(
+            std::max(key_groups::least_block, partitions() * key_groups::partition_share));
+    }
+
+    /// Before the first block is put: there will be `blocks` of them at most, of `size` keys at most.
+    void reserve(std::uint64_t blocks, std::uint32_t size) {
+        size_ = size;
+        records_ = PageArray<Record>(blocks * size);
+        counts_ = PageArray<std::uint32_t>(blocks, Fill::zero);
+        begins_ = PageArray<std::uint16_t>(blocks * partitions());
+    }
+
+    /// Puts block number `block`, each once, from any thread; those that are never put are empty. hash(i):
+    /// 64 bits; record(i): key and id. Ids ascend within a block, and from block to block.
+    template <class Hash, class MakeRecord>
+    void put(std::uint64_t block, std::uint32_t count, const Hash& hash, const MakeRecord& record) const {
+        std::array<std::uint16_t, std::size_t{1} << key_groups::most_partition_bits> next;
+        std::fill_n(next.begin(), partitions(), std::uint16_t{0});
+        for (std::uint32_t i = 0; i < count; ++i)
+            ++next[partition(hash(i))];
+        std::uint16_t* const begins = begins_.data() + block * partitions();
+        std::uint16_t sum = 0;
+        for (std::size_t q = 0; q < partitions(); ++q) {
+            begins[q] = sum;
+            sum = static_cast<std::uint16_t>(sum + std::exchange(next[q], sum));
+        }
+        Record* const records = records_.data() + block * size_;
+        for (std::uint32_t i = 0; i < count; ++i)
+            records[next[partition(hash(i))]++] = record(i);
+        counts_[block] = count;
+    }
+
+    /// Calls found(first, other, worker) for every key that is not the first of its kind: `first` is the
+    /// lowest id of an equal key, `worker` the one that makes the call. Calls come from all workers at once;
+    /// those for equal keys come from one worker and with ascending `other`. hash(key): 64 bits, of which the
+    /// lower ones must differ within a partition.
+    template <class Hash, class Found>
+    void join(Executor& executor, const Hash& hash, const Found& found) const {
+        struct Worker {
+            std::vector<Record> records;
+            std::vector<std::uint32_t> table;
+        };
+        std::vector<Worker> workers(executor.workers());
+        executor.for_chunks(partitions(), 1, [&](std::size_t q, std::size_t, unsigned w) {
+            Worker& worker = workers[w];
+            worker.records.clear();
+            for (std::size_t block = 0; block < counts_.size(); ++block) {
+                const std::uint16_t* const begins = begins_.data() + block * partitions();
+                const Record* const records = records_.data() + block * size_;
+                if (counts_[block] != 0)
+                    worker.records.insert(worker.records.end(), records + begins[q],
+                                          records + (q + 1 < partitions() ? begins[q + 1] : counts_[block]));
+            }
+            key_groups::join_partition<Key>(worker.records, worker.table, w, hash, found);
+        });
+    }
+
+  private:
+    [[nodiscard]] std::size_t partitions() const noexcept { return std::size_t{1} << bits_; }
+    // Shifted in two steps, because a shift by 64 is none.
+    [[nodiscard]] std::size_t partition(std::uint64_t hash) const noexcept {
+        return hash >> 1 >> (63 - bits_);
+    }
+
+    unsigned bits_;
+    std::uint32_t size_ = 0;
+    PageArray<Record> records_;       // each block's by partition
+    PageArray<std::uint32_t> counts_; // per block
+    PageArray<std::uint16_t> begins_; // per block and partition
+};
+
+/// The same for keys that lie in memory: calls found(first, other, worker) as KeyPartitions::join does. The
+/// ids of keys are their positions in all parts together, one part after the other; below 2^32 in all.
+/// hash(key) gives 64 bits, equal for equal keys.
 template <class Key, class Hash, class Found>
-requires std::is_trivially_copyable_v<Key> && std::totally_ordered<Key>
 void join_equal_keys(Executor& executor, std::span<const std::span<const Key>> parts, const Hash& hash,
                      const Found& found) {
-    using key_groups::Record;
-    std::size_t keys = 0;
-    std::vector<std::size_t> first_id;
-    for (const std::span<const Key> part : parts) {
-        first_id.push_back(keys);
-        keys += part.size();
-    }
-    const std::size_t wanted = std::bit_ceil(keys / key_groups::partition_keys + 1);
-    const unsigned bits =
-        std::min(static_cast<unsigned>(std::countr_zero(wanted)), key_groups::most_partition_bits);
-    const std::size_t partitions = std::size_t{1} << bits;
-    // Shifted in two steps, because a shift by 64 is none.
-    const auto partition = [&](const Key& key) {
-        return hash(key) >> 1 >> (63 - bits);
+    struct Block {
+        std::span<const Key> keys;
+        std::uint32_t first_id;
     };
-
-    // Count, prefix sum, fill. next[part][partition]: where the part's next key of that partition goes.
-    std::vector<std::vector<std::size_t>> next(parts.size(), std::vector<std::size_t>(partitions, 0));
-    executor.for_chunks(parts.size(), 1, [&](std::size_t p, std::size_t, unsigned) {
-        for (const Key& key : parts[p])
-            ++next[p][partition(key)];
-    });
-    std::vector<std::size_t> begin(partitions + 1, 0);
-    std::size_t sum = 0;
-    for (std::size_t q = 0; q < partitions; ++q) {
-        begin[q] = sum;
-        for (std::vector<std::size_t>& counts : next) {
-            const std::size_t count = counts[q];
-            counts[q] = sum;
-            sum += count;
+    std::size_t count = 0;
+    for (const std::span<const Key> part : parts)
+        count += part.size();
+    KeyPartitions<Key> partitions(count);
+    std::vector<Block> blocks;
+    std::uint32_t id = 0;
+    for (std::span<const Key> part : parts)
+        while (!part.empty()) {
+            const std::size_t size = std::min<std::size_t>(part.size(), partitions.block_size());
+            blocks.push_back({part.first(size), id});
+            part = part.subspan(size);
+            id += static_cast<std::uint32_t>(size);
         }
-    }
-    begin[partitions] = sum;
-    const PageArray<Record<Key>> records(keys);
-    executor.for_chunks(parts.size(), 1, [&](std::size_t p, std::size_t, unsigned) {
-        std::vector<std::size_t>& to = next[p];
-        for (std::size_t i = 0; i < parts[p].size(); ++i) {
-            const Key& key = parts[p][i];
-            records[to[partition(key)]++] = {key, static_cast<std::uint32_t>(first_id[p] + i)};
-        }
+    partitions.reserve(blocks.size(), partitions.block_size());
+    executor.for_chunks(blocks.size(), 1, [&](std::size_t b, std::size_t, unsigned) {
+        const Block& block = blocks[b];
+        partitions.put(
+            b, static_cast<std::uint32_t>(block.keys.size()),
+            [&](std::uint32_t i) { return hash(block.keys[i]); },
+            [&](std::uint32_t i) {
+                return key_groups::Record<Key>{block.keys[i], block.first_id + i};
+            });
     });
-
-    std::vector<std::vector<std::uint32_t>> tables(executor.workers());
-    executor.for_chunks(partitions, 1, [&](std::size_t q, std::size_t, unsigned worker) {
-        const std::span<const Record<Key>> all = records.span();
-        key_groups::join_partition(all.subspan(begin[q], begin[q + 1] - begin[q]), tables[worker], worker,
-                                   hash, found);
-    });
+    partitions.join(executor, hash, found);
 }
 
 } // namespace lamella

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/key_groups.hpp"
+#include "slicing/edge_hash.hpp"
 #include "slicing/edge_pairing.hpp"
 
 #include <fmt/format.h>
@@ -31,16 +32,9 @@ namespace lamella {
 
 namespace {
 
-/// An edge's hash, as it is kept: in halves, so that with a number beside it it takes 12 bytes, not 16.
-struct EdgeHash {
-    explicit EdgeHash(std::uint64_t hash)
-        : high(static_cast<std::uint32_t>(hash >> 32)), low(static_cast<std::uint32_t>(hash)) {}
-    [[nodiscard]] std::uint64_t bits() const { return std::uint64_t{high} << 32 | low; }
-    friend auto operator<=>(const EdgeHash&, const EdgeHash&) = default;
-
-    std::uint32_t high;
-    std::uint32_t low;
-};
+/// Nodes by what is left of their edges' hashes beside the partition: its lower half. Together they are wide
+/// enough that edges which only have that in common are rare.
+using NodePartitions = KeyPartitions<std::uint32_t>;
 
 // What triangles are made of. Corner: what tells a corner from others, as bits: a vertex has the same ones in
 // all its triangles.
@@ -77,9 +71,7 @@ struct FloatCorners {
         }
         return true;
     }
-    [[nodiscard]] static std::uint64_t hash(const Corner& c) {
-        return c.xy * 0x9E3779B97F4A7C15 + c.z * 0xD1B54A32D192ED03;
-    }
+    [[nodiscard]] static std::uint64_t hash(const Corner& c) { return corner_hash(c.xy, c.z); }
     [[nodiscard]] static bool is(const Point3f& stored, const Corner& c) {
         std::uint64_t xy;
         std::memcpy(&xy, &stored, sizeof xy);
@@ -148,18 +140,17 @@ class CutNodePool {
   public:
     CutNodePool(std::uint64_t capacity, std::uint32_t block) : capacity_(capacity), block_(block) {}
 
-    struct Cursor {
-        std::uint32_t next = 0;
+    struct Block {
+        std::uint64_t number = 0;
+        std::uint32_t begin = 0;
         std::uint32_t end = 0;
     };
 
-    std::uint32_t take(Cursor& cursor) {
-        if (cursor.next == cursor.end) {
-            const std::uint64_t begin = used_.fetch_add(block_, std::memory_order_relaxed);
-            cursor.next = static_cast<std::uint32_t>(begin);
-            cursor.end = static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + block_, capacity_));
-        }
-        return cursor.next++;
+    /// A block that nobody has.
+    Block take() {
+        const std::uint64_t begin = used_.fetch_add(block_, std::memory_order_relaxed);
+        return {begin / block_, static_cast<std::uint32_t>(begin),
+                static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + block_, capacity_))};
     }
     [[nodiscard]] std::uint32_t used() const {
         return static_cast<std::uint32_t>(std::min<std::uint64_t>(used_.load(), capacity_));
@@ -181,10 +172,10 @@ class alignas(128) Collector {
 
   public:
     /// `table_size` is a power of two.
-    Collector(const Corners& corners, const CutGraph<Ends>& graph, const PageArray<EdgeHash>& hashes,
-              CutNodePool& pool, std::size_t table_size)
-        : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), hashes_(hashes.data()),
-          pool_(pool), table_(table_size, Fill::zero) {}
+    Collector(const Corners& corners, const CutGraph<Ends>& graph, const NodePartitions& partitions,
+              CutNodePool& pool, std::uint32_t block_size, std::size_t table_size)
+        : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), partitions_(partitions),
+          pool_(pool), hashes_(block_size), table_(table_size, Fill::zero) {}
 
     /// Adds the triangles [begin, end).
     void add(std::uint64_t begin, std::uint64_t end) {
@@ -192,8 +183,8 @@ class alignas(128) Collector {
             add(i);
     }
 
-    /// Numbers that were taken from the pool but not used.
-    [[nodiscard]] CutNodePool::Cursor unused() const { return cursor_; }
+    /// After the last triangle.
+    void finish() { put_hashes(); }
 
   private:
     /// The node last seen with this part of a hash, + 1, so that zero is empty.
@@ -218,8 +209,8 @@ class alignas(128) Collector {
             const bool up = rank[from] < rank[to];
             const std::size_t low = up ? from : to;
             const std::size_t high = up ? to : from;
-            return find_or_add(corner[low], corner[high], mix(hash[low], hash[high]), {rank[low], rank[high]},
-                               up);
+            return find_or_add(corner[low], corner[high], edge_hash(hash[low], hash[high]),
+                               {rank[low], rank[high]}, up);
         };
         const std::uint32_t node01 = node_of(0, 1);
         const std::uint32_t node12 = node_of(1, 2);
@@ -258,7 +249,7 @@ class alignas(128) Collector {
                 return found;
             }
         }
-        const std::uint32_t added = pool_.take(cursor_);
+        const std::uint32_t added = take_number();
         Node& node = nodes_[added];
         node.next_low = no_node;
         node.next_high = no_node;
@@ -269,17 +260,37 @@ class alignas(128) Collector {
         Corners::store(low, node.ends.low);
         Corners::store(high, node.ends.high);
         spans_[added] = span;
-        hashes_[added] = EdgeHash(hash);
+        hashes_[added - block_.begin] = hash;
         slot = {tag, added + 1};
         return added;
+    }
+
+    std::uint32_t take_number() {
+        if (next_ == block_.end) {
+            put_hashes();
+            block_ = pool_.take();
+            next_ = block_.begin;
+        }
+        return next_++;
+    }
+
+    void put_hashes() {
+        if (next_ != block_.begin)
+            partitions_.put(
+                block_.number, next_ - block_.begin, [&](std::uint32_t i) { return hashes_[i]; },
+                [&](std::uint32_t i) {
+                    return NodePartitions::Record{static_cast<std::uint32_t>(hashes_[i]), block_.begin + i};
+                });
     }
 
     Corners corners_;
     Node* nodes_;
     PlaneSpan* spans_;
-    EdgeHash* hashes_;
+    const NodePartitions& partitions_;
     CutNodePool& pool_;
-    CutNodePool::Cursor cursor_;
+    CutNodePool::Block block_;
+    std::uint32_t next_ = 0;          ///< number within the block
+    PageArray<std::uint64_t> hashes_; ///< of the block's nodes
     PageArray<Slot> table_;
 };
 
@@ -292,13 +303,14 @@ class Builder {
     Builder(const Corners& corners, std::uint64_t triangles, const Point3* vertices, Executor& executor,
             ProgressMeter& progress)
         : corners_(corners), triangles_(triangles), executor_(executor), progress_(progress),
-          workers_(executor.workers()) {
+          workers_(executor.workers()), partitions_(triangles * 3 / 2) {
         graph_.vertices = vertices;
     }
 
     CutGraph<Ends> build() {
         // At most three nodes for each triangle, and one partly used block for each worker.
-        const std::uint64_t block = std::clamp<std::uint64_t>(3 * triangles_ / workers_ + 3, 3, 1U << 14);
+        const auto block = static_cast<std::uint32_t>(
+            std::clamp<std::uint64_t>(3 * triangles_ / workers_ + 3, 3, partitions_.block_size()));
         const std::uint64_t capacity = 3 * triangles_ + block * workers_;
         if (capacity >= no_node)
             throw Error(ErrorKind::limit,
@@ -307,10 +319,10 @@ class Builder {
                                     triangles_, no_node / 3));
         graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
         graph_.spans = PageArray<PlaneSpan>(capacity, Fill::zero);
-        hashes_ = PageArray<EdgeHash>(capacity);
-        CutNodePool pool(capacity, static_cast<std::uint32_t>(block));
+        partitions_.reserve(capacity / block + 1, block);
+        CutNodePool pool(capacity, block);
 
-        collect(pool);
+        collect(pool, block);
         graph_.count = pool.used();
         join();
         if (!crowded_.empty())
@@ -332,7 +344,7 @@ class Builder {
         std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, repeated
     };
 
-    void collect(CutNodePool& pool) {
+    void collect(CutNodePool& pool, std::uint32_t block) {
         const std::uint64_t expected = triangles_ * 3 / 2;
         const int table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
         worker_.resize(workers_);
@@ -341,28 +353,19 @@ class Builder {
         executor_.for_chunks(triangles_, chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned w) {
             std::unique_ptr<Collector<Corners>>& collector = worker_[w].collector;
             if (!collector)
-                collector = std::make_unique<Collector<Corners>>(corners_, graph_, hashes_, pool,
+                collector = std::make_unique<Collector<Corners>>(corners_, graph_, partitions_, pool, block,
                                                                  std::size_t{1} << table_bits);
             collector->add(begin, end);
             progress_.add(end - begin);
         });
+        for (const Worker& worker : worker_)
+            if (worker.collector)
+                worker.collector->finish();
     }
 
     void join() {
-        // Numbers that were handed out but not used take part with hashes of their own.
-        for (const Worker& worker : worker_)
-            if (worker.collector)
-                for (auto [id, end] = worker.collector->unused(); id < end; ++id)
-                    hashes_[id] = EdgeHash(mix(id, graph_.count));
-
-        std::vector<std::span<const EdgeHash>> parts;
-        for (std::uint64_t w = 0; w < workers_; ++w) {
-            const std::uint64_t begin = graph_.count * w / workers_;
-            const std::uint64_t end = graph_.count * (w + 1) / workers_;
-            parts.emplace_back(hashes_.span().subspan(begin, end - begin));
-        }
-        join_equal_keys<EdgeHash>(
-            executor_, parts, [](EdgeHash hash) { return hash.bits(); },
+        partitions_.join(
+            executor_, [](std::uint32_t hash) { return hash; },
             [&](std::uint32_t first, std::uint32_t other, unsigned w) {
                 // The two nodes may lie anywhere: they are looked at a while after they are asked for.
                 Worker& worker = worker_[w];
@@ -424,7 +427,7 @@ class Builder {
     ProgressMeter& progress_;
     unsigned workers_;
     std::vector<Worker> worker_;
-    PageArray<EdgeHash> hashes_; // per node
+    NodePartitions partitions_;
     CutGraph<Ends> graph_;
     std::vector<std::uint32_t> crowded_; // nodes that share their ends with others, in no order, repeated
 };

@@ -108,6 +108,62 @@ TEST(KeyGroups, ReportsEqualKeysInAscendingOrder) {
                                    });
 }
 
+TEST(KeyPartitions, JoinsWhatIsPutInAnyOrderOfBlocksSomeOfThemPartlyFullOrMissing) {
+    const std::uint32_t size = 1000;
+    const std::vector<std::uint64_t> keys = random_keys(40 * size, 9000, 6);
+    for (const std::uint64_t expected :
+         {std::uint64_t{0}, std::uint64_t{keys.size()}, std::uint64_t{1} << 27}) {
+        KeyPartitions<std::uint64_t> partitions(expected);
+        partitions.reserve(41, size);
+        Pairs wanted;
+        std::map<std::uint64_t, std::uint32_t> seen;
+        for (std::uint32_t block = 0; block < 40; ++block) {
+            const std::uint32_t count = block % 3 == 2 ? 0 : block % 3 == 1 ? size / 2 : size;
+            for (std::uint32_t id = block * size; id < block * size + count; ++id)
+                if (const auto [at, fresh] = seen.try_emplace(keys[id], id); !fresh)
+                    wanted[id] = at->second;
+        }
+        for (std::uint32_t block = 40; block-- > 0;)
+            if (const std::uint32_t count = block % 3 == 1 ? size / 2 : size; block % 3 != 2)
+                partitions.put(
+                    block, count, [&](std::uint32_t i) { return good_hash(keys[block * size + i]); },
+                    [&](std::uint32_t i) {
+                        return key_groups::Record<std::uint64_t>{keys[block * size + i], block * size + i};
+                    });
+        Executor executor({.threads = 3});
+        std::mutex mutex;
+        Pairs found;
+        partitions.join(executor, good_hash, [&](std::uint32_t first, std::uint32_t other, unsigned) {
+            const std::lock_guard lock(mutex);
+            EXPECT_TRUE(found.emplace(other, first).second);
+        });
+        EXPECT_EQ(found, wanted);
+    }
+}
+
+TEST(KeyPartitions, AFullBlockInTheLastOfAllPartitionsIsFound) {
+    KeyPartitions<std::uint32_t> partitions(std::uint64_t{1} << 30);
+    const std::uint32_t size = partitions.block_size();
+    EXPECT_GE(size, key_groups::least_block);
+    partitions.reserve(1, size);
+    const auto record = [&](std::uint32_t i) {
+        return key_groups::Record<std::uint32_t>{i / 2, i};
+    };
+    for (const std::uint64_t hash : {std::uint64_t{0}, ~std::uint64_t{0}}) {
+        partitions.put(
+            0, size, [&](std::uint32_t) { return hash; }, record);
+        Executor executor({.threads = 1});
+        std::uint32_t pairs = 0;
+        partitions.join(
+            executor, [](std::uint32_t key) { return mix(key, 1); },
+            [&](std::uint32_t first, std::uint32_t other, unsigned) {
+                EXPECT_EQ(first + 1, other);
+                ++pairs;
+            });
+        EXPECT_EQ(pairs, size / 2);
+    }
+}
+
 TEST(Mix, SpreadsNeighbouringNumbersOverTopAndBottomBits) {
     std::unordered_set<std::uint64_t> top;
     std::unordered_set<std::uint64_t> bottom;
