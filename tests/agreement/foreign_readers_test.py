@@ -1,4 +1,5 @@
-"""Slice files in the hands of programs that are not ours: NumPy, GDAL, Shapely, ezdxf, lib3mf, Info-ZIP.
+"""Slice files in the hands of programs that are not ours: NumPy, GDAL, Shapely, ezdxf, lib3mf, svgelements, librsvg,
+Info-ZIP.
 
 Each must find the layers that our exact JSON has, to the resolution of its format.
 """
@@ -11,9 +12,11 @@ import sys
 from pathlib import Path
 
 import ezdxf
+import matplotlib.image
 import numpy
 import shapely.geometry
 import shapely.wkt
+import svgelements
 from osgeo import ogr
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "app"))
@@ -26,6 +29,24 @@ csv.field_size_limit(1 << 30)
 def area(ring):
     x, y = numpy.asarray(ring).T
     return float(numpy.dot(x, numpy.roll(y, -1)) - numpy.dot(y, numpy.roll(x, -1))) / 2
+
+
+SLIC3R = "{http://slic3r.org/namespaces/slic3r}"
+
+
+def bounds(points):
+    return numpy.concatenate([points.min(axis=0), points.max(axis=0)])
+
+
+def svg_rings(element):
+    """The closed rings of a shape, with its transforms, in pixels of the document."""
+    rings = []
+    for part in svgelements.Path(element).as_subpaths():
+        path = svgelements.Path(part)
+        assert isinstance(path[-1], svgelements.Close), path
+        assert all(isinstance(segment, (svgelements.Move, svgelements.Line, svgelements.Close)) for segment in path)
+        rings.append(numpy.array([(segment.end.x, segment.end.y) for segment in path[:-1]]))
+    return rings
 
 
 class ForeignReaders(ProgramTest):
@@ -147,6 +168,91 @@ class ForeignReaders(ProgramTest):
                 total += area(points[list(indices)])
             found.append(total)
         self.assert_areas(found)
+
+    def rings_of(self, layer):
+        return [numpy.reshape(ring, (-1, 2)) for ring in layer["parts"][0]["rings"]]
+
+    def assert_bounds(self, found, layer, tolerance):
+        """Of rings in the coordinates of the part."""
+        expected = bounds(numpy.concatenate(self.rings_of(layer)))
+        self.assertLess(abs(bounds(numpy.concatenate(found)) - expected).max(), tolerance)
+
+    def test_svgelements_finds_the_layers_of_one_svg(self):
+        document = svgelements.SVG.parse(self.slice("part.svg"))
+        corner = numpy.array([float(v) for v in document.values["data-lamella-origin"].split()])
+        groups = [e for e in document if isinstance(e, svgelements.Group)]
+        self.assertEqual(len(groups), len(self.layers))
+        found = []
+        for group, layer in zip(groups, self.layers):
+            self.assertAlmostEqual(float(group.values[SLIC3R + "z"]), layer["top"], delta=1e-4)
+            self.assertAlmostEqual(float(group.values[SLIC3R + "slice-z"]), layer["z"], delta=1e-4)
+            self.assertAlmostEqual(float(group.values[SLIC3R + "layer-height"]), layer["top"] - layer["bottom"],
+                                   delta=1e-4)
+            rings = []
+            for shape in group:
+                self.assertIsInstance(shape, svgelements.Polygon)
+                ring, = svg_rings(shape)
+                self.assertEqual(shape.values[SLIC3R + "type"], "contour" if area(ring) > 0 else "hole")
+                self.assertEqual(shape.fill, "white" if area(ring) > 0 else "black")
+                rings.append(ring + corner)
+            self.assertEqual(len(rings), len(self.rings_of(layer)))
+            self.assert_bounds(rings, layer, 0.0011)
+            found.append(sum(area(ring) for ring in rings))
+        self.assert_areas(found)
+
+    def test_svgelements_finds_a_layer_in_each_svg_picture(self):
+        folder = Path(self.slice_pictures())
+        found = []
+        for layer in self.layers:
+            # A pixel is a millimetre then, but for the digits of an inch that svgelements leaves out.
+            document = svgelements.SVG.parse(folder / f"layer_{layer['index']:05}.svg", ppi=25.4)
+            box = document.viewbox
+            self.assertAlmostEqual(document.width, box.width, delta=1e-4)
+            self.assertAlmostEqual(document.height, box.height, delta=1e-4)
+            rings = []
+            for shape in document.elements(lambda e: isinstance(e, svgelements.Path)):
+                self.assertEqual(shape.values["fill-rule"], "evenodd")
+                # From the upper left corner downwards, as a viewer has it; the part's y runs upwards.
+                rings += [(ring + (box.x, box.y)) * (1, -1) for ring in svg_rings(shape)]
+            self.assertEqual(len(rings), len(self.rings_of(layer)))
+            self.assert_bounds(rings, layer, 0.0011)
+            found.append(sum(area(ring) for ring in rings))
+        self.assert_areas(found)
+
+    def slice_pictures(self):
+        self.succeed("slice", "part.stl", "-o", "pictures", "--format", "svg-layers", "--layer-height", "1")
+        return str(self.path("pictures"))
+
+    def painted(self, source, *options):
+        """Rows and columns of red, green, blue and alpha, from 0 to 1."""
+        picture = str(self.path("picture.png"))
+        subprocess.run(["rsvg-convert", source, *options, "-o", picture], check=True)
+        return matplotlib.image.imread(picture)
+
+    def some_layers(self):
+        """Those with holes, and a few others."""
+        holes = [i for i, layer in enumerate(self.layers) if any(area(ring) < 0 for ring in self.rings_of(layer))]
+        self.assertTrue(holes)
+        return holes + list(range(0, len(self.layers), 10))
+
+    def test_librsvg_paints_the_layers_of_one_svg(self):
+        source = self.slice("part.svg")
+        scale = 20
+        for i in self.some_layers():
+            pixels = self.painted(source, "--export-id", f"layer{i}", "--zoom", str(scale))
+            white = (pixels[..., 0] * pixels[..., 3]).sum() / scale**2
+            self.assertAlmostEqual(white, self.areas[i], delta=self.tolerances[i])
+
+    def test_librsvg_paints_svg_pictures(self):
+        folder = Path(self.slice_pictures())
+        dots_per_mm = 20
+        resolution = str(25.4 * dots_per_mm)
+        self.write("fill.css", "path { stroke: none; fill: #000000 } rect { fill: #ffffff }")
+        for i in self.some_layers():
+            pixels = self.painted(folder / f"layer_{i:05}.svg", "--dpi-x", resolution, "--dpi-y", resolution,
+                                  "--stylesheet", self.path("fill.css"))
+            black = (1 - pixels[..., :3].mean(axis=2)).sum() / dots_per_mm**2
+            self.assertAlmostEqual(black, self.areas[i], delta=2 * self.tolerances[i])
 
     def test_info_zip_finds_no_errors(self):
         for name in ["part.npz", "part.3mf"]:
