@@ -28,7 +28,7 @@ using test::Soup;
 using test::welded;
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 using Filtered = CGAL::Exact_predicates_inexact_constructions_kernel; // exact on the given doubles
-using Mesh = CGAL::Surface_mesh<Exact::Point_3>;
+using ExactMesh = CGAL::Surface_mesh<Exact::Point_3>;
 using Polygon2 = CGAL::Polygon_2<Exact>;
 using PolygonSet = CGAL::Polygon_set_2<Exact>;
 
@@ -82,21 +82,21 @@ std::vector<double> random_heights(const IndexedMesh& mesh, Random& random, std:
     return z;
 }
 
-Mesh exact_mesh(const IndexedMesh& welded) {
-    Mesh mesh;
-    std::vector<Mesh::Vertex_index> vertices;
+ExactMesh exact_mesh(const IndexedMesh& welded) {
+    ExactMesh mesh;
+    std::vector<ExactMesh::Vertex_index> vertices;
     for (const Point3& p : welded.vertices)
         vertices.push_back(mesh.add_vertex({p.x, p.y, p.z}));
     for (const auto& [a, b, c] : welded.triangles)
-        EXPECT_NE(mesh.add_face(vertices[a], vertices[b], vertices[c]), Mesh::null_face());
+        EXPECT_NE(mesh.add_face(vertices[a], vertices[b], vertices[c]), ExactMesh::null_face());
     return mesh;
 }
 
 /// The section of a mesh, without a rounding error: counter-clockwise polygons.
 std::vector<Polygon2> exact_section(const IndexedMesh& welded, double z) {
-    const Mesh mesh = exact_mesh(welded);
+    const ExactMesh mesh = exact_mesh(welded);
     std::vector<std::vector<Exact::Point_3>> lines;
-    CGAL::Polygon_mesh_slicer<Mesh, Exact> slicer(mesh);
+    CGAL::Polygon_mesh_slicer<ExactMesh, Exact> slicer(mesh);
     slicer(Exact::Plane_3(0, 0, 1, -Exact::FT(z)), std::back_inserter(lines));
     std::vector<Polygon2> polygons;
     for (const auto& line : lines) {
