@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 
 namespace lamella {
@@ -158,8 +159,12 @@ class Parse {
                                                 last && at_ == end ? XML_TRUE : XML_FALSE);
             if (error_)
                 std::rethrow_exception(error_);
-            if (status != XML_STATUS_OK)
-                fail(fmt::format("the XML is broken: {}", XML_ErrorString(XML_GetErrorCode(parser_.get()))));
+            if (status != XML_STATUS_OK) {
+                const XML_Error code = XML_GetErrorCode(parser_.get());
+                if (code == XML_ERROR_NO_MEMORY)
+                    throw std::bad_alloc();
+                fail(fmt::format("the XML is broken: {}", XML_ErrorString(code)));
+            }
             if (const XML_Index parsed = XML_GetCurrentByteIndex(parser_.get());
                 parsed >= 0 && fed_ - parsed > static_cast<XML_Index>(longest_token + piece))
                 fail(fmt::format("found a tag, text or comment longer than {} MB", longest_token >> 20));

@@ -13,6 +13,9 @@ namespace lamella {
 
 namespace {
 
+/// More than this say nothing that a reader could want; each takes memory.
+constexpr std::size_t most_relationships = std::size_t{1} << 20;
+
 constexpr std::string_view relationships_space =
     "http://schemas.openxmlformats.org/package/2006/relationships";
 
@@ -74,6 +77,10 @@ std::vector<OpcRelationship> OpcPackage::relationships(std::string_view part) co
                         fmt::format("{}, line {}: found a relationship without {}, expected "
                                     "Type and Target",
                                     source.name, line, type.data() == nullptr ? "Type" : "Target"));
+        if (found.size() == most_relationships)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, line {}: found more than {} relationships of one part", source.name,
+                                    line, most_relationships));
         const bool external = attributes.find("TargetMode") == "External";
         found.push_back(
             {std::string(type), external ? std::string(target) : resolve(part, target), external, line});
