@@ -30,6 +30,7 @@ struct CompareArguments {
     std::vector<std::string> inputs;
     std::optional<double> tolerance;
     bool json = false;
+    ReadLimits limits;
     RunOptions run;
 };
 
@@ -113,8 +114,8 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     if (arguments.inputs[0] == "-" && arguments.inputs[1] == "-")
         throw Error(ErrorKind::usage, "standard input holds one file only");
     const Execution execution = arguments.run.execution(context);
-    const LayerFile first = read_layers(arguments.inputs[0], execution);
-    const LayerFile second = read_layers(arguments.inputs[1], execution);
+    const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
+    const LayerFile second = read_layers(arguments.inputs[1], arguments.limits.of_layers(), execution);
     for (const LayerFile* file : {&first, &second})
         for (const std::string& warning : file->warnings)
             context.messages.warn(warning);
@@ -202,7 +203,8 @@ Command compare_command() {
                                  throw Error(ErrorKind::usage, "it cannot be negative");
                          }),
                      flag("json", "print JSON", arguments->json)}},
-                   run_options(arguments->run),
+                   run_options(arguments->run,
+                               {max_memory_option(arguments->limits, "the layers of one of the files take")}),
                    common_options(true)},
         .examples = {{"lamella compare part.cli part.svg", "is it the same part?"},
                      {"lamella compare old.cli new.cli --tolerance 0.01 --json", "for programs"}},

@@ -27,6 +27,7 @@ struct ConvertArguments {
     LayerOutputOptions writing;
     LayerStepOptions making;
     std::string label;
+    ReadLimits limits;
     RunOptions run;
 };
 
@@ -42,7 +43,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
     LayerWriteOptions options = arguments.writing.write_options(format);
     const Execution execution = arguments.run.execution(context);
-    LayerFile file = read_layers(arguments.input, execution);
+    LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
@@ -98,7 +99,9 @@ Command convert_command() {
                               arguments->output = text;
                           }}},
         .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
-                   layer_step_options(arguments->making), run_options(arguments->run), common_options(true)},
+                   layer_step_options(arguments->making),
+                   run_options(arguments->run, {max_memory_option(arguments->limits, "the layers take")}),
+                   common_options(true)},
         .examples = {{"lamella convert part.cli part.svg", "to look at it"},
                      {"lamella convert part.svg part.cli --units-mm 0.005", "for a machine with 5 um steps"}},
         .run = [arguments](const Context& context) {

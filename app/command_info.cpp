@@ -41,6 +41,7 @@ struct InfoArguments {
     std::string picture;
     std::string report;
     PlacementOptions placement; ///< the unit only
+    ReadLimits limits;
     RunOptions run;
 };
 
@@ -162,7 +163,9 @@ int run_info(const InfoArguments& arguments, const Context& context) {
     check_distinct(arguments.input, arguments.picture);
     check_distinct(arguments.input, arguments.report);
     const Execution execution = arguments.run.execution(context);
-    const auto file = read_either(arguments.input, {.strict = arguments.strict}, execution);
+    MeshReadOptions options = arguments.limits.of_meshes();
+    options.strict = arguments.strict;
+    const auto file = read_either(arguments.input, options, execution);
     if (const auto* mesh = std::get_if<MeshFile>(&file))
         return tell_mesh(arguments, *mesh, context, execution);
     return tell_layers(arguments, std::get<LayerFile>(file), context);
@@ -197,7 +200,8 @@ Command info_command() {
                           arguments->report),
                      unit_option(arguments->placement.unit),
                      flag("strict", "exit with code 4 where there is any defect", arguments->strict)}},
-                   run_options(arguments->run),
+                   run_options(arguments->run, {max_triangles_option(arguments->limits),
+                                                max_memory_option(arguments->limits, "what is read takes")}),
                    common_options(true)},
         .examples = {{"lamella info part.stl", "is it closed, how large is it?"},
                      {"lamella info scan.stl --self-intersections --picture scan.svg",

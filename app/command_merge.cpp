@@ -19,6 +19,7 @@ struct MergeArguments {
     std::string output;
     std::vector<std::string> shards;
     LayerOutputOptions writing;
+    ReadLimits limits;
     RunOptions run;
 };
 
@@ -29,8 +30,8 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
     const LayerWriteOptions options = arguments.writing.write_options(format);
     const Execution execution = arguments.run.execution(context);
     check_stamps(arguments.shards, execution);
-    const MergeResult result =
-        merge_layer_files(arguments.shards, arguments.output, format.name, options, execution);
+    const MergeResult result = merge_layer_files(arguments.shards, arguments.output, format.name, options,
+                                                 arguments.limits.of_layers(), execution);
     for (const std::string& warning : result.warnings)
         context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
     const std::string text =
@@ -69,7 +70,8 @@ Command merge_command() {
                           }}},
         .groups = {{"What is written", layer_output_options(arguments->writing)},
                    picture_options(arguments->writing.picture),
-                   run_options(arguments->run),
+                   run_options(arguments->run,
+                               {max_memory_option(arguments->limits, "the layers of one of the files take")}),
                    common_options(true)},
         .examples = {{"lamella merge part.cli part.*.cli", "one file of all shards"}},
         .run = [arguments](const Context& context) {

@@ -185,8 +185,13 @@ OptionGroup checking_options(SliceArguments& target) {
 
 OptionGroup timed_run_options(SliceArguments& target) {
     OptionGroup group = run_options(target.run);
-    for (Option& option : read_limit_options(target.limits))
-        group.options.push_back(std::move(option));
+    group.options.push_back(max_triangles_option(target.limits));
+    group.options.push_back(byte_limit(
+        "max-memory",
+        "take no more memory, such as 500M or 2G: larger STL files are sliced in pieces, by way of a "
+        "temporary file in $TMPDIR or /var/tmp, with the same result; what cannot be is an error (exit code "
+        "5); three quarters of the memory there is unless given",
+        target.limits.max_memory));
     group.options.push_back(
         row("timeout", ValueKind::number, "SECONDS",
             "stop after so long, say how far it came (exit code 5), and leave no output",

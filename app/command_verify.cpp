@@ -25,6 +25,7 @@ struct VerifyArguments {
     std::string slice_at;
     bool json = false;
     PlacementOptions placement;
+    ReadLimits limits;
     RunOptions run;
 };
 
@@ -87,7 +88,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     const Transform pose = arguments.placement.pose();
     const Execution execution = arguments.run.execution(context);
 
-    LayerFile file = read_layers(arguments.input, execution);
+    LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
     VerifyOptions options{.mesh = {}, .quantum_mm = file.resolution_mm / 2};
@@ -102,7 +103,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (!arguments.mesh.empty()) {
         const std::array inputs{
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
-        const Plate plate = load_plate(inputs, {}, execution);
+        const Plate plate = load_plate(inputs, arguments.limits.of_meshes(), execution);
         for (const std::string& warning : plate.files.front().warnings)
             context.messages.warn(warning);
         mesh = joined(plate, execution);
@@ -146,7 +147,9 @@ Command verify_command() {
                             slice_at_names(), arguments->slice_at),
                      flag("json", "print JSON", arguments->json)}},
                    placement_options(arguments->placement),
-                   run_options(arguments->run),
+                   run_options(arguments->run,
+                               {max_triangles_option(arguments->limits),
+                                max_memory_option(arguments->limits, "each of the files takes")}),
                    common_options(true)},
         .examples = {{"lamella verify part.cli", "is the file sound in itself?"},
                      {"lamella verify part.cli --mesh part.stl --rotate-x 90", "and true to its mesh?"}},

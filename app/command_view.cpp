@@ -37,6 +37,7 @@ struct ViewArguments {
     std::string slice_at = "middle";
     PlacementOptions placement;
     LayerStepOptions making;
+    ReadLimits limits;
     RunOptions run;
 };
 
@@ -66,6 +67,7 @@ Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::stri
     job.inputs = {input_of(arguments)};
     job.layers.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height);
     job.layers.slice_at = slice_at_of(arguments.slice_at);
+    job.max_memory = arguments.limits.max_memory.value_or(0);
     job.steps = arguments.making.steps();
     job.layer_statistics = job.steps.any(); // the page tells what became of each
     job.report = {.path = output,
@@ -127,7 +129,7 @@ int run_view(const ViewArguments& arguments, const Context& context) {
     const std::string output = output_of(arguments);
     check_distinct(arguments.input, output);
     const Execution execution = arguments.run.execution(context);
-    auto read = read_either(arguments.input, {}, execution);
+    auto read = read_either(arguments.input, arguments.limits.of_meshes(), execution);
     auto* const layers = std::get_if<LayerFile>(&read);
     const Written written =
         layers != nullptr ? view_layers(arguments, std::move(*layers), output, execution)
@@ -180,7 +182,8 @@ Command view_command() {
                    cutting_options(*arguments),
                    placement_options(arguments->placement),
                    layer_step_options(arguments->making),
-                   run_options(arguments->run),
+                   run_options(arguments->run, {max_triangles_option(arguments->limits),
+                                                max_memory_option(arguments->limits, "what is read takes")}),
                    common_options(true)},
         .examples = {{"lamella view part.stl", "part.html, with layers of 0.1 mm"},
                      {"lamella view part.cli -o look.html", "what is in a slice file"}},

@@ -54,16 +54,17 @@ std::variant<MeshFile, LayerFile> read_either(const std::string& path, const Mes
         }
         return mesh();
     };
+    const LayerReadOptions reading{.max_memory = options.max_memory};
     if (path == "-") {
         // Standard input can be read only once.
-        const std::string content = read_text_file("/dev/stdin");
+        const std::string content = read_text_file("/dev/stdin", options.max_memory);
         const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
         return choose(
-            content, [&] { return read_layers(bytes, path, execution); },
+            content, [&] { return read_layers(bytes, path, reading, execution); },
             [&] { return read_mesh(bytes, path, options, execution); });
     }
     return choose(
-        head_of(path), [&] { return read_layers(path, execution); },
+        head_of(path), [&] { return read_layers(path, reading, execution); },
         [&] { return read_mesh(path, options, execution); });
 }
 

@@ -11,7 +11,8 @@
 
 namespace lamella::app {
 
-/// Reads a mesh or a slice file, whichever it is. "-" reads standard input.
+/// Reads a mesh or a slice file, whichever it is. "-" reads standard input. The limit of memory holds for
+/// both.
 [[nodiscard]] std::variant<MeshFile, LayerFile>
 read_either(const std::string& path, const MeshReadOptions& options, const Execution& execution);
 

@@ -107,6 +107,11 @@ Option file(std::string name, std::string help, std::string& target) {
     return option;
 }
 
+Option byte_limit(std::string name, std::string help, std::optional<std::uint64_t>& target) {
+    return row(std::move(name), ValueKind::text, "SIZE", std::move(help),
+               [&target](const std::string& text) { target = parse_byte_size(text); });
+}
+
 Option unit_option(std::string& target) {
     Option option = choice("unit", "UNIT", "what a unit of the file is, where the file does not say",
                            names_of(units), target);
@@ -181,13 +186,16 @@ Transform PlacementOptions::pose() const {
     return map;
 }
 
-OptionGroup run_options(RunOptions& target) {
-    return {"How it runs",
-            {count("threads", "N", "threads to use; 0 takes all processors; the result is always the same",
-                   target.threads),
-             choice("progress", "STYLE",
-                    "on standard error: a bar (on a terminal only), or JSON, one object a line",
-                    {"bar", "json", "none"}, target.progress)}};
+OptionGroup run_options(RunOptions& target, const std::vector<Option>& more) {
+    OptionGroup group{
+        "How it runs",
+        {count("threads", "N", "threads to use; 0 takes all processors; the result is always the same",
+               target.threads),
+         choice("progress", "STYLE",
+                "on standard error: a bar (on a terminal only), or JSON, one object a line",
+                {"bar", "json", "none"}, target.progress)}};
+    group.options.insert(group.options.end(), more.begin(), more.end());
+    return group;
 }
 
 Execution RunOptions::execution(const Context& context) const {
@@ -203,14 +211,25 @@ Execution RunOptions::execution(const Context& context) const {
             .cancel = context.cancel};
 }
 
-std::vector<Option> read_limit_options(ReadLimits& target) {
-    return {count("max-triangles", "N", "stop at a file of more triangles than this (exit code 5)",
-                  target.max_triangles),
-            row("max-memory", ValueKind::text, "SIZE",
-                "take no more memory, such as 500M or 2G: larger STL files are sliced in pieces, by way of "
-                "a temporary file in $TMPDIR or /var/tmp, with the same result; what cannot be is an error "
-                "(exit code 5); three quarters of the memory there is unless given",
-                [&target](const std::string& text) { target.max_memory = parse_byte_size(text); })};
+MeshReadOptions ReadLimits::of_meshes() const {
+    return {.max_triangles = max_triangles.value_or(0), .max_memory = max_memory.value_or(0)};
+}
+
+LayerReadOptions ReadLimits::of_layers() const {
+    return {.max_memory = max_memory.value_or(0)};
+}
+
+Option max_triangles_option(ReadLimits& target) {
+    return count("max-triangles", "N", "stop at a file of more triangles than this (exit code 5)",
+                 target.max_triangles);
+}
+
+Option max_memory_option(ReadLimits& target, std::string_view what) {
+    return byte_limit("max-memory",
+                      fmt::format("stop when {} more memory than this, such as 500M or 2G (exit code 5); "
+                                  "three quarters of the memory there is unless given",
+                                  what),
+                      target.max_memory);
 }
 
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
@@ -224,9 +243,10 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
                "0.001 unless given",
                target.units_mm),
         flag("short", "cli: 16-bit coordinates, half the size", target.short_form),
-        row("max-output", ValueKind::text, "SIZE",
+        byte_limit(
+            "max-output",
             "stop when the layers take more than this in the slice file, such as 500M or 2G (exit code 5)",
-            [&target](const std::string& text) { target.max_output = parse_byte_size(text); })};
+            target.max_output)};
 }
 
 LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) const {

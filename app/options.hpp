@@ -5,6 +5,8 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/polygon/layer_steps.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/read/mesh_file.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -37,6 +39,8 @@ namespace lamella::app {
                             std::vector<std::string> choices, std::string& target);
 [[nodiscard]] Option text(std::string name, std::string placeholder, std::string help, std::string& target);
 [[nodiscard]] Option file(std::string name, std::string help, std::string& target);
+/// A limit in bytes, such as 500M.
+[[nodiscard]] Option byte_limit(std::string name, std::string help, std::optional<std::uint64_t>& target);
 
 /// Where the part stands: unit, scale, rotation, translation, then the slicing direction.
 struct PlacementOptions {
@@ -68,15 +72,21 @@ struct RunOptions {
     /// Sets the style of the messages, too.
     [[nodiscard]] Execution execution(const Context& context) const;
 };
-[[nodiscard]] OptionGroup run_options(RunOptions& target);
+/// With `more` behind them.
+[[nodiscard]] OptionGroup run_options(RunOptions& target, const std::vector<Option>& more = {});
 
 /// What a file may not exceed.
 struct ReadLimits {
     std::optional<std::uint64_t> max_triangles;
     std::optional<std::uint64_t> max_memory; ///< bytes
+
+    [[nodiscard]] MeshReadOptions of_meshes() const;
+    [[nodiscard]] LayerReadOptions of_layers() const;
 };
-/// To be appended to a group.
-[[nodiscard]] std::vector<Option> read_limit_options(ReadLimits& target);
+/// For commands that read meshes.
+[[nodiscard]] Option max_triangles_option(ReadLimits& target);
+/// For commands that hold in memory what they read: `what`, in the words of their help.
+[[nodiscard]] Option max_memory_option(ReadLimits& target, std::string_view what);
 
 /// What is written and how.
 struct LayerOutputOptions {

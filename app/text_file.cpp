@@ -40,7 +40,7 @@ void write_in_place(const std::string& path, const std::string& shown, std::stri
 
 } // namespace
 
-std::string read_text_file(const std::string& path) {
+std::string read_text_file(const std::string& path, std::uint64_t most) {
     const auto refuse = [&](int error) {
         throw Error(ErrorKind::input, fmt::format("{}: cannot be read: {}", path, reason(error)));
     };
@@ -49,8 +49,12 @@ std::string read_text_file(const std::string& path) {
         refuse(errno);
     std::string text;
     std::array<char, 1 << 16> block;
-    while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get()))
+    while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) {
+        if (most != 0 && text.size() + n > most)
+            throw Error(ErrorKind::limit,
+                        fmt::format("{}: takes more than the {} bytes of --max-memory", path, most));
         text.append(block.data(), n);
+    }
     if (std::ferror(file.get()) != 0)
         refuse(errno);
     return text;

@@ -2,13 +2,14 @@
 
 // Small text files and standard output.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace lamella::app {
 
-/// The whole file. Throws Error{input}.
-[[nodiscard]] std::string read_text_file(const std::string& path);
+/// The whole file. Throws Error{input}, and Error{limit} for one of more than `most` bytes; 0: any number.
+[[nodiscard]] std::string read_text_file(const std::string& path, std::uint64_t most = 0);
 
 /// Writes to a temporary name and renames, so that nobody sees half a file; special files are written in
 /// place. Throws Error{output}.

@@ -22,8 +22,10 @@ BATCH_POINTS = 2**22  # 64 MB
 Layers = Union[Stack, LayerStream, Sequence[Stack]]
 
 
-def read_layers(path: PathLike, *, threads: int = 0, progress: Optional[Progress] = None) -> Stack:
-    stack, warnings = _lamella.read_layers(os.fsencode(path), thread_count(threads), progress)
+def read_layers(
+    path: PathLike, *, max_memory: int = 0, threads: int = 0, progress: Optional[Progress] = None
+) -> Stack:
+    stack, warnings = _lamella.read_layers(os.fsencode(path), max_memory, thread_count(threads), progress)
     warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
     return stack
 
@@ -44,7 +46,8 @@ def read(
         Interface, layered SVG, SLC, 3MF with slices, JSON, NumPy arrays.
     unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given.
     strict: makes a DefectError of what is otherwise a DefectWarning.
-    max_triangles, max_memory: more triangles or bytes than this are a LimitError; 0 is any number.
+    max_triangles: more of them are a LimitError; 0 is any number.
+    max_memory: more bytes than this for what is read are a LimitError; 0 is three quarters of the memory there is.
     threads: 0 takes one for each processor.
     progress: called as progress(stage, done, total) now and then, from the thread that called this.
 
@@ -62,7 +65,7 @@ def read(
         )  # fmt: skip
 
     def layers() -> Stack:
-        return read_layers(path, threads=threads, progress=progress)
+        return read_layers(path, max_memory=max_memory, threads=threads, progress=progress)
 
     kind = _lamella.file_kind(_head_of(path))
     if kind == "layers":

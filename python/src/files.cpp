@@ -44,11 +44,11 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
 }
 
 /// The layers of the file, and its warnings.
-std::pair<StackPointer, py::list> read_stack(const std::string& path, unsigned threads,
-                                             const py::object& progress) {
+std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint64_t max_memory,
+                                             unsigned threads, const py::object& progress) {
     std::vector<std::string> warnings;
     const StackPointer read = result_of(threads, progress, [&](const Execution& execution) {
-        LayerFile file = read_layers(path, execution);
+        LayerFile file = read_layers(path, {.max_memory = max_memory}, execution);
         const bool several = file.parts.size() > 1;
         StackPointer stack =
             stack_of(file, several ? std::string() : file.parts.front().label, file.merged());

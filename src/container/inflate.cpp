@@ -1,7 +1,10 @@
 #include "container/inflate.hpp"
 
+#include "core/memory_size.hpp"
+
 #include <libdeflate.h>
 
+#include <algorithm>
 #include <memory>
 #include <new>
 
@@ -9,6 +12,12 @@ namespace lamella {
 
 std::uint32_t crc32_of(std::string_view bytes) noexcept {
     return libdeflate_crc32(0, bytes.data(), bytes.size());
+}
+
+std::uint64_t usual_most_unpacked(std::uint64_t packed_bytes) {
+    constexpr std::uint64_t least = std::uint64_t{4} << 30;
+    constexpr std::uint64_t ratio = 64;
+    return std::min(packed_bytes > least / ratio ? ratio * packed_bytes : least, usual_memory());
 }
 
 Inflated inflate(std::string_view packed, std::span<std::byte> room) {

@@ -22,12 +22,9 @@ enum class Inflated {
 /// No byte of a Deflate stream stands for more than this many.
 inline constexpr std::uint64_t most_inflation = 1032;
 
-/// What a packed file may unpack to unless somebody says more: far more than meshes do.
-[[nodiscard]] constexpr std::uint64_t usual_most_unpacked(std::uint64_t packed_bytes) noexcept {
-    constexpr std::uint64_t least = std::uint64_t{4} << 30;
-    constexpr std::uint64_t ratio = 64;
-    return packed_bytes > least / ratio ? ratio * packed_bytes : least;
-}
+/// What a packed file may unpack to unless somebody says more: 64 times its size, or 4 GiB where that is
+/// more, which is far more than meshes do; but no more than `usual_memory`.
+[[nodiscard]] std::uint64_t usual_most_unpacked(std::uint64_t packed_bytes);
 
 /// Unpacks a raw Deflate stream into a room of exactly the size that it ought to have. Pages of the room that
 /// it does not reach are not touched.

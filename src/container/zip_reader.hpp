@@ -37,7 +37,7 @@ struct ZipEntry {
 class ZipReader {
   public:
     /// Reads the directory. At most `max_unpacked` bytes will be unpacked in all, stored ones included; 0
-    /// means 64 times the size of the archive, and 4 GiB at least.
+    /// means `usual_most_unpacked`.
     ZipReader(ByteSource source, std::uint64_t max_unpacked);
 
     /// In the order of the directory; without folders.

@@ -59,4 +59,8 @@ std::uint64_t memory_size() {
     return std::min(physical, control_group_limit());
 }
 
+std::uint64_t usual_memory() {
+    return memory_size() / 4 * 3;
+}
+
 } // namespace lamella

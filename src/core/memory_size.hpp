@@ -10,4 +10,7 @@ namespace lamella {
 /// (of a container, of a batch system's job) says so.
 [[nodiscard]] std::uint64_t memory_size();
 
+/// Of that, what a run may take unless somebody says more or less: three quarters.
+[[nodiscard]] std::uint64_t usual_memory();
+
 } // namespace lamella

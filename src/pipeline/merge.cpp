@@ -33,8 +33,8 @@ struct ShardFile {
     double highest_layer_mm = 0; ///< how thick it is
 };
 
-ShardFile look_at(const std::string& path, const Execution& execution) {
-    const LayerFile file = read_layers(path, execution);
+ShardFile look_at(const std::string& path, const LayerReadOptions& reading, const Execution& execution) {
+    const LayerFile file = read_layers(path, reading, execution);
     const LayerStack& layers = file.parts.front().layers;
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", path));
@@ -85,12 +85,13 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
 }
 
 /// In ascending order, and sure to belong together as far as files can tell.
-std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const Execution& execution) {
+std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const LayerReadOptions& reading,
+                                   const Execution& execution) {
     if (paths.empty())
         throw Error(ErrorKind::usage, "there is nothing to merge");
     std::vector<ShardFile> shards;
     for (const std::string& path : paths)
-        shards.push_back(look_at(path, execution));
+        shards.push_back(look_at(path, reading, execution));
     std::ranges::stable_sort(shards, {}, &ShardFile::bottom);
     for (std::size_t i = 1; i < shards.size(); ++i)
         check_neighbours(shards[i - 1], shards[i]);
@@ -198,7 +199,8 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
 // ------------------------------------------------------------------------------------------ any format
 
 void write_anew(const std::vector<ShardFile>& shards, const std::string& output, const LayerFormat& format,
-                const LayerWriteOptions& options, MergeResult& result, const Execution& execution) {
+                const LayerWriteOptions& options, const LayerReadOptions& reading, MergeResult& result,
+                const Execution& execution) {
     LayerFileInfo info{.box = {}, .layers = result.layers, .bottom = result.bottom, .parts = {}};
     for (std::size_t part = 0; part < shards.front().labels.size(); ++part) {
         const std::string& label = shards.front().labels[part];
@@ -215,7 +217,7 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     info.box.max.z = result.top;
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(output, format, info, options);
     for (const ShardFile& shard : shards) {
-        const LayerFile file = read_layers(shard.path, execution);
+        const LayerFile file = read_layers(shard.path, reading, execution);
         std::vector<Layer> parts(file.parts.size());
         for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
             for (std::size_t part = 0; part < parts.size(); ++part)
@@ -232,9 +234,9 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
 
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format, const LayerWriteOptions& options,
-                              const Execution& execution) {
+                              const LayerReadOptions& reading, const Execution& execution) {
     const LayerFormat& to = layer_format(format, output);
-    const std::vector<ShardFile> shards = look_at_all(paths, execution);
+    const std::vector<ShardFile> shards = look_at_all(paths, reading, execution);
     MergeResult result{.format = shards.front().format,
                        .layers = 0,
                        .bottom = shards.front().bottom,
@@ -246,7 +248,7 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
     if (to.name == result.format && to.name.starts_with("cli"))
         result.bytes = join_common_layers(shards, result.layers, output, to.name == "cli", execution);
     else
-        write_anew(shards, output, to, options, result, execution);
+        write_anew(shards, output, to, options, reading, result, execution);
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -219,18 +220,29 @@ Header read_header(std::string_view bytes, const std::string& name) {
 /// Collects what the geometry section says, however it is coded.
 class Collector {
   public:
-    Collector(const Header& header, const std::string& name) : units_(header.units_mm), name_(name) {
+    Collector(const Header& header, const std::string& name, ReadLimits& limits)
+        : units_(header.units_mm), name_(name), limits_(limits) {
         for (const auto& [number, label] : header.labels)
-            part_slot(number);
+            part_slot(number, [] { return std::string_view("the header"); });
     }
 
     void start_layer(double units, std::string place) {
         const double z = in_mm(units, place);
+        limits_.make_room(layers_, 1, [&] { return std::string_view(place); });
         layers_.emplace_back();
         layers_.back().z = z;
         layers_.back().place = std::move(place);
     }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
+    /// Before points of a polyline, or ends of hatches.
+    template <class Place>
+    void expect_points(std::uint64_t count, const Place& place) {
+        limits_.make_room(layers_.back().points, count, place);
+    }
+    template <class Place>
+    void expect_hatch_points(std::uint64_t count, const Place& place) {
+        limits_.make_room(layers_.back().hatches, count, place);
+    }
     void add_point(double x, double y) {
         RawLayer& layer = layers_.back();
         layer.points.push_back({in_mm(x, layer.place) + 0.0, in_mm(y, layer.place) + 0.0});
@@ -239,7 +251,11 @@ class Collector {
         RawLayer& layer = layers_.back();
         layer.hatches.push_back({in_mm(x, layer.place), in_mm(y, layer.place)});
     }
-    void end_hatches(std::int64_t part) { layers_.back().end_hatches(part_slot(part)); }
+    template <class Place>
+    void end_hatches(std::int64_t part, const Place& place) {
+        limits_.make_room(layers_.back().hatch_ends, 1, place);
+        layers_.back().end_hatches(part_slot(part, place));
+    }
 
     /// Ends a polyline of the direction given: 0 clockwise, 1 counter-clockwise, 2 open.
     template <class Place>
@@ -248,7 +264,8 @@ class Collector {
         const std::size_t begin = layer.ends.empty() ? 0 : layer.ends.back().end;
         const bool closed = direction != 2;
         const bool returns = layer.points.size() > begin && layer.points.back() == layer.points[begin];
-        if (!layer.end_clean_contour(begin, closed, part_slot(part))) {
+        limits_.make_room(layer.ends, 1, place);
+        if (!layer.end_clean_contour(begin, closed, part_slot(part, place))) {
             dropped_.note(place);
             return;
         }
@@ -267,7 +284,7 @@ class Collector {
     /// Puts the parts into `file` in the order of their numbers.
     void number_parts(const Header& header, LayerFile& file) {
         if (slots_.empty())
-            part_slot(1);
+            part_slot(1, [] { return std::string_view("the end"); });
         std::vector<std::uint32_t> places(slots_.size());
         for (const auto& [number, slot] : slots_) {
             places[slot] = static_cast<std::uint32_t>(file.parts.size());
@@ -304,9 +321,16 @@ class Collector {
     }
 
     /// Which of the parts met so far has this number.
-    std::uint32_t part_slot(std::int64_t number) {
+    template <class Place>
+    std::uint32_t part_slot(std::int64_t number, const Place& place) {
+        // A node of `slots_`, the part, and what is made of both for a while.
+        constexpr std::uint64_t part_bytes = 2 * (64 + sizeof(LayerPart));
         if (last_slot_ == slots_.end() || last_slot_->first != number)
-            last_slot_ = slots_.try_emplace(number, static_cast<std::uint32_t>(slots_.size())).first;
+            last_slot_ = slots_.find(number);
+        if (last_slot_ == slots_.end()) {
+            limits_.add_bytes_at(part_bytes, place);
+            last_slot_ = slots_.emplace(number, static_cast<std::uint32_t>(slots_.size())).first;
+        }
         return last_slot_->second;
     }
 
@@ -323,6 +347,7 @@ class Collector {
 
     double units_;
     const std::string& name_;
+    ReadLimits& limits_;
     std::vector<RawLayer> layers_;
     std::map<std::int64_t, std::uint32_t> slots_; ///< of parts, by their numbers
     std::map<std::int64_t, std::uint32_t>::iterator last_slot_ = slots_.end();
@@ -397,6 +422,13 @@ void read_ascii(std::string_view bytes, const std::string& name, const Header& h
             if (count < 0 || count > static_cast<std::int64_t>(text.rest().size()) / (2 * numbers) + 1)
                 text.fail(fmt::format("a count of {}", count),
                           fmt::format("{} bytes are left in the file", text.rest().size()));
+            const auto place = [&] {
+                return fmt::format("line {}", line_at(bytes, command_at));
+            };
+            if (polyline)
+                collector.expect_points(static_cast<std::uint64_t>(count), place);
+            else
+                collector.expect_hatch_points(2 * static_cast<std::uint64_t>(count), place);
             for (std::int64_t i = 0; i < count; ++i) {
                 std::array<double, 4> value{};
                 for (std::size_t k = 0; k < static_cast<std::size_t>(numbers); ++k) {
@@ -415,10 +447,9 @@ void read_ascii(std::string_view bytes, const std::string& name, const Header& h
                 text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 12), 24)),
                           fmt::format("the count of {} says that the coordinates end here", count));
             if (polyline)
-                collector.end_polyline(part, static_cast<int>(direction),
-                                       [&] { return fmt::format("line {}", line_at(bytes, command_at)); });
+                collector.end_polyline(part, static_cast<int>(direction), place);
             else
-                collector.end_hatches(part);
+                collector.end_hatches(part, place);
         } else {
             // Extensions such as $$POWER/100.0 stand between polylines.
             text.move_to(std::min(bytes.find_first_of("\r\n", text.at()), bytes.size()));
@@ -573,6 +604,7 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
             const std::int64_t count = parameter();
             const std::size_t size = is_long ? 8 : 4;
             const char* first = in.take_records(count, size, "points");
+            collector.expect_points(static_cast<std::uint64_t>(count), place);
             for (std::int64_t i = 0; i < count; ++i, first += size)
                 take_point(first, is_long, at, [&](double x, double y) { collector.add_point(x, y); });
             collector.end_polyline(part, static_cast<int>(direction), place);
@@ -590,9 +622,10 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
             const std::int64_t count = parameter();
             const std::size_t size = is_long ? 8 : 4;
             const char* first = in.take_records(count, 2 * size, "hatches");
+            collector.expect_hatch_points(2 * static_cast<std::uint64_t>(count), place);
             for (std::int64_t i = 0; i < 2 * count; ++i, first += size)
                 take_point(first, is_long, at, [&](double x, double y) { collector.add_hatch_point(x, y); });
-            collector.end_hatches(part);
+            collector.end_hatches(part, place);
             break;
         }
         default:
@@ -605,7 +638,8 @@ void read_binary(std::string_view bytes, const std::string& name, const Header& 
 
 /// Heights are tops of layers, and an empty layer before the first one tells where that begins. Exports exist
 /// whose first layer lies on the bottom of the part and has contours: there heights are bottoms.
-void make_layers(std::vector<RawLayer>& raw, const Header& header, std::uint64_t bytes, LayerFile& file) {
+void make_layers(std::vector<RawLayer>& raw, const Header& header, std::uint64_t bytes, LayerFile& file,
+                 ReadLimits& limits) {
     sort_by_height(raw, file.warnings);
     if (raw.empty())
         return;
@@ -632,7 +666,7 @@ void make_layers(std::vector<RawLayer>& raw, const Header& header, std::uint64_t
             top = raw[i].z;
             bottom = i > 0 ? raw[i - 1].z : top - first_step;
         }
-        add_layer(file, raw[i], i - begin, bottom + (top - bottom) / 2, bottom, top);
+        add_layer(file, raw[i], i - begin, bottom + (top - bottom) / 2, bottom, top, limits);
     }
 }
 
@@ -643,7 +677,8 @@ bool is_common_layer(std::string_view bytes) {
     return at != std::string_view::npos;
 }
 
-LayerFile read_common_layer(std::string_view bytes, const std::string& name, const Execution& execution) {
+LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                            const Execution& execution) {
     const Header header = read_header(bytes, name);
     LayerFile file;
     file.path = name;
@@ -651,7 +686,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, con
     file.units_mm = header.units_mm;
     file.resolution_mm = header.units_mm;
 
-    Collector collector(header, name);
+    Collector collector(header, name, limits);
     if (header.binary)
         read_binary(bytes, name, header, execution, collector);
     else
@@ -666,7 +701,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, con
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
     collector.say(file.warnings);
     collector.number_parts(header, file);
-    make_layers(collector.layers(), header, bytes.size(), file);
+    make_layers(collector.layers(), header, bytes.size(), file, limits);
     return file;
 }
 

@@ -10,11 +10,13 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 /// Whether the bytes hold a Common Layer Interface header. Comments may come before it.
 [[nodiscard]] bool is_common_layer(std::string_view bytes);
 
 /// Throws Error{input} naming byte or line.
-[[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name,
+[[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
                                           const Execution& execution);
 
 } // namespace lamella

@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "read/read_limits.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +29,14 @@ bool RawLayer::end_clean_contour(std::size_t begin, bool closed, std::uint32_t p
     return true;
 }
 
-void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top) {
+void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
+               ReadLimits& limits) {
+    const auto place = [&] {
+        return raw.place.empty() ? fmt::format("layer {}", index) : raw.place;
+    };
+    for (LayerPart& part : file.parts)
+        limits.make_room(part.layers, 1, place);
+    limits.add_bytes_at(file.parts.size() * of_empty_layer, place);
     std::vector<LayerBuilder> builders(file.parts.size());
     std::size_t next = 0;
     for (const auto& [end, closed, part] : raw.ends) {

@@ -12,6 +12,8 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 /// Counts of one kind of oddity, said once for the whole file.
 class Oddity {
   public:
@@ -61,8 +63,13 @@ struct RawLayer {
     void end_hatches(std::uint32_t part) { hatch_ends.push_back({hatches.size(), part}); }
 };
 
-/// Appends a layer in normal form to each part; `raw` loses its contours and hatches.
-void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top);
+/// What a layer takes besides itself, even where it is empty: the list of offsets, and what owns the points.
+inline constexpr std::uint64_t of_empty_layer = 128;
+
+/// Appends a layer in normal form to each part; `raw` loses its contours and hatches, the room of which was
+/// counted: these of the layers take their place.
+void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
+               ReadLimits& limits);
 
 /// Throws Error{input} when so many parts on so many planes cannot be meant in a file of so many bytes:
 /// layers take memory even where they are empty.

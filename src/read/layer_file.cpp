@@ -9,6 +9,7 @@
 #include "read/layered_svg.hpp"
 #include "read/layers_json.hpp"
 #include "read/npz.hpp"
+#include "read/read_limits.hpp"
 #include "read/slc.hpp"
 #include "read/slices_3mf.hpp"
 
@@ -20,27 +21,28 @@ namespace lamella {
 
 namespace {
 
-LayerFile read_source(const ByteSource& source, const Execution& execution) {
+LayerFile read_source(const ByteSource& source, const LayerReadOptions& options, ReadLimits& limits,
+                      const Execution& execution) {
     const std::string_view bytes(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
     if (is_zip(bytes)) {
-        const OpcPackage package(source, 0);
+        const OpcPackage package(source, options.max_memory);
         if (is_npz(package.zip()))
-            return read_npz(package.zip(), execution);
+            return read_npz(package.zip(), limits, execution);
         if (is_3mf(package.zip()))
-            return read_slices_3mf(package, execution);
+            return read_slices_3mf(package, limits, execution);
         throw Error(ErrorKind::input,
                     fmt::format("{}: found a zip archive that holds no layers; of archives, 3MF with slice "
                                 "stacks and NumPy arrays are read",
                                 source.name));
     }
     if (is_slc(bytes))
-        return read_slc(bytes, source.name, execution);
+        return read_slc(bytes, source.name, limits, execution);
     if (is_json(bytes))
-        return read_layers_json(bytes, source.name, execution);
+        return read_layers_json(bytes, source.name, limits, execution);
     if (is_common_layer(bytes))
-        return read_common_layer(bytes, source.name, execution);
+        return read_common_layer(bytes, source.name, limits, execution);
     if (is_svg(bytes))
-        return read_layered_svg(bytes, source.name, execution);
+        return read_layered_svg(bytes, source.name, limits, execution);
     if (const std::string_view other = other_slc(bytes); !other.empty())
         throw Error(ErrorKind::input,
                     fmt::format("{}: found {}; of the formats that go by this name, that of 3D Systems is "
@@ -69,12 +71,20 @@ LayerStack LayerFile::merged() const {
     return all;
 }
 
-LayerFile read_layers(const std::string& path, const Execution& execution) {
-    return read_source(open_bytes(path, execution.cancel), execution);
+LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
+    const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
+    const ByteSource source = open_bytes(path, most, execution.cancel);
+    ReadLimits limits(source.name, options);
+    if (!source.mapped)
+        limits.add_bytes(source.bytes.size());
+    return read_source(source, options, limits, execution);
 }
 
-LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name, const Execution& execution) {
-    return read_source(copy_bytes(bytes, name), execution);
+LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,
+                      const LayerReadOptions& options, const Execution& execution) {
+    ReadLimits limits(name, options);
+    limits.add_bytes(bytes.size());
+    return read_source(copy_bytes(bytes, name), options, limits, execution);
 }
 
 } // namespace lamella

@@ -6,6 +6,7 @@
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,8 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace lamella {
 
@@ -78,8 +81,8 @@ struct Group {
 
 class SvgReader {
   public:
-    SvgReader(const std::string& name, std::uint64_t bytes, LayerFile& file)
-        : name_(name), bytes_(bytes), file_(file) {
+    SvgReader(const std::string& name, std::uint64_t bytes, LayerFile& file, ReadLimits& limits)
+        : name_(name), bytes_(bytes), file_(file), limits_(limits) {
         file_.parts.emplace_back();
     }
 
@@ -158,6 +161,7 @@ class SvgReader {
         group.height = number(attributes, "slic3r:layer-height", line);
         if (group.height && *group.height < 0)
             fail(line, fmt::format("found a layer height of {}; it must not be below 0", *group.height));
+        make_room(groups_, line);
         groups_.push_back(std::move(group));
     }
 
@@ -170,8 +174,10 @@ class SvgReader {
         if (!(*part >= 1 && *part <= static_cast<double>(known + 1)) || *part != std::floor(*part))
             fail(line, fmt::format("found part {}; parts are numbered, and {} came so far", *part, known));
         part_ = static_cast<std::uint32_t>(*part) - 1;
-        if (part_ == known)
+        if (part_ == known) {
+            make_room(file_.parts, line);
             file_.parts.emplace_back();
+        }
         if (std::string& label = file_.parts[part_].label; label.empty())
             label = attributes.find("data-lamella-label");
     }
@@ -182,6 +188,7 @@ class SvgReader {
         Numbers numbers(attributes.find("points"), name_, line);
         while (!numbers.done()) {
             const double x = numbers.next();
+            make_room(layer.points, line);
             layer.points.push_back({x + origin_.x, numbers.next() + origin_.y});
         }
         end_contour(begin, closed, line);
@@ -238,6 +245,7 @@ class SvgReader {
             }
             if (command == 'M' || command == 'm')
                 command = relative ? 'l' : 'L'; // further pairs are lines
+            make_room(layer.points, line);
             layer.points.push_back({at.x + origin_.x, height_ - at.y + origin_.y});
         }
         if (layer.points.size() != begin)
@@ -247,8 +255,15 @@ class SvgReader {
     void end_contour(std::size_t begin, bool closed, std::size_t line) {
         RawLayer& layer = groups_.back().contours;
         const bool empty = layer.points.size() == begin;
+        make_room(layer.ends, line);
         if (!layer.end_clean_contour(begin, closed, part_) && !empty)
             dropped_.note([&] { return fmt::format("line {}", line); });
+    }
+
+    /// For one more.
+    template <class T>
+    void make_room(std::vector<T>& items, std::size_t line) {
+        limits_.make_room(items, 1, [&] { return fmt::format("line {}", line); });
     }
 
     /// Slic3r 1.x writes the cut in its scaled units, a millionth of the millimetres; later ones the top in
@@ -300,12 +315,13 @@ class SvgReader {
         check_part_planes(file_, n, bytes_);
         for (std::size_t i = 0; i < n; ++i)
             add_layer(file_, groups_[places[i].group].contours, i, places[i].z, places[i].bottom,
-                      places[i].top);
+                      places[i].top, limits_);
     }
 
     const std::string& name_;
     std::uint64_t bytes_;
     LayerFile& file_;
+    ReadLimits& limits_;
     std::uint32_t part_ = 0;
     int depth_ = 0;
     bool in_layer_ = false;
@@ -324,13 +340,14 @@ bool is_svg(std::string_view bytes) {
            bytes.substr(0, longest_preface).find(":svg") != std::string_view::npos;
 }
 
-LayerFile read_layered_svg(std::string_view bytes, const std::string& name, const Execution& execution) {
+LayerFile read_layered_svg(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                           const Execution& execution) {
     LayerFile file;
     file.path = name;
     file.format = "svg";
     file.units_mm = 1;
     file.resolution_mm = 0.001;
-    SvgReader reader(name, bytes.size(), file);
+    SvgReader reader(name, bytes.size(), file, limits);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
     parse_xml(bytes, name,

@@ -10,11 +10,13 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 /// Whether the bytes look like an SVG document.
 [[nodiscard]] bool is_svg(std::string_view bytes);
 
 /// Throws Error{input} naming the line.
-[[nodiscard]] LayerFile read_layered_svg(std::string_view bytes, const std::string& name,
+[[nodiscard]] LayerFile read_layered_svg(std::string_view bytes, const std::string& name, ReadLimits& limits,
                                          const Execution& execution);
 
 } // namespace lamella

@@ -5,12 +5,14 @@
 #include "container/json_text.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace lamella {
 
@@ -20,8 +22,9 @@ constexpr std::string_view format_name = "lamella layers";
 
 class LayersJsonReader {
   public:
-    LayersJsonReader(JsonText& text, std::uint64_t bytes, LayerFile& file, const Execution& execution)
-        : text_(text), bytes_(bytes), file_(file), executor_(execution),
+    LayersJsonReader(JsonText& text, std::uint64_t bytes, LayerFile& file, ReadLimits& limits,
+                     const Execution& execution)
+        : text_(text), bytes_(bytes), file_(file), limits_(limits), executor_(execution),
           progress_(execution, Stage::read, bytes) {}
 
     void read() {
@@ -71,6 +74,7 @@ class LayersJsonReader {
                 else
                     text_.skip();
             });
+            make_room(file_.parts);
             file_.parts.push_back({std::move(label), {}});
         });
     }
@@ -126,7 +130,7 @@ class LayersJsonReader {
             text_.fail(fmt::format("a layer of {} parts", parts),
                        fmt::format("the file has {}", file_.parts.size()));
         check_part_planes(file_, before.size() + 1, bytes_);
-        add_layer(file_, raw, static_cast<std::uint64_t>(index), *z, *bottom, *top);
+        add_layer(file_, raw, static_cast<std::uint64_t>(index), *z, *bottom, *top, limits_);
         progress_.add(text_.at() - reported_);
         reported_ = text_.at();
     }
@@ -140,6 +144,7 @@ class LayersJsonReader {
                 text_.array([&] {
                     const std::size_t begin = raw.points.size();
                     read_points(raw.points);
+                    make_room(raw.ends);
                     if (!raw.end_clean_contour(begin, key == "rings", part))
                         dropped_.note([&] { return fmt::format("byte {}", text_.at()); });
                 });
@@ -155,7 +160,14 @@ class LayersJsonReader {
         read_points(raw.hatches);
         if ((raw.hatches.size() - begin) % 2 != 0)
             text_.fail("half a hatch line", "each must have two points");
+        make_room(raw.hatch_ends);
         raw.end_hatches(part);
+    }
+
+    /// For one more.
+    template <class T>
+    void make_room(std::vector<T>& items) {
+        limits_.make_room(items, 1, [&] { return fmt::format("byte {}", text_.at()); });
     }
 
     // x and y in turn.
@@ -163,10 +175,12 @@ class LayersJsonReader {
         bool half = false;
         text_.array([&] {
             const double value = length();
-            if (half)
+            if (half) {
                 to.back().y = value;
-            else
+            } else {
+                make_room(to);
                 to.push_back({value, 0});
+            }
             half = !half;
         });
         if (half)
@@ -176,6 +190,7 @@ class LayersJsonReader {
     JsonText& text_;
     std::uint64_t bytes_;
     LayerFile& file_;
+    ReadLimits& limits_;
     Executor executor_;
     ProgressMeter progress_;
     std::size_t reported_ = 0;
@@ -190,13 +205,14 @@ bool is_json(std::string_view bytes) {
     return first != std::string_view::npos && bytes[first] == '{';
 }
 
-LayerFile read_layers_json(std::string_view bytes, const std::string& name, const Execution& execution) {
+LayerFile read_layers_json(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                           const Execution& execution) {
     LayerFile file;
     file.path = name;
     file.format = "json";
     file.units_mm = 1;
     JsonText text(bytes, name);
-    LayersJsonReader(text, bytes.size(), file, execution).read();
+    LayersJsonReader(text, bytes.size(), file, limits, execution).read();
     return file;
 }
 

@@ -10,10 +10,12 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 /// Whether the bytes begin as a JSON document does.
 [[nodiscard]] bool is_json(std::string_view bytes);
 
-[[nodiscard]] LayerFile read_layers_json(std::string_view bytes, const std::string& name,
+[[nodiscard]] LayerFile read_layers_json(std::string_view bytes, const std::string& name, ReadLimits& limits,
                                          const Execution& execution);
 
 } // namespace lamella

@@ -5,6 +5,7 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -208,7 +209,8 @@ class Array {
 
 class NpzReader {
   public:
-    NpzReader(const ZipReader& zip, LayerFile& file) : zip_(zip), file_(file) {}
+    NpzReader(const ZipReader& zip, LayerFile& file, ReadLimits& limits)
+        : zip_(zip), file_(file), limits_(limits) {}
 
     void read(const Execution& execution) {
         Executor executor(execution);
@@ -233,11 +235,14 @@ class NpzReader {
         constexpr std::uint64_t most_parts = std::numeric_limits<std::uint32_t>::max();
         if (labels.size() > most_parts || labels.size() > zip_bytes() + 1)
             labels.fail(fmt::format("{} parts", labels.size()), "so many are not possible");
+        limits_.make_room(file_.parts, labels.size(), [] { return std::string_view("array 'labels'"); });
         for (std::uint64_t i = 0; i < labels.size(); ++i)
             file_.parts.push_back({labels.text(i), {}});
         check_part_planes(file_, z.size(), zip_bytes());
 
-        std::vector<RawLayer> raw(z.size());
+        std::vector<RawLayer> raw;
+        limits_.make_room(raw, z.size(), [] { return std::string_view("array 'z'"); });
+        raw.resize(z.size());
         read_contours(points, offsets, closed, layer, part, raw);
         read_hatches(raw);
         constexpr std::uint64_t most_index = 9'000'000'000'000'000;
@@ -251,7 +256,7 @@ class NpzReader {
                        "z must lie between bottom and top");
             if (i > 0 && !(z.length(i - 1) < at))
                 z.fail(fmt::format("z = {} behind z = {}", at, z.length(i - 1)), "layers must ascend");
-            add_layer(file_, raw[i], index.whole(i, most_index), at, from, to);
+            add_layer(file_, raw[i], index.whole(i, most_index), at, from, to, limits_);
         }
         dropped_.say(file_.warnings);
     }
@@ -266,7 +271,10 @@ class NpzReader {
                         fmt::format("{}: found no array '{}'; the arrays of layers are points, offsets, "
                                     "closed, layer, part, index, z, bottom, top and labels",
                                     zip_.name(), name));
-        return {zip_, *entry};
+        const std::uint64_t unpacked = zip_.unpacked();
+        Array result(zip_, *entry);
+        limits_.add_bytes_at(zip_.unpacked() - unpacked, [&] { return fmt::format("array '{}'", name); });
+        return result;
     }
     [[nodiscard]] Array contour_array(const std::string& name, std::uint64_t contours) const {
         Array result = array(name);
@@ -291,10 +299,15 @@ class NpzReader {
             RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
             const auto of_part = static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1));
             const std::size_t first = into.points.size();
+            const auto place = [&] {
+                return fmt::format("contour {}", i);
+            };
+            limits_.make_room(into.points, end - begin, place);
+            limits_.make_room(into.ends, 1, place);
             for (std::uint64_t k = begin; k < end; ++k)
                 into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
             if (!into.end_clean_contour(first, closed.whole(i, 1) != 0, of_part))
-                dropped_.note([&] { return fmt::format("contour {}", i); });
+                dropped_.note(place);
             begin = end;
         }
     }
@@ -310,6 +323,11 @@ class NpzReader {
         part.expect_size(hatches.size(), "hatch lines");
         for (std::uint64_t i = 0; i < hatches.size(); ++i) {
             RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
+            const auto place = [&] {
+                return fmt::format("hatch line {}", i);
+            };
+            limits_.make_room(into.hatches, 2, place);
+            limits_.make_room(into.hatch_ends, 1, place);
             for (std::uint64_t k = 4 * i; k < 4 * i + 4; k += 2)
                 into.hatches.push_back({hatches.length(k), hatches.length(k + 1)});
             into.end_hatches(static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1)));
@@ -318,6 +336,7 @@ class NpzReader {
 
     const ZipReader& zip_;
     LayerFile& file_;
+    ReadLimits& limits_;
     Oddity dropped_{"contours had too few different points; they were dropped"};
 };
 
@@ -327,13 +346,13 @@ bool is_npz(const ZipReader& zip) {
     return zip.find("points.npy") != nullptr;
 }
 
-LayerFile read_npz(const ZipReader& zip, const Execution& execution) {
+LayerFile read_npz(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
     LayerFile file;
     file.path = zip.name();
     file.format = "npz";
     file.units_mm = 1;
     file.warnings = zip.oddities();
-    NpzReader(zip, file).read(execution);
+    NpzReader(zip, file, limits).read(execution);
     return file;
 }
 

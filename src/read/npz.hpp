@@ -9,9 +9,11 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 /// Whether the archive has the array that all our archives have.
 [[nodiscard]] bool is_npz(const ZipReader& zip);
 
-[[nodiscard]] LayerFile read_npz(const ZipReader& zip, const Execution& execution);
+[[nodiscard]] LayerFile read_npz(const ZipReader& zip, ReadLimits& limits, const Execution& execution);
 
 } // namespace lamella

@@ -3,16 +3,21 @@
 // How much of a file a caller is ready to take: checked before memory is asked for.
 
 #include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
+
+#include "core/memory_size.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace lamella {
 
@@ -21,8 +26,9 @@ namespace lamella {
 class ReadLimits {
   public:
     ReadLimits(std::string file_name, const MeshReadOptions& options)
-        : file_name_(std::move(file_name)), max_triangles_(options.max_triangles),
-          max_memory_(options.max_memory) {}
+        : ReadLimits(std::move(file_name), options.max_triangles, options.max_memory) {}
+    ReadLimits(std::string file_name, const LayerReadOptions& options)
+        : ReadLimits(std::move(file_name), 0, options.max_memory) {}
 
     void add_triangles(std::uint64_t count, std::string_view place = {}) {
         check_triangles(triangles_.fetch_add(count) + count, place);
@@ -35,9 +41,24 @@ class ReadLimits {
                                     max_triangles_, up_to(place)));
     }
     void add_bytes(std::uint64_t count, std::string_view place = {}) {
-        if (bytes_.fetch_add(count) + count > max_memory_ && max_memory_ != 0)
-            throw Error(ErrorKind::limit, fmt::format("{}: takes more than the {} bytes of --max-memory{}",
-                                                      file_name_, max_memory_, up_to(place)));
+        add_bytes_at(count, [&] { return place; });
+    }
+    /// `place` is only made for the error.
+    template <class Place>
+    void add_bytes_at(std::uint64_t count, const Place& place) {
+        const std::uint64_t before = bytes_.fetch_add(count);
+        if (before > max_memory_ || count > max_memory_ - before)
+            refuse_bytes(place());
+    }
+    /// Room for so many more items, counted before it is taken. It grows as it does for push_back.
+    template <class T, class Place>
+    void make_room(std::vector<T>& items, std::uint64_t more, const Place& place) {
+        const std::uint64_t room = items.capacity();
+        if (room - items.size() >= more)
+            return;
+        const std::uint64_t wanted = std::max(items.size() + more, 2 * room);
+        add_bytes_at((wanted - room) * sizeof(T), place);
+        items.reserve(wanted);
     }
     /// What was counted and is not kept.
     void give_back(std::uint64_t triangles, std::uint64_t bytes) noexcept {
@@ -45,19 +66,33 @@ class ReadLimits {
         bytes_.fetch_sub(bytes);
     }
 
-    [[nodiscard]] bool limited() const noexcept { return max_triangles_ != 0 || max_memory_ != 0; }
+    /// Whether somebody asked for a limit.
+    [[nodiscard]] bool limited() const noexcept { return max_triangles_ != 0 || asked_; }
     /// How many more may come.
     [[nodiscard]] std::uint64_t triangles_left() const noexcept {
         return max_triangles_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_triangles_ - triangles_;
     }
 
   private:
+    ReadLimits(std::string file_name, std::uint64_t max_triangles, std::uint64_t max_memory)
+        : file_name_(std::move(file_name)), max_triangles_(max_triangles), asked_(max_memory != 0),
+          max_memory_(asked_ ? max_memory : usual_memory()) {}
+
+    [[noreturn]] void refuse_bytes(std::string_view place) const {
+        throw Error(ErrorKind::limit,
+                    asked_ ? fmt::format("{}: takes more than the {} bytes of --max-memory{}", file_name_,
+                                         max_memory_, up_to(place))
+                           : fmt::format("{}: takes more than {} bytes, three quarters of the memory there "
+                                         "is{}; --max-memory allows more",
+                                         file_name_, max_memory_, up_to(place)));
+    }
     static std::string up_to(std::string_view place) {
         return place.empty() ? std::string() : fmt::format(" (counted up to {})", place);
     }
 
     std::string file_name_;
     std::uint64_t max_triangles_;
+    bool asked_;
     std::uint64_t max_memory_;
     std::atomic<std::uint64_t> triangles_{0};
     std::atomic<std::uint64_t> bytes_{0};

@@ -9,6 +9,7 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -68,8 +70,8 @@ std::optional<std::string_view> value_of(std::string_view header, std::string_vi
 
 class SlcReader {
   public:
-    SlcReader(std::string_view bytes, const std::string& name, LayerFile& file)
-        : bytes_(bytes), name_(name), file_(file) {}
+    SlcReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits)
+        : bytes_(bytes), name_(name), file_(file), limits_(limits) {}
 
     void read(const Execution& execution) {
         read_header();
@@ -157,9 +159,11 @@ class SlcReader {
             if (contours > left() / (2 * sizeof(std::uint32_t)))
                 fail(at, fmt::format("a layer of {} contours", contours),
                      fmt::format("{} bytes are left in the file", left()));
+            std::string place = fmt::format("byte {}", at);
+            limits_.make_room(raw_, 1, [&] { return std::string_view(place); });
             RawLayer& layer = raw_.emplace_back();
             layer.z = z;
-            layer.place = fmt::format("byte {}", at);
+            layer.place = std::move(place);
             for (std::uint32_t i = 0; i < contours; ++i)
                 read_contour(layer);
             if (at_ - reported > (std::size_t{1} << 22)) {
@@ -184,6 +188,8 @@ class SlcReader {
                  fmt::format("{} bytes are left in the file, room for {}", left(), left() / point_size));
         if (gaps != 0)
             gaps_.note(place);
+        limits_.make_room(layer.points, count, place);
+        limits_.make_room(layer.ends, 1, place);
         const std::size_t begin = layer.points.size();
         for (std::uint32_t i = 0; i < count; ++i) {
             std::array<float, 2> p{};
@@ -210,7 +216,7 @@ class SlcReader {
         for (std::size_t i = 0; i < raw_.size(); ++i) {
             const double bottom = raw_[i].z;
             const double top = i + 1 < raw_.size() ? raw_[i + 1].z : last_top();
-            add_layer(file_, raw_[i], i, bottom + (top - bottom) / 2, bottom, top);
+            add_layer(file_, raw_[i], i, bottom + (top - bottom) / 2, bottom, top, limits_);
         }
     }
 
@@ -238,6 +244,7 @@ class SlcReader {
     std::string_view bytes_;
     const std::string& name_;
     LayerFile& file_;
+    ReadLimits& limits_;
     std::size_t at_ = 0;
     bool open_ = false; ///< contours may be
     std::vector<Sampling> table_;
@@ -262,11 +269,12 @@ std::string_view other_slc(std::string_view bytes) {
     return "";
 }
 
-LayerFile read_slc(std::string_view bytes, const std::string& name, const Execution& execution) {
+LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                   const Execution& execution) {
     LayerFile file;
     file.path = name;
     file.format = "slc";
-    SlcReader(bytes, name, file).read(execution);
+    SlcReader(bytes, name, file, limits).read(execution);
     return file;
 }
 

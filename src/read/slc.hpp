@@ -10,11 +10,14 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 [[nodiscard]] bool is_slc(std::string_view bytes);
 
 /// What else goes by the name of SLC, to be told to a person; "" for what is none of it.
 [[nodiscard]] std::string_view other_slc(std::string_view bytes);
 
-[[nodiscard]] LayerFile read_slc(std::string_view bytes, const std::string& name, const Execution& execution);
+[[nodiscard]] LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                                 const Execution& execution);
 
 } // namespace lamella

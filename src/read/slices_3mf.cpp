@@ -10,6 +10,7 @@
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -55,6 +56,14 @@ struct Object {
     std::vector<Use> components;
 };
 
+/// What a node of a map takes besides its value.
+constexpr std::uint64_t map_node_bytes = 64;
+
+/// What a copy of the contours takes.
+std::uint64_t contour_bytes(const RawLayer& raw) {
+    return raw.points.size() * sizeof(Point2) + raw.ends.size() * sizeof(RawLayer::Contour);
+}
+
 double unit_mm(std::string_view name) {
     constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"micron", 0.001},
                                                                         {"millimeter", 1},
@@ -73,7 +82,8 @@ class ModelReader {
   public:
     using FindStack = std::function<std::shared_ptr<const Stack>(std::string_view path, std::uint32_t id)>;
 
-    ModelReader(std::string name, FindStack find) : name_(std::move(name)), find_(std::move(find)) {}
+    ModelReader(std::string name, FindStack find, ReadLimits& limits)
+        : name_(std::move(name)), find_(std::move(find)), limits_(limits) {}
 
     void start(XmlName element, const XmlAttributes& attributes, std::size_t line) {
         line_ = line;
@@ -109,6 +119,13 @@ class ModelReader {
     }
 
   private:
+    /// Where the parser is, as errors call it.
+    auto place() const {
+        return [this] {
+            return fmt::format("line {}", line_);
+        };
+    }
+
     void start_core_element(std::string_view element, const XmlAttributes& attributes) {
         if (element == "model") {
             const std::string_view unit = attributes.find("unit");
@@ -118,14 +135,18 @@ class ModelReader {
                      "it must be millimeter or another of 3MF's");
         } else if (element == "object") {
             const std::uint32_t id = whole(attributes, "id");
+            const std::string_view name = attributes.find("name");
+            limits_.add_bytes_at(map_node_bytes + sizeof(Object) + name.size(), place());
             object_ = &objects_[id];
-            *object_ = {std::string(attributes.find("name")), nullptr, {}};
+            *object_ = {std::string(name), nullptr, {}};
             if (const std::string_view stack = attributes.find(XmlName{slice_space, "slicestackid"});
                 stack.data() != nullptr)
                 object_->stack = stack_of(whole_of(stack, "slicestackid"));
         } else if (element == "component" && object_ != nullptr) {
+            limits_.make_room(object_->components, 1, place());
             object_->components.push_back(use(attributes));
         } else if (element == "item") {
+            limits_.make_room(items_, 1, place());
             items_.push_back(use(attributes));
         }
     }
@@ -133,6 +154,7 @@ class ModelReader {
     void start_slice_element(std::string_view element, const XmlAttributes& attributes) {
         if (element == "slicestack") {
             stack_id_ = whole(attributes, "id");
+            limits_.add_bytes_at(map_node_bytes + sizeof(Stack), place());
             stack_ = std::make_shared<Stack>();
             const std::string_view bottom = attributes.find("zbottom");
             stack_->bottom = bottom.data() == nullptr ? 0 : number_of(bottom, "zbottom");
@@ -144,17 +166,21 @@ class ModelReader {
             if (!(top > below))
                 fail(fmt::format("a slice with ztop = {}", top),
                      fmt::format("it must lie above z = {}", below));
+            limits_.make_room(stack_->slices, 1, place());
             stack_->slices.emplace_back().top = top;
             vertices_.clear();
         } else if (element == "vertex" && in_slice()) {
+            limits_.make_room(vertices_, 1, place());
             vertices_.push_back({number(attributes, "x"), number(attributes, "y")});
         } else if (element == "polygon" && in_slice()) {
             start_ = whole(attributes, "startv");
             last_ = start_;
             begin_ = raw().points.size();
+            limits_.make_room(raw().points, 1, place());
             raw().points.push_back(vertex(start_));
         } else if (element == "segment" && in_slice() && start_) {
             last_ = whole(attributes, "v2");
+            limits_.make_room(raw().points, 1, place());
             raw().points.push_back(vertex(*last_));
         }
     }
@@ -171,14 +197,12 @@ class ModelReader {
     void end_polygon() {
         if (!in_slice() || !start_)
             return;
-        const auto place = [&] {
-            return fmt::format("line {}", line_);
-        };
         const bool closed = last_ == start_;
         if (!closed)
-            open_.note(place);
+            open_.note(place());
+        limits_.make_room(raw().ends, 1, place());
         if (!raw().end_clean_contour(begin_, closed))
-            dropped_.note(place);
+            dropped_.note(place());
         start_.reset();
     }
 
@@ -196,6 +220,8 @@ class ModelReader {
             if (!(slice.top > below))
                 fail(fmt::format("a reference to slices that end at z = {}", slice.top),
                      fmt::format("they must lie above z = {}", below));
+            limits_.make_room(stack_->slices, 1, place());
+            limits_.add_bytes_at(contour_bytes(slice.raw), place());
             stack_->slices.push_back(slice);
         }
     }
@@ -257,6 +283,7 @@ class ModelReader {
 
     std::string name_;
     FindStack find_;
+    ReadLimits& limits_;
     std::size_t line_ = 0;
     double unit_ = 1;
     std::map<std::uint32_t, std::shared_ptr<const Stack>> stacks_;
@@ -286,8 +313,9 @@ struct Placed {
 
 class PackageReader {
   public:
-    PackageReader(const OpcPackage& package, LayerFile& file, const Execution& execution)
-        : package_(package), zip_(package.zip()), root_(root_part()), file_(file), executor_(execution) {}
+    PackageReader(const OpcPackage& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
+        : package_(package), zip_(package.zip()), root_(root_part()), file_(file), limits_(limits),
+          executor_(execution) {}
 
     void read() {
         const std::unique_ptr<ModelReader> model =
@@ -317,8 +345,11 @@ class PackageReader {
         if (entry == nullptr)
             throw Error(ErrorKind::input, fmt::format("{}: found no part '{}', to which the package refers",
                                                       zip_.name(), printable(part, 100)));
+        const std::uint64_t before = zip_.unpacked();
         const ByteSource source = zip_.read(*entry);
-        auto model = std::make_unique<ModelReader>(source.name, std::move(find));
+        const std::uint64_t unpacked = zip_.unpacked() - before;
+        limits_.add_bytes_at(unpacked, [&] { return fmt::format("part '{}'", printable(part, 100)); });
+        auto model = std::make_unique<ModelReader>(source.name, std::move(find), limits_);
         XmlHandlers handlers;
         handlers.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
             model->start(name, attributes, line);
@@ -331,6 +362,7 @@ class PackageReader {
         };
         parse_xml({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}, source.name,
                   handlers, {.namespaces = true, .utf8_only = true, .no_document_type = true});
+        limits_.give_back(0, unpacked);
         model->say(file_.warnings);
         return model;
     }
@@ -370,6 +402,11 @@ class PackageReader {
                 place(model, component, placement, depth + 1);
             return;
         }
+        const auto line = [&] {
+            return fmt::format("line {}", use.line);
+        };
+        limits_.make_room(placed_, 1, line);
+        limits_.add_bytes_at(object->second.name.size(), line);
         placed_.push_back(in_millimetres(object->second, placement, use.line));
     }
 
@@ -388,12 +425,21 @@ class PackageReader {
         return {object.name, object.stack, placement, unit_, placement.offset[2] * unit_};
     }
 
+    /// A part of the file, counted as in the build, for errors.
+    static auto place_of(std::size_t part) {
+        return [part] {
+            return fmt::format("part {} of the build", part + 1);
+        };
+    }
+
     /// All parts get the same planes: where their slices end at different heights, slices are divided, which
     /// changes nothing about the material.
     void make_layers() {
         std::vector<double> heights;
         std::uint64_t points = 0;
-        for (const Placed& part : placed_) {
+        for (std::size_t k = 0; k < placed_.size(); ++k) {
+            const Placed& part = placed_[k];
+            limits_.make_room(heights, 1 + part.stack->slices.size(), place_of(k));
             heights.push_back(part.height(part.stack->bottom));
             for (const Slice& slice : part.stack->slices) {
                 heights.push_back(part.height(slice.top));
@@ -412,21 +458,26 @@ class PackageReader {
                         fmt::format("{}: found slice stacks without slices; a slice file must have "
                                     "at least one layer",
                                     zip_.name()));
-        for (const Placed& part : placed_)
-            file_.parts.push_back({part.label, {}});
+        for (std::size_t k = 0; k < placed_.size(); ++k) {
+            limits_.make_room(file_.parts, 1, place_of(k));
+            limits_.add_bytes_at(placed_[k].label.size(), place_of(k));
+            file_.parts.push_back({placed_[k].label, {}});
+        }
         check_part_planes(file_, heights.size() - 1, std::max(points, zip_.unpacked()));
         std::uint64_t left = 64 * (points + heights.size() + (std::uint64_t{1} << 20));
         for (std::size_t k = 0; k < placed_.size(); ++k)
-            add_part(placed_[k], heights, file_.parts[k].layers, left);
+            add_part(k, heights, left);
     }
 
-    void add_part(const Placed& part, const std::vector<double>& heights, LayerStack& layers,
-                  std::uint64_t& left) const {
+    void add_part(std::size_t index, const std::vector<double>& heights, std::uint64_t& left) const {
+        const Placed& part = placed_[index];
+        LayerStack& layers = file_.parts[index].layers;
         const std::vector<Slice>& slices = part.stack->slices;
         std::size_t next = 0;
         const Layer* last = nullptr;
         std::size_t last_slice = slices.size();
-        layers.reserve(heights.size() - 1);
+        limits_.make_room(layers, heights.size() - 1, place_of(index));
+        limits_.add_bytes_at((heights.size() - 1) * of_empty_layer, place_of(index));
         for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
             executor_.check_cancelled();
             const double bottom = heights[i];
@@ -447,6 +498,7 @@ class PackageReader {
                                     "than 64 times their points",
                                     zip_.name()));
                 left -= size;
+                limits_.add_bytes_at(2 * contour_bytes(slices[next].raw), place_of(index)); // growing arrays
                 layer = placed_layer(part, slices[next].raw);
             }
             layer.index = i;
@@ -483,6 +535,7 @@ class PackageReader {
     const ZipReader& zip_;
     std::string root_;
     LayerFile& file_;
+    ReadLimits& limits_;
     Executor executor_;
     double unit_ = 1;
     std::map<std::string, std::unique_ptr<ModelReader>> parts_;
@@ -496,14 +549,14 @@ bool is_3mf(const ZipReader& zip) {
     return zip.find("_rels/.rels") != nullptr || zip.find("3D/3dmodel.model") != nullptr;
 }
 
-LayerFile read_slices_3mf(const OpcPackage& package, const Execution& execution) {
+LayerFile read_slices_3mf(const OpcPackage& package, ReadLimits& limits, const Execution& execution) {
     LayerFile file;
     file.path = package.zip().name();
     file.format = "3mf";
     file.units_mm = 1;
     file.resolution_mm = 0.001;
     file.warnings = package.zip().oddities();
-    PackageReader(package, file, execution).read();
+    PackageReader(package, file, limits, execution).read();
     return file;
 }
 

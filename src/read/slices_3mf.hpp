@@ -9,9 +9,12 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 /// Whether the archive is a 3MF package; whether it has slices shows when it is read.
 [[nodiscard]] bool is_3mf(const ZipReader& zip);
 
-[[nodiscard]] LayerFile read_slices_3mf(const OpcPackage& package, const Execution& execution);
+[[nodiscard]] LayerFile read_slices_3mf(const OpcPackage& package, ReadLimits& limits,
+                                        const Execution& execution);
 
 } // namespace lamella

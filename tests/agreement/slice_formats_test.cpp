@@ -134,7 +134,7 @@ LayerFile read(std::string_view bytes) {
     // Exactly as long as the bytes, so that a sanitizer sees one byte too far.
     const auto copy = std::make_unique<std::byte[]>(bytes.size());
     std::memcpy(copy.get(), bytes.data(), bytes.size());
-    return read_layers(std::span(copy.get(), bytes.size()), "test", {.threads = 1});
+    return read_layers(std::span(copy.get(), bytes.size()), "test", {}, {.threads = 1});
 }
 
 TEST(SliceFormats, ComeBackAtTheirResolution) {

@@ -1,5 +1,5 @@
-// Any bytes as the arrays of layers of a NumPy archive, behind its checksums: an error of the input kind, or
-// sound layers. Each array has its length in front, two bytes, the lower one first.
+// Any bytes as the arrays of layers of a NumPy archive, behind its checksums: an error of the input kind or a
+// limit that is met, or sound layers. Each array has its length in front, two bytes, the lower one first.
 
 #include "archive.hpp"
 #include "promises.hpp"
@@ -24,9 +24,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const std::string bytes = archive.take();
     try {
-        fuzz::require_sound(read_layers(std::as_bytes(std::span(bytes)), "fuzz", {.threads = 1}));
+        fuzz::require_sound(read_layers(std::as_bytes(std::span(bytes)), "fuzz", {.max_memory = 100'000'000},
+                                        {.threads = 1}));
     } catch (const Error& error) {
-        fuzz::require(error.kind() == ErrorKind::input);
+        fuzz::require(error.kind() == ErrorKind::input || error.kind() == ErrorKind::limit);
     }
     return 0;
 }

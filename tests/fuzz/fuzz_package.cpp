@@ -38,9 +38,10 @@ void read_meshes(const std::string& bytes) {
 
 void read_slices(const std::string& bytes) {
     try {
-        fuzz::require_sound(read_layers(std::as_bytes(std::span(bytes)), "fuzz", {.threads = 1}));
+        fuzz::require_sound(read_layers(std::as_bytes(std::span(bytes)), "fuzz", {.max_memory = 100'000'000},
+                                        {.threads = 1}));
     } catch (const Error& error) {
-        require(error.kind() == ErrorKind::input);
+        require(error.kind() == ErrorKind::input || error.kind() == ErrorKind::limit);
     }
 }
 

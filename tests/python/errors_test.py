@@ -146,6 +146,14 @@ def test_limits_are_their_own_kind(rook):
         lamella.read(rook, max_triangles=100)
 
 
+def test_the_limit_of_memory_holds_for_layers(rook, tmp_path):
+    path = tmp_path / "layers.npz"
+    lamella.write(path, lamella.slice(rook, 1))
+    with pytest.raises(lamella.LimitError, match=r"layers\.npz.*--max-memory"):
+        lamella.read(path, max_memory=10_000)
+    assert len(lamella.read(path, max_memory=10_000_000)) > 10
+
+
 def test_output_errors_are_those_of_the_program(program, rook, tmp_path):
     stack = lamella.slice(rook, 10)
     target = tmp_path / "missing" / "out.cli"

@@ -2,8 +2,10 @@
 // process that reads it may have.
 
 #include "lamella/core/error.hpp"
+#include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 
+#include "container/zip_writer.hpp"
 #include "read/packages.hpp"
 #include "temporary_folder.hpp"
 
@@ -15,10 +17,14 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <new>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -34,8 +40,8 @@ std::size_t data_bytes() {
     return 0;
 }
 
-/// What reading the file ends with in a process that may take so many bytes more than it has.
-std::string outcome(const std::string& path, const MeshReadOptions& options, std::size_t more) {
+/// What reading ends with in a process that may take so many bytes more than it has.
+std::string outcome(std::size_t more, const std::function<void()>& read) {
     std::array<int, 2> ends{};
     EXPECT_EQ(pipe(ends.data()), 0);
     const pid_t child = fork();
@@ -46,7 +52,7 @@ std::string outcome(const std::string& path, const MeshReadOptions& options, std
         if (setrlimit(RLIMIT_DATA, &limit) != 0)
             _exit(1);
         try {
-            static_cast<void>(read_mesh(path, options, {.threads = 1}));
+            read();
         } catch (const Error& error) {
             text = error.what();
         } catch (const std::bad_alloc&) {
@@ -66,6 +72,14 @@ std::string outcome(const std::string& path, const MeshReadOptions& options, std
     return text;
 }
 
+std::string outcome(const std::string& path, const MeshReadOptions& options, std::size_t more) {
+    return outcome(more, [&] { static_cast<void>(read_mesh(path, options, {.threads = 1})); });
+}
+
+std::string layers_outcome(const std::string& path, const LayerReadOptions& options, std::size_t more) {
+    return outcome(more, [&] { static_cast<void>(read_layers(path, options, {.threads = 1})); });
+}
+
 constexpr std::size_t megabyte = 1'000'000;
 
 class LimitsOfReading : public ::testing::Test {
@@ -74,6 +88,24 @@ class LimitsOfReading : public ::testing::Test {
         const std::string path = folder_.file(name);
         std::ofstream(path, std::ios::binary) << bytes;
         return path;
+    }
+
+    std::string archive(const std::string& name,
+                        const std::vector<std::pair<std::string, std::string>>& entries) {
+        ZipWriter zip(folder_.file(name));
+        for (const auto& [entry, content] : entries)
+            zip.add(entry, content, ZipMethod::deflated);
+        zip.finish();
+        return folder_.file(name);
+    }
+
+    /// With a limit, layers are refused at a place that begins so; without one, there is no room for them.
+    static void expect_refused(const std::string& path, const std::string& place) {
+        EXPECT_EQ(layers_outcome(path, {}, 32 * megabyte), "memory ran out");
+        const std::string text = layers_outcome(path, {.max_memory = 10 * megabyte}, 32 * megabyte);
+        EXPECT_TRUE(text.starts_with(
+            path + ": takes more than the 10000000 bytes of --max-memory (counted up to " + place))
+            << text;
     }
 
   private:
@@ -154,6 +186,170 @@ TEST_F(LimitsOfReading, Of3mfCountEachTriangleOnceHoweverItIsWritten) {
     EXPECT_NE(refused.find("--max-triangles (counted up to part '3D/3dmodel.model', line "),
               std::string::npos)
         << refused;
+}
+
+std::string repeated(std::string_view text, int times) {
+    std::string all;
+    for (int i = 0; i < times; ++i)
+        all += text;
+    return all;
+}
+
+TEST_F(LimitsOfReading, LayersOfTheCommonLayerInterfaceAreCountedBeforeTheyAreMade) {
+    using namespace std::string_literals;
+    const std::string head = "$$HEADERSTART\n$$UNITS/1\n";
+    expect_refused(file("binary.cli", head + "$$BINARY\n$$HEADEREND" + repeated("\x80\0\1\0"s, 1'000'000)),
+                   "byte ");
+    expect_refused(
+        file("points.cli", head + "$$BINARY\n$$HEADEREND\x80\0\1\0\x81\0\1\0\1\0\xff\xff"s +
+                               std::string(4 * 65535, '\1') +
+                               repeated("\x81\0\1\0\1\0\4\0\0\0\0\0\1\0\0\0\1\0\1\0\0\0\0\0"s, 1'000'000)),
+        "byte ");
+    const std::string text = head + "$$ASCII\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n";
+    expect_refused(file("layers.cli", text + repeated("$$LAYER/1\n", 500'000) + "$$GEOMETRYEND"), "byte ");
+    expect_refused(
+        file("rings.cli", text + repeated("$$POLYLINE/1,1,3,0,0,1,0,0,1\n", 1'000'000) + "$$GEOMETRYEND"),
+        "line ");
+    expect_refused(
+        file("hatches.cli", text + repeated("$$HATCHES/1,1,0,0,1,1\n", 2'000'000) + "$$GEOMETRYEND"),
+        "line ");
+    std::string parts;
+    for (int i = 0; i < 400'000; ++i)
+        parts += fmt::format("$$POLYLINE/{},1,0\n", i);
+    expect_refused(file("parts.cli", text + parts + "$$GEOMETRYEND"), "line ");
+}
+
+TEST_F(LimitsOfReading, LayersOfSlcAreCountedBeforeTheyAreMade) {
+    using namespace std::string_literals;
+    const std::string head =
+        "-SLCVER 2.0 -UNIT MM -TYPE PART \r\n\x1a" + std::string(256, '\0') + '\1' + std::string(16, '\0');
+    expect_refused(file("layers.slc", head + std::string(8 * 1'000'000, '\0')), "byte ");
+    expect_refused(
+        file("points.slc", head + "\0\0\0\0\x40\x42\x0f\0"s +
+                               repeated("\4\0\0\0\0\0\0\0"s + std::string(8, '\0') + "\0\0\x80\x3f\0\0\0\0"s +
+                                            "\0\0\0\0\0\0\x80\x3f"s + std::string(8, '\0'),
+                                        1'000'000)),
+        "byte ");
+}
+
+TEST_F(LimitsOfReading, LayersOfSvgAreCountedBeforeTheyAreMade) {
+    expect_refused(file("layers.svg", "<svg>" + repeated("<g slic3r:z='1'/>\n", 500'000) + "</svg>"),
+                   "line ");
+    expect_refused(
+        file("points.svg", "<svg><g slic3r:z='1'>\n" +
+                               repeated("<polygon points='" + repeated("0,1 2,3 ", 50'000) + "'/>\n", 50) +
+                               "</g></svg>"),
+        "line ");
+    expect_refused(
+        file("paths.svg", "<svg><g slic3r:z='1'>\n" +
+                              repeated("<path d='M0,0" + repeated("H1V1H0V0", 25'000) + "'/>\n", 50) +
+                              "</g></svg>"),
+        "line ");
+}
+
+TEST_F(LimitsOfReading, LayersOfJsonAreCountedBeforeTheyAreMade) {
+    const std::string head = R"({"format": "lamella layers", "version": 1, "parts": [{"label": "a"})";
+    expect_refused(file("parts.json", head + repeated(",{}", 1'500'000) + "]}"), "byte ");
+    expect_refused(
+        file("points.json", head + R"(], "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[)" +
+                                repeated("1,2,2,1,", 3'000'000) + "0,0]]}]}]}"),
+        "byte ");
+    std::string layers;
+    for (int i = 0; i < 250'000; ++i)
+        layers += fmt::format("{}{{\"z\":{},\"bottom\":{},\"top\":{},\"parts\":[{{}}]}}", i == 0 ? "" : ",",
+                              i, i, i);
+    expect_refused(file("layers.json", head + "], \"layers\": [" + layers + "]}"), "layer ");
+}
+
+/// An array of zeros.
+std::pair<std::string, std::string> zeros(const std::string& name, const std::string& type, std::size_t bytes,
+                                          const std::string& shape) {
+    using namespace std::string_literals;
+    std::string head = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
+    head.resize(117, ' ');
+    return {name + ".npy", "\x93NUMPY\1\0v\0"s + head + '\n' + std::string(bytes, '\0')};
+}
+
+TEST_F(LimitsOfReading, ArraysAreCountedBeforeThereAreLayers) {
+    const auto arrays = [&](const std::string& name, std::size_t planes, std::size_t contours,
+                            std::size_t points) {
+        const std::string l = fmt::format("{},", planes);
+        const std::string c = fmt::format("{},", contours);
+        auto offsets = zeros("offsets", "<i4", 4 * (contours + 1), fmt::format("{},", contours + 1));
+        for (std::size_t byte = 0; byte < 4; ++byte) // of the last one
+            offsets.second[offsets.second.size() - 4 + byte] = static_cast<char>(points >> (8 * byte));
+        return archive(name, {zeros("points", "<f4", 8 * points, fmt::format("{}, 2", points)), offsets,
+                              zeros("closed", "|b1", contours, c), zeros("layer", "<i4", 4 * contours, c),
+                              zeros("part", "<i4", 4 * contours, c), zeros("z", "<f4", 4 * planes, l),
+                              zeros("bottom", "<f4", 4 * planes, l), zeros("top", "<f4", 4 * planes, l),
+                              zeros("index", "<i4", 4 * planes, l), zeros("labels", "<U1", 4, "1,")});
+    };
+    const std::string planes = arrays("planes.npz", 400'000, 0, 0);
+    EXPECT_LT(std::filesystem::file_size(planes), 100'000U);
+    expect_refused(planes, "array 'z')");
+    const std::string points = arrays("points.npz", 1, 1, 600'000);
+    EXPECT_EQ(layers_outcome(points, {.max_memory = 10 * megabyte}, 32 * megabyte),
+              points + ": takes more than the 10000000 bytes of --max-memory (counted up to contour 0)");
+    const std::string bomb = archive("bomb.npz", {zeros("points", "<f8", 100'000'000, "6250000, 2")});
+    EXPECT_EQ(layers_outcome(bomb, {}, 32 * megabyte), "memory ran out");
+    EXPECT_EQ(layers_outcome(bomb, {.max_memory = 10 * megabyte}, 32 * megabyte),
+              bomb +
+                  ": zip entry 'points.npy' of 100000128 bytes brings what is unpacked above 10000000 bytes; "
+                  "--max-memory allows more");
+}
+
+std::string slices_model(const std::string& resources, const std::string& build) {
+    return "<model xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+           "xmlns:t=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"><resources>\n" +
+           resources + "</resources><build>\n" + build + "</build></model>";
+}
+
+TEST_F(LimitsOfReading, SlicesOf3mfAreCountedBeforeTheyAreMade) {
+    const auto package = [&](const std::string& name, const std::string& resources,
+                             const std::string& build) {
+        return archive(name, {{"3D/3dmodel.model", slices_model(resources, build)}});
+    };
+    const auto slices = [](int count) {
+        std::string text;
+        for (int i = 1; i <= count; ++i)
+            text += fmt::format("<t:slice ztop='{}'/>\n", i);
+        return text;
+    };
+    const std::string stack = "<t:slicestack id='1'>";
+    const std::string object = "</t:slicestack><object id='1' t:slicestackid='1'/>";
+    const std::string item = "<item objectid='1'/>";
+    expect_refused(package("slices.3mf", stack + slices(200'000) + object, item), "line ");
+    expect_refused(package("components.3mf",
+                           stack + slices(1) + object + "<object id='2'><components>" +
+                               repeated("<component objectid='1'/>\n", 250'000) + "</components></object>",
+                           item),
+                   "line ");
+    // Few bytes, of which placing makes many heights, many names, and many layers.
+    expect_refused(package("heights.3mf", stack + slices(5'000) + object, repeated(item, 5'000)), "part ");
+    expect_refused(package("names.3mf",
+                           stack + slices(1) + "</t:slicestack><object id='1' name='" +
+                               std::string(100'000, 'n') + "' t:slicestackid='1'/>",
+                           repeated(item, 5'000)),
+                   "line ");
+    expect_refused(package("layers.3mf", stack + slices(1'000) + object, repeated(item, 1'000)), "part ");
+}
+
+TEST_F(LimitsOfReading, RelationshipsWithoutEndAreRefused) {
+    const std::string path =
+        archive("many.3mf",
+                {{"_rels/.rels",
+                  "<Relationships xmlns='http://schemas.openxmlformats.org/package/2006/relationships'>\n" +
+                      repeated("<Relationship Target='' Type=''/>", 1'100'000) + "</Relationships>"}});
+    EXPECT_EQ(layers_outcome(path, {}, 300 * megabyte),
+              path + ", part '_rels/.rels', line 2: found more than 1048576 relationships of one part");
+}
+
+TEST_F(LimitsOfReading, WithRoomEnoughLayersAreRead) {
+    const std::string path =
+        file("small.svg", "<svg><g slic3r:z='1'><polygon points='0,0 1,0 0,1'/></g></svg>");
+    EXPECT_EQ(layers_outcome(path, {}, 60 * megabyte), "read");
+    EXPECT_EQ(layers_outcome(path, {.max_memory = 2000}, 60 * megabyte), "read");
+    EXPECT_NE(layers_outcome(path, {.max_memory = 200}, 60 * megabyte), "read");
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 // Slice files of consecutive layers, put together to one.
 
 #include "lamella/core/execution.hpp"
+#include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include <cstdint>
@@ -32,6 +33,6 @@ struct MergeResult {
 /// (an overlap), naming both; and what reading and writing throw.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format = {}, const LayerWriteOptions& options = {},
-                              const Execution& execution = {});
+                              const LayerReadOptions& reading = {}, const Execution& execution = {});
 
 } // namespace lamella

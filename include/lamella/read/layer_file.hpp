@@ -6,11 +6,18 @@
 #include "lamella/core/execution.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace lamella {
+
+struct LayerReadOptions {
+    /// More bytes than this, of what an archive unpacks to and of the layers, are Error{limit}; 0: three
+    /// quarters of the memory there is. They are counted before there is memory for them.
+    std::uint64_t max_memory = 0;
+};
 
 /// One of the parts that a file holds.
 struct LayerPart {
@@ -36,10 +43,11 @@ struct LayerFile {
 /// ascending z; what the format does not say is made from what it does (a Common Layer Interface layer knows
 /// its top: its cut is taken half-way up). Throws Error{input} with file, byte or line, what was found and
 /// what was expected.
-[[nodiscard]] LayerFile read_layers(const std::string& path, const Execution& execution = {});
+[[nodiscard]] LayerFile read_layers(const std::string& path, const LayerReadOptions& options = {},
+                                    const Execution& execution = {});
 
 /// The same from bytes in memory; `name` stands for the path in errors.
 [[nodiscard]] LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,
-                                    const Execution& execution = {});
+                                    const LayerReadOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella

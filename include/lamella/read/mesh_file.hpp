@@ -27,7 +27,8 @@ struct MeshReadOptions {
     /// More triangles than this, in the file or over all instances, are Error{limit}; 0: as many as can be
     /// held. They are counted while a file is read, before there is memory for the rest.
     std::uint64_t max_triangles = 0;
-    /// So are more bytes than this, of what a compressed file unpacks to and of the meshes; 0: any number.
+    /// So are more bytes than this, of what a compressed file unpacks to and of the meshes; 0: three quarters
+    /// of the memory there is.
     std::uint64_t max_memory = 0;
 };
 

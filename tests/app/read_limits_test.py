@@ -1,0 +1,122 @@
+"""--max-memory and --max-triangles of the commands that read files: small files that would take much memory.
+
+Each is read by a process that may not have the memory, so that it is refused before it is taken.
+"""
+
+import gzip
+import io
+import json
+import resource
+import zipfile
+
+from program import ProgramTest, binary_stl, box_triangles, main
+
+MEGABYTE = 1_000_000
+UNPACKED = 300 * MEGABYTE
+ALLOWED = 150 * MEGABYTE
+LIMIT = ("--max-memory", "20M", "--threads", "1", "--progress", "none")
+
+
+def zipped(entries):
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, entry in entries.items():
+            archive.writestr(name, entry)
+    return content.getvalue()
+
+
+def array_of_zeros(length):
+    head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({length // 16}, 2), }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00v\x00" + head.encode() + bytes(length)
+
+
+SLICES = ('<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" '
+          'xmlns:t="http://schemas.microsoft.com/3dmanufacturing/slice/2015/07"><resources>{}</resources>'
+          '<build><item objectid="1"/></build></model>')
+
+
+def slice_files():
+    """Of each format that is read: one that takes far more memory than its bytes, and the text of its refusal."""
+    zeros = bytes(8 * 2_000_000)
+    cli = "$$HEADERSTART\n$$UNITS/1\n{}\n$$HEADEREND"
+    slices = "".join(f'<t:slice ztop="{i}"/>' for i in range(1, 400_000))
+    head = '{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}'
+    return {
+        "bomb.npz": (zipped({"points.npy": array_of_zeros(UNPACKED)}), "zip entry 'points.npy'"),
+        "bomb.3mf": (zipped({"3D/3dmodel.model": SLICES.format(" " * UNPACKED)}), "zip entry '3D/3dmodel.model'"),
+        "slices.3mf": (zipped({"3D/3dmodel.model": SLICES.format(
+            f'<t:slicestack id="1">{slices}</t:slicestack><object id="1" t:slicestackid="1"/>')}), "line 1"),
+        "binary.cli": (cli.format("$$BINARY").encode() + b"\x80\x00\x01\x00" * 2_000_000, "byte "),
+        "text.cli": (cli.format("$$ASCII") + "\n$$GEOMETRYSTART\n" + "$$LAYER/1\n" * 1_000_000 + "$$GEOMETRYEND",
+                     "byte "),
+        "layers.slc": (b"-SLCVER 2.0 -UNIT MM -TYPE PART \r\n\x1a" + bytes(256) + b"\x01" + bytes(16) + zeros, "byte "),
+        "layers.svg": ("<svg>" + "<g slic3r:z='1'/>\n" * 1_000_000 + "</svg>", "line "),
+        "parts.json": (head + ",{}" * 3_000_000 + "]}", "byte "),
+    }
+
+
+class ReadLimits(ProgramTest):
+    def refuse(self, pattern, *arguments, **keywords):
+        allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (ALLOWED, ALLOWED))  # noqa: E731
+        self.fail_with(5, pattern, *arguments, *LIMIT, preexec_fn=allowed, **keywords)
+
+    def test_every_command_refuses_every_slice_file_that_takes_too_much(self):
+        self.write("one.json", json.dumps({"format": "lamella layers", "version": 1, "parts": [{}], "layers": [
+            {"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 1, 0, 0, 1]]}]}]}))
+        for name, (content, place) in slice_files().items():
+            self.write(name, content)
+            self.assertLess(self.path(name).stat().st_size, 25 * MEGABYTE)
+            pattern = f"{name}: (?=.*{place}).*20000000 bytes"
+            for arguments in [("info", name), ("verify", name), ("compare", name, "one.json"),
+                              ("compare", "one.json", name), ("convert", name, "out.json"),
+                              ("merge", "out.json", "one.json", name), ("view", name, "-o", "out.html")]:
+                with self.subTest(arguments=arguments):
+                    self.refuse(pattern, *arguments)
+            self.path(name).unlink()
+
+    def test_a_mesh_that_unpacks_to_too_much(self):
+        self.write("bomb.stl.gz", gzip.compress(bytes(UNPACKED)))
+        self.write("bomb.amf", zipped({"bomb.amf": "<amf>" + " " * UNPACKED + "</amf>"}))
+        self.succeed("slice", self.box(), "-o", "box.cli")
+        for name in ["bomb.stl.gz", "bomb.amf"]:
+            for arguments in [("info", name), ("verify", "box.cli", "--mesh", name), ("view", name, "-o", "out.html")]:
+                with self.subTest(arguments=arguments):
+                    self.refuse(f"{name}: .*20000000 bytes", *arguments)
+
+    def test_too_many_triangles(self):
+        self.write("box.stl", binary_stl(box_triangles(20, 30, 10)))
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        for arguments in [("info", "box.stl"), ("verify", "box.cli", "--mesh", "box.stl"),
+                          ("view", "box.stl", "-o", "out.html")]:
+            with self.subTest(arguments=arguments):
+                self.fail_with(5, r"box\.stl.*more than the 11 triangles of --max-triangles", *arguments,
+                               "--max-triangles", 11)
+                if arguments[0] != "view":  # which needs the viewer, too
+                    self.succeed(*arguments, "--max-triangles", 12, "--max-memory", "10M")
+
+    def test_standard_input(self):
+        endless = b"$$HEADERSTART\n" + b" " * (30 * MEGABYTE)
+        self.refuse("20000000 bytes of --max-memory", "info", "-", stdin=endless)
+        self.refuse("20000000 bytes of --max-memory", "info", "-", stdin=b"solid\n" + endless)
+
+    def test_limits_that_are_kept(self):
+        self.succeed("slice", self.box(), "-o", "box.cli")
+        self.succeed("slice", "box.stl", "-o", "box.npz")
+        for arguments in [("info", "box.npz"), ("verify", "box.npz"), ("compare", "box.cli", "box.npz"),
+                          ("convert", "box.npz", "out.svg"), ("merge", "whole.cli", "box.cli")]:
+            with self.subTest(arguments=arguments):
+                self.succeed(*arguments, "--max-memory", "1M")
+
+    def test_no_amount_of_memory(self):
+        self.fail_with(2, "--max-memory.*no amount of memory", "info", "box.stl", "--max-memory", "much")
+
+    def test_help_speaks_of_pieces_where_there_are_some(self):
+        for command in ["slice", "info", "verify", "compare", "convert", "merge", "view"]:
+            text = " ".join(self.succeed(command, "--help").text.split())
+            self.assertIn("--max-memory SIZE", text)
+            self.assertEqual("sliced in pieces" in text, command == "slice")
+            self.assertEqual("--max-triangles N" in text, command in ["slice", "info", "verify", "view"])
+
+
+if __name__ == "__main__":
+    main()
