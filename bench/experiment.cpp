@@ -5,9 +5,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -98,19 +100,52 @@ std::string machine() {
                        __VERSION__);
 }
 
-std::string option(int argc, char** argv, const char* name, const std::string& otherwise) {
-    for (int i = 1; i + 1 < argc; ++i)
-        if (std::string(argv[i]) == name)
-            return argv[i + 1];
-    return otherwise;
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, const std::string& usage) {
+    std::cerr << what << "\nusage: " << usage << '\n';
+    std::exit(2);
 }
 
-std::vector<std::string> list_option(int argc, char** argv, const char* name, const std::string& otherwise) {
+} // namespace
+
+Options::Options(int argc, char** argv, const std::string& usage) : usage_(usage) {
+    const std::regex option(R"(\[(--[a-z]+) ([^\]]*)\])");
+    for (std::sregex_iterator found(usage.begin(), usage.end(), option), end; found != end; ++found)
+        values_[(*found)[1]] = (*found)[2];
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    for (std::size_t i = 0; i < words.size(); i += 2) {
+        if (words[i] == "--help") {
+            std::cout << "usage: " << usage << '\n';
+            std::exit(0);
+        }
+        if (!values_.contains(words[i]))
+            refuse(fmt::format("there is no option '{}'", words[i]), usage);
+        if (i + 1 == words.size())
+            refuse(fmt::format("{} needs a value", words[i]), usage);
+        values_[words[i]] = words[i + 1];
+    }
+}
+
+std::vector<std::string> Options::list(const std::string& name) const {
     std::vector<std::string> items;
-    std::istringstream text(option(argc, argv, name, otherwise));
-    for (std::string item; std::getline(text, item, ',');)
+    std::istringstream line(text(name));
+    for (std::string item; std::getline(line, item, ',');)
         items.push_back(item);
     return items;
+}
+
+double Options::number(const std::string& name) const {
+    std::istringstream line(text(name));
+    double value = 0;
+    if (!(line >> value) || !(line >> std::ws).eof() || value < 0)
+        refuse(fmt::format("{}: found '{}', expected a number", name, text(name)), usage_);
+    return value;
+}
+
+unsigned Options::threads() const {
+    const auto given = static_cast<unsigned>(number("--threads"));
+    return given == 0 ? std::thread::hardware_concurrency() : given;
 }
 
 } // namespace lamella::bench

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -89,11 +90,25 @@ class Table {
 /// One line: processor, threads available, compiler.
 [[nodiscard]] std::string machine();
 
-/// `--name value` from the command line, or the default.
-[[nodiscard]] std::string option(int argc, char** argv, const char* name, const std::string& otherwise);
+/// What the command line asks for, as `--name value`.
+class Options {
+  public:
+    /// `usage`: such as "limit [--rounds 7] [--parts rook,lattice]", the options that there are with the
+    /// values that they have unless given. --help prints it and ends the program; so does, with exit code 2,
+    /// anything that it does not name.
+    Options(int argc, char** argv, const std::string& usage);
 
-/// The same, divided at its commas.
-[[nodiscard]] std::vector<std::string> list_option(int argc, char** argv, const char* name,
-                                                   const std::string& otherwise);
+    [[nodiscard]] const std::string& text(const std::string& name) const { return values_.at(name); }
+    [[nodiscard]] std::vector<std::string> list(const std::string& name) const; ///< divided at commas
+    /// Anything but a number ends the program with exit code 2.
+    [[nodiscard]] double number(const std::string& name) const;
+    [[nodiscard]] int rounds() const { return static_cast<int>(number("--rounds")); }
+    /// As many as there are processors where it is 0.
+    [[nodiscard]] unsigned threads() const;
+
+  private:
+    std::string usage_;
+    std::map<std::string, std::string> values_;
+};
 
 } // namespace lamella::bench

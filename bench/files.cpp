@@ -2,8 +2,6 @@
 // and from STL file to slice file while slicing goes on, with the peak memory of that, against slicing into
 // memory. The files are read back and checked.
 //
-//     files [--parts rook,lattice] [--formats cli,svg] [--rounds 3] [--seconds 20]
-//
 // A row takes so many rounds, or as many as fit into the seconds.
 
 #include "experiment.hpp"
@@ -126,14 +124,17 @@ std::string seconds(double s) {
 }
 
 int report(int argc, char** argv) {
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "3"));
-    const double limit = std::stod(option(argc, argv, "--seconds", "20"));
-    const std::vector<std::string> formats =
-        list_option(argc, argv, "--formats", "cli,cli-ascii,svg,slc,json,npz,3mf,dxf,geojson,wkt");
+    const Options options(
+        argc, argv,
+        "files [--parts sheet-1225,sheet-1225-shuffled,sheet-100-on-edge,rook,lattice] "
+        "[--formats cli,cli-ascii,svg,slc,json,npz,3mf,dxf,geojson,wkt] [--rounds 3] [--seconds 20]");
+    const int rounds = options.rounds();
+    const double limit = options.number("--seconds");
+    const std::vector<std::string> formats = options.list("--formats");
     std::cout << machine() << "; least of " << rounds << " rounds\n\n";
 
     bool all_right = true;
-    for (const Part& part : chosen_parts(argc, argv)) {
+    for (const Part& part : chosen_parts(options)) {
         Table table({part.name, "file MB", "slicing s", "into file s", "peak MB", "writing CPU s",
                      "MB/s a core", "copying CPU s", "writing / copying", "checked"});
         for (const std::string& name : formats) {

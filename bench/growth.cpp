@@ -1,7 +1,5 @@
 // Does the cost stay flat? Time per triangle and point from 10^4 to 10^7 triangles, and from 30 to 3,000
 // planes.
-//
-//     growth [--rounds 5] [--threads 2]
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -10,7 +8,6 @@
 
 #include <cmath>
 #include <iostream>
-#include <thread>
 
 namespace lamella::bench {
 
@@ -82,9 +79,9 @@ class Report {
 int main(int argc, char** argv) {
     using namespace lamella;
     using namespace lamella::bench;
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "5"));
-    const auto threads = static_cast<unsigned>(
-        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
+    const Options options(argc, argv, "growth [--rounds 5] [--threads 0]");
+    const int rounds = options.rounds();
+    const unsigned threads = options.threads();
     std::cout << machine() << "; medians of " << rounds << " rounds, " << threads << " threads\n\n";
 
     Report report(rounds, threads);

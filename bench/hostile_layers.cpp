@@ -3,8 +3,6 @@
 // (n log n is about 1.1, a square 2). Crossings are as many as the layer was made with; simplified contours
 // keep within the tolerance and do not cross; filled layers have no crossings and, filled again, stay as they
 // are.
-//
-//     hostile_layers [--rounds 3]
 
 #include "experiment.hpp"
 
@@ -241,7 +239,8 @@ class Report {
 };
 
 int report(int argc, char** argv) {
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "3"));
+    const Options options(argc, argv, "hostile_layers [--rounds 3]");
+    const int rounds = options.rounds();
     std::cout << machine() << "; medians of " << rounds << " rounds, 1 thread\n\n";
     constexpr int n = 25000;
     const auto half = [](int lines) {

@@ -1,8 +1,6 @@
 // What does looking after layers and meshes cost? Filling layers that are clean, and layers of a part and its
 // copy half a body further, against slicing; finding self-intersections against welding. Clean layers must
 // come back bit for bit, united ones must have no crossings left and, filled again, stay as they are.
-//
-//     layer_steps [--rounds 5] [--threads 2]
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -11,7 +9,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <thread>
 
 namespace lamella::bench {
 
@@ -120,9 +117,9 @@ bool add_fill(Table& table, const std::string& what, int rounds, const Measure& 
 }
 
 int report(int argc, char** argv) {
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "5"));
-    const auto threads = static_cast<unsigned>(
-        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
+    const Options options(argc, argv, "layer_steps [--rounds 5] [--threads 0]");
+    const int rounds = options.rounds();
+    const unsigned threads = options.threads();
     const Execution execution{.threads = threads};
     std::cout << machine() << "; medians of " << rounds << " rounds, " << threads << " threads\n\n";
     std::vector<Part> parts = standard_parts();

@@ -1,8 +1,6 @@
 // How far from the limit? The limit of slicing a file is to read its bytes and to write the points of the
 // result to fresh memory. Both are timed here in one run, each in a process of its own, in turn, and the
 // result is checked.
-//
-//     limit [--parts rook,lattice] [--rounds 7] [--threads 2]
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -120,9 +118,11 @@ double middle(const std::vector<Measured<Run>>& runs, Get get) {
 }
 
 int report(int argc, char** argv) {
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "7"));
-    const auto threads = static_cast<unsigned>(
-        std::stoul(option(argc, argv, "--threads", std::to_string(std::thread::hardware_concurrency()))));
+    const Options options(argc, argv,
+                          "limit [--parts sheet-1225,sheet-1225-shuffled,sheet-100-on-edge,rook,lattice] "
+                          "[--rounds 7] [--threads 0]");
+    const int rounds = options.rounds();
+    const unsigned threads = options.threads();
     std::cout << machine() << "; medians of " << rounds << " rounds\n\n";
 
     Table table({"part", "triangles", "points", "threads", "limit s", "total s", "ratio", "read",
@@ -131,7 +131,7 @@ int report(int argc, char** argv) {
     bool right = true;
     std::uint64_t sheet_hash = 0;
     double sheet_total = 0;
-    for (const Part& part : chosen_parts(argc, argv)) {
+    for (const Part& part : chosen_parts(options)) {
         std::vector<double> single(4);
         std::uint64_t hash = 0;
         std::vector<unsigned> counts{1};

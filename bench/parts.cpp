@@ -1,7 +1,5 @@
 #include "parts.hpp"
 
-#include "experiment.hpp"
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -33,11 +31,9 @@ std::vector<Part> standard_parts() {
     };
 }
 
-std::vector<Part> chosen_parts(int argc, char** argv) {
+std::vector<Part> chosen_parts(const Options& options) {
     std::vector<Part> parts = standard_parts();
-    const std::vector<std::string> names = list_option(argc, argv, "--parts", "");
-    if (names.empty())
-        return parts;
+    const std::vector<std::string> names = options.list("--parts");
     std::erase_if(parts, [&](const Part& part) {
         std::string name = part.name;
         std::replace(name.begin(), name.end(), ' ', '-');

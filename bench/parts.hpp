@@ -2,6 +2,8 @@
 
 // The parts that the experiments slice, as binary STL files in a folder of the system's temporary files.
 
+#include "experiment.hpp"
+
 #include <lamella/lamella.hpp>
 
 #include <string>
@@ -19,9 +21,9 @@ struct Part {
 /// the first call, reused as long as the files are there.
 [[nodiscard]] std::vector<Part> standard_parts();
 
-/// Those of them that `--parts rook,lattice` names, blanks as hyphens, or else all. Exits the program with a
+/// Those of them that the option --parts names, blanks as hyphens. Exits the program with a
 /// message when there is none.
-[[nodiscard]] std::vector<Part> chosen_parts(int argc, char** argv);
+[[nodiscard]] std::vector<Part> chosen_parts(const Options& options);
 
 /// A part as an experiment slices it: one plan for all measurements.
 struct OpenedPart {

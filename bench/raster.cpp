@@ -2,8 +2,6 @@
 // files, and the whole job from an STL file, in seconds of processors, beside touching every pixel once
 // (memset). The covered areas are compared with those of the sections.
 //
-//     raster [--parts rook,lattice] [--antialias 1,4,16] [--rounds 3] [--seconds 60]
-//
 // A row takes so many rounds, or as many as fit into the seconds.
 
 #include "experiment.hpp"
@@ -137,19 +135,22 @@ std::string seconds(double s) {
 }
 
 int report(int argc, char** argv) {
-    const int rounds = std::stoi(option(argc, argv, "--rounds", "3"));
-    const double limit = std::stod(option(argc, argv, "--seconds", "60"));
+    const Options options(argc, argv,
+                          "raster [--parts sheet-1225,sheet-1225-shuffled,sheet-100-on-edge,rook,lattice] "
+                          "[--antialias 1,4,16] [--rounds 3] [--seconds 60]");
+    const int rounds = options.rounds();
+    const double limit = options.number("--seconds");
     std::cout << machine() << "; least of " << rounds << " rounds\n\n";
 
     bool all_right = true;
-    for (const Part& part : chosen_parts(argc, argv)) {
+    for (const Part& part : chosen_parts(options)) {
         if (part.name.ends_with("shuffled"))
             continue; // the same pictures
         Table table({part.name, "layers", "file MB", "slicing CPU s", "raster CPU s", "PNG CPU s",
                      "job CPU s", "job s", "touching all s", "checked"});
         const auto layers =
             measure_in_child<std::size_t>([&] { return open_part(part, {}).plan.layers.size(); }).result;
-        for (const std::string& level : list_option(argc, argv, "--antialias", "1,4,16")) {
+        for (const std::string& level : options.list("--antialias")) {
             const auto antialias = static_cast<unsigned>(std::stoul(level));
             const std::string path = part.path + ".sl1s";
             Costs costs;
