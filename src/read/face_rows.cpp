@@ -334,6 +334,7 @@ class RowsReader {
                 for (; row < all_rows && words.offset() - range.begin < piece_bytes; ++row)
                     rows_.read_row(row, words, piece);
             } catch (const TextFault& fault) {
+                count_piece(piece, limits_); // it is given back with the others
                 if (fault.offset == text_.size())
                     fail_at_end(row, all_rows);
                 else

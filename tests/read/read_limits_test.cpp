@@ -321,7 +321,7 @@ TEST_F(LimitsOfReading, SlicesOf3mfAreCountedBeforeTheyAreMade) {
     expect_refused(package("slices.3mf", stack + slices(200'000) + object, item), "line ");
     expect_refused(package("components.3mf",
                            stack + slices(1) + object + "<object id='2'><components>" +
-                               repeated("<component objectid='1'/>\n", 250'000) + "</components></object>",
+                               repeated("<component objectid='1'/>\n", 300'000) + "</components></object>",
                            item),
                    "line ");
     // Few bytes, of which placing makes many heights, many names, and many layers.
