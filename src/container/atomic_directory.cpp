@@ -37,6 +37,7 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
     if (target_.empty())
         throw Error(ErrorKind::output, "cannot write a folder without a name");
     check_replaceable();
+    const UnfinishedName::Creation creation;
     for (int attempt = 0; working_.empty(); ++attempt) {
         const fs::path candidate = beside(target_, attempt);
         if (::mkdir(candidate.c_str(), 0777) == 0)

@@ -1,5 +1,7 @@
 #include "container/unfinished_name.hpp"
 
+#include "lamella/core/error.hpp"
+
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -9,6 +11,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -28,6 +31,7 @@ using Slot = UnfinishedName::Slot;
 
 std::atomic<Slot*> slots{nullptr};
 std::atomic<bool> ending{false};
+std::atomic<int> creations{0};
 
 // Stands in the slots that remove_unfinished has been at: nobody may use them again.
 constexpr char taken[] = "";
@@ -66,6 +70,19 @@ void remove(const char* path) noexcept {
 
 } // namespace
 
+UnfinishedName::Creation::Creation() {
+    ++creations;
+    // Either remove_unfinished sees this one, or this sees that it has begun.
+    if (ending) {
+        --creations;
+        throw Error(ErrorKind::cancelled, "cancelled");
+    }
+}
+
+UnfinishedName::Creation::~Creation() {
+    --creations;
+}
+
 bool UnfinishedName::announce(const std::string& path) {
     auto copy = std::make_unique<char[]>(path.size() + 1);
     std::memcpy(copy.get(), path.c_str(), path.size() + 1);
@@ -103,6 +120,10 @@ bool UnfinishedName::withdraw() noexcept {
 
 void remove_unfinished() noexcept {
     ending = true;
+    // Not for ever: a file system may be stuck, and a thread that has crashed in a creation does not end it.
+    constexpr timespec a_moment{.tv_sec = 0, .tv_nsec = 1'000'000};
+    for (int moments = 0; creations != 0 && moments < 200; ++moments)
+        ::nanosleep(&a_moment, nullptr);
     for (Slot* slot = slots; slot != nullptr; slot = slot->next) {
         const char* const path = slot->path.exchange(taken);
         if (path != nullptr && path != taken)

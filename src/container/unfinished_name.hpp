@@ -23,6 +23,17 @@ class UnfinishedName {
     /// Forgets it: what had the name has its final one, or is gone. False when it has been removed.
     bool withdraw() noexcept;
 
+    /// To be held from before a name is created until it is announced, or, where that was refused, removed
+    /// again: remove_unfinished waits for those who hold one, and after that nobody gets one:
+    /// Error{cancelled}.
+    class Creation {
+      public:
+        Creation();
+        ~Creation();
+        Creation(const Creation&) = delete;
+        Creation& operator=(const Creation&) = delete;
+    };
+
     struct Slot;
 
   private:

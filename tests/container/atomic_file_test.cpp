@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -137,6 +138,31 @@ TEST(AtomicFile, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
     });
     EXPECT_EQ(code, 0);
     EXPECT_EQ(folder.entries(), Names{"done"});
+}
+
+TEST(AtomicFile, LeavesNoTemporaryNameWheneverTheProcessEnds) {
+    const TemporaryFolder folder;
+    for (int round = 0; round < 100; ++round) {
+        const int code = exit_code_of_child([&] {
+            std::vector<std::thread> writers;
+            for (int i = 0; i < 4; ++i)
+                writers.emplace_back([&, i] {
+                    try {
+                        for (;;)
+                            AtomicFile(folder.file(std::to_string(i))).commit();
+                    } catch (const Error&) {
+                        std::this_thread::sleep_for(
+                            std::chrono::hours(1)); // whoever ends the process is faster
+                    }
+                });
+            std::this_thread::sleep_for(std::chrono::microseconds(500 + 37 * round));
+            remove_unfinished();
+            _exit(0);
+        });
+        EXPECT_EQ(code, 0);
+        for (const std::string& name : folder.entries())
+            EXPECT_FALSE(name.ends_with(".tmp")) << name << " in round " << round;
+    }
 }
 
 TEST(AtomicFile, KeepsTheOldFileWhenTheNewOneIsNotEnded) {
