@@ -7,6 +7,8 @@ CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 THREADED := core mesh contour read slicing polygon pipeline
 # Long tests in those rooms of what runs on one thread.
 UNTHREADED := Engines|Shapes|Head|Sole|Crossings
+# Tests of what takes many steps, and sanitizers make each of them slow.
+MANY_STEPS := WithoutLookingAtAll|AmongNeighbours|ReasonableNumberOfSteps|Beyond4GiB
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
@@ -50,7 +52,7 @@ test-large: packages-all
 test-asan: packages-all
 	cmake --preset asan-ubsan
 	cmake --build build-asan
-	$(CTEST) --test-dir build-asan
+	$(CTEST) --test-dir build-asan --label-exclude '^(bench|house)$$' --exclude-regex '$(MANY_STEPS)'
 
 test-tsan: packages-all
 	cmake --preset tsan
