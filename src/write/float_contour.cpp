@@ -69,7 +69,8 @@ LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, doubl
     FourFloats least = FourFloats{} + infinity;
     FourFloats most = FourFloats{} - infinity;
     const auto put_pair = [&](std::size_t i) __attribute__((always_inline)) {
-        const FourDoubles given = at<4>(&points[i].x).v; // fetched here: a reference would promise an alignment
+        const FourDoubles given =
+            at<4>(&points[i].x).v; // fetched here: a reference would promise an alignment
         const FourFloats pair = rounded_pair(given, scale);
         least = pair < least ? pair : least;
         most = pair > most ? pair : most;
