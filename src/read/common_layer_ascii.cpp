@@ -1,0 +1,121 @@
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "read/common_layer_geometry.hpp"
+#include "read/common_layer_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace lamella {
+
+namespace {
+
+/// An integer parameter such as a direction, out of a number that may have a decimal point.
+std::int64_t integer(CommonLayerText& text, const char* what) {
+    const double value = text.number(what);
+    if (value != std::floor(value) || std::abs(value) > 9e15)
+        text.fail(fmt::format("{}", value), fmt::format("{} must be a whole number", what));
+    return static_cast<std::int64_t>(value);
+}
+
+void check_direction(const CommonLayerText& text, std::int64_t direction) {
+    if (direction < 0 || direction > 2)
+        text.fail(fmt::format("direction {}", direction),
+                  "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)");
+}
+
+} // namespace
+
+void read_ascii_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
+                         const Execution& execution, CommonLayerGeometry& geometry) {
+    CommonLayerText text(bytes, header.end, name);
+    text.skip_blanks();
+    if (!text.take("$$GEOMETRYSTART"))
+        text.fail(text.done() ? "the end of the file"
+                              : fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
+                  "$$GEOMETRYSTART must follow the header");
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, bytes.size());
+    std::size_t reported = 0;
+    for (;;) {
+        text.skip_blanks();
+        if (text.done())
+            text.fail("the end of the file", "the geometry must end with $$GEOMETRYEND");
+        if (text.at() - reported > (1U << 20)) {
+            executor.check_cancelled();
+            progress.add(text.at() - reported);
+            reported = text.at();
+        }
+        if (!text.take("$$"))
+            text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
+                      "a command must start with $$");
+        const std::size_t command_at = text.at() - 2;
+        const std::string_view command = text.take_command();
+        if (command == "GEOMETRYEND")
+            break;
+        if (command == "LAYER") {
+            text.expect('/', "the layer's height");
+            const double z = text.number("the layer's height");
+            geometry.start_layer(z, fmt::format("byte {}", command_at));
+        } else if (command == "POLYLINE" || command == "HATCHES") {
+            if (!geometry.in_layer())
+                text.fail(fmt::format("$${} before the first $$LAYER", command),
+                          "contours belong to a layer");
+            text.expect('/', "the part's number");
+            const std::int64_t part = integer(text, "the part's number");
+            text.expect(',', "the next parameter");
+            const bool polyline = command == "POLYLINE";
+            std::int64_t direction = 2;
+            if (polyline) {
+                direction = integer(text, "the direction");
+                check_direction(text, direction);
+                text.expect(',', "the number of points");
+            }
+            const std::int64_t count =
+                integer(text, polyline ? "the number of points" : "the number of hatches");
+            // Two characters at least for each number that must follow.
+            const std::int64_t numbers = polyline ? 2 : 4;
+            if (count < 0 || count > static_cast<std::int64_t>(text.rest().size()) / (2 * numbers) + 1)
+                text.fail(fmt::format("a count of {}", count),
+                          fmt::format("{} bytes are left in the file", text.rest().size()));
+            const auto place = [&] {
+                return fmt::format("line {}", line_at(bytes, command_at));
+            };
+            if (polyline)
+                geometry.expect_points(static_cast<std::uint64_t>(count), place);
+            else
+                geometry.expect_hatch_points(2 * static_cast<std::uint64_t>(count), place);
+            for (std::int64_t i = 0; i < count; ++i) {
+                std::array<double, 4> value{};
+                for (std::size_t k = 0; k < static_cast<std::size_t>(numbers); ++k) {
+                    text.expect(',', "the next coordinate");
+                    value[k] = text.number("a coordinate");
+                }
+                if (polyline) {
+                    geometry.add_point(value[0], value[1]);
+                } else {
+                    geometry.add_hatch_point(value[0], value[1]);
+                    geometry.add_hatch_point(value[2], value[3]);
+                }
+            }
+            text.skip_blanks();
+            if (!text.done() && !text.rest().starts_with("$$"))
+                text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 12), 24)),
+                          fmt::format("the count of {} says that the coordinates end here", count));
+            if (polyline)
+                geometry.end_polyline(part, static_cast<int>(direction), place);
+            else
+                geometry.end_hatches(part, place);
+        } else {
+            // Extensions such as $$POWER/100.0 stand between polylines.
+            text.move_to(std::min(bytes.find_first_of("\r\n", text.at()), bytes.size()));
+        }
+    }
+    progress.finish();
+}
+
+} // namespace lamella

@@ -1,0 +1,202 @@
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "read/common_layer_geometry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace lamella {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "binary numbers are read as memory has them");
+
+enum class Command : std::uint16_t {
+    layer_long = 127,
+    layer_short = 128,
+    polyline_short = 129,
+    polyline_long = 130,
+    hatches_short = 131,
+    hatches_long = 132,
+};
+
+/// A cursor over the binary geometry.
+class Bytes {
+  public:
+    Bytes(std::string_view bytes, std::size_t at, bool aligned, const std::string& name)
+        : bytes_(bytes), at_(at), aligned_(aligned), name_(name) {}
+
+    [[nodiscard]] std::size_t at() const { return at_; }
+    [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
+    [[nodiscard]] const char* data() const { return bytes_.data() + at_; }
+
+    /// Some writers put a line end or zeros behind the last command.
+    [[nodiscard]] bool only_padding_left() const {
+        return std::all_of(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), bytes_.end(),
+                           [](char c) { return c == '\n' || c == '\r' || c == '\0'; });
+    }
+
+    template <class T>
+    T take(const char* what) {
+        T value;
+        if (left() < sizeof value)
+            fail(at_, fmt::format("the end of the file within {}", what), "the file is truncated");
+        std::memcpy(&value, data(), sizeof value);
+        at_ += sizeof value;
+        if (aligned_ && sizeof value == 2)
+            at_ = std::min(at_ + 2, bytes_.size()); // every 16-bit number fills a word of 32
+        return value;
+    }
+
+    /// Room for `count` records of `size` bytes, all of them in the file. Moves behind them.
+    const char* take_records(std::int64_t count, std::size_t size, const char* what) {
+        if (count < 0 || static_cast<std::uint64_t>(count) > left() / size)
+            fail(at_, fmt::format("a count of {} {}", count, what),
+                 fmt::format("{} bytes are left in the file, room for {}", left(), left() / size));
+        const char* first = data();
+        at_ += static_cast<std::size_t>(count) * size;
+        return first;
+    }
+
+    [[noreturn]] void fail(std::size_t at, const std::string& found, const std::string& expected) const {
+        throw Error(ErrorKind::input, fmt::format("{}, byte {}: found {}; {}", name_, at, found, expected));
+    }
+
+  private:
+    std::string_view bytes_;
+    std::size_t at_;
+    bool aligned_;
+    const std::string& name_;
+};
+
+/// How 16-bit coordinates are meant. The standard says unsigned; exports exist that are signed, and only the
+/// header's box tells: unsigned where it is said to be non-negative.
+class ShortNumbers {
+  public:
+    explicit ShortNumbers(const CommonLayerHeader& header)
+        : signed_(header.dimension && ((*header.dimension)[0] < 0 || (*header.dimension)[1] < 0)) {}
+
+    [[nodiscard]] double operator()(const char* from) const {
+        std::uint16_t bits = 0;
+        std::memcpy(&bits, from, sizeof bits);
+        return signed_ ? static_cast<double>(static_cast<std::int16_t>(bits)) : static_cast<double>(bits);
+    }
+
+  private:
+    bool signed_;
+};
+
+double finite_number(const Bytes& in, std::size_t at, float value, const char* what) {
+    if (!std::isfinite(value))
+        in.fail(at, fmt::format("{} that is not finite", what), "it must be a number");
+    return static_cast<double>(value);
+}
+
+} // namespace
+
+void read_binary_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
+                          const Execution& execution, CommonLayerGeometry& geometry) {
+    std::size_t begin = header.aligned ? (header.end + 3) / 4 * 4 : header.end;
+    // Some writers end the header with a line end; a command never begins with one.
+    if (!header.aligned) {
+        const std::string_view rest = bytes.substr(begin);
+        if (rest.starts_with("\r\n"))
+            begin += 2;
+        else if (rest.starts_with("\n"))
+            begin += 1;
+    }
+    Bytes in(bytes, std::min(begin, bytes.size()), header.aligned, name);
+    const ShortNumbers short_number(header);
+    const auto take_point = [&](const char* from, bool is_long, std::size_t at, const auto& take) {
+        if (is_long) {
+            std::array<float, 2> p{};
+            std::memcpy(p.data(), from, sizeof p);
+            if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+                in.fail(at, "a point that is not finite", "coordinates must be numbers");
+            take(static_cast<double>(p[0]), static_cast<double>(p[1]));
+        } else {
+            take(short_number(from), short_number(from + 2));
+        }
+    };
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, bytes.size());
+    std::size_t reported = 0;
+    while (in.left() > 0 && !in.only_padding_left()) {
+        const std::size_t at = in.at();
+        if (at - reported > (1U << 22)) {
+            executor.check_cancelled();
+            progress.add(at - reported);
+            reported = at;
+        }
+        const auto command = static_cast<Command>(in.take<std::uint16_t>("a command"));
+        const auto in_layer = [&] {
+            if (!geometry.in_layer())
+                in.fail(at, "geometry before the first layer", "contours belong to a layer");
+        };
+        const auto place = [&] {
+            return fmt::format("byte {}", at);
+        };
+        switch (command) {
+        case Command::layer_long:
+            geometry.start_layer(finite_number(in, at, in.take<float>("a layer"), "a height"), place());
+            break;
+        case Command::layer_short:
+            geometry.start_layer(in.take<std::uint16_t>("a layer"), place());
+            break;
+        case Command::polyline_short:
+        case Command::polyline_long: {
+            in_layer();
+            const bool is_long = command == Command::polyline_long;
+            const auto parameter = [&]() -> std::int64_t {
+                return is_long ? std::int64_t{in.take<std::int32_t>("a polyline")}
+                               : std::int64_t{in.take<std::uint16_t>("a polyline")};
+            };
+            const std::int64_t part = parameter();
+            const std::int64_t direction = parameter();
+            if (direction < 0 || direction > 2)
+                in.fail(at, fmt::format("a polyline of direction {}", direction),
+                        "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)");
+            const std::int64_t count = parameter();
+            const std::size_t size = is_long ? 8 : 4;
+            const char* first = in.take_records(count, size, "points");
+            geometry.expect_points(static_cast<std::uint64_t>(count), place);
+            for (std::int64_t i = 0; i < count; ++i, first += size)
+                take_point(first, is_long, at, [&](double x, double y) { geometry.add_point(x, y); });
+            geometry.end_polyline(part, static_cast<int>(direction), place);
+            break;
+        }
+        case Command::hatches_short:
+        case Command::hatches_long: {
+            in_layer();
+            const bool is_long = command == Command::hatches_long;
+            const auto parameter = [&]() -> std::int64_t {
+                return is_long ? std::int64_t{in.take<std::int32_t>("hatches")}
+                               : std::int64_t{in.take<std::uint16_t>("hatches")};
+            };
+            const std::int64_t part = parameter();
+            const std::int64_t count = parameter();
+            const std::size_t size = is_long ? 8 : 4;
+            const char* first = in.take_records(count, 2 * size, "hatches");
+            geometry.expect_hatch_points(2 * static_cast<std::uint64_t>(count), place);
+            for (std::int64_t i = 0; i < 2 * count; ++i, first += size)
+                take_point(first, is_long, at, [&](double x, double y) { geometry.add_hatch_point(x, y); });
+            geometry.end_hatches(part, place);
+            break;
+        }
+        default:
+            in.fail(at, fmt::format("command {}", static_cast<unsigned>(command)),
+                    "the commands are 127 to 132: layers, polylines and hatches");
+        }
+    }
+    progress.finish();
+}
+
+} // namespace lamella

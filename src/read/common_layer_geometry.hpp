@@ -1,0 +1,176 @@
+#pragma once
+
+// The layers of a Common Layer Interface file, as the commands of its geometry section say them.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include "read/common_layer_header.hpp"
+#include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// Collects what the geometry section says, however it is coded.
+class CommonLayerGeometry {
+  public:
+    CommonLayerGeometry(const CommonLayerHeader& header, const std::string& name, ReadLimits& limits)
+        : units_(header.units_mm), name_(name), limits_(limits) {
+        for (const auto& [number, label] : header.labels)
+            part_slot(number, [] { return std::string_view("the header"); });
+    }
+
+    void start_layer(double units, std::string place) {
+        const double z = in_mm(units, place);
+        limits_.make_room(layers_, 1, [&] { return std::string_view(place); });
+        layers_.emplace_back();
+        layers_.back().z = z;
+        layers_.back().place = std::move(place);
+    }
+    [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
+    /// Before points of a polyline, or ends of hatches.
+    template <class Place>
+    void expect_points(std::uint64_t count, const Place& place) {
+        limits_.make_room(layers_.back().points, count, place);
+    }
+    template <class Place>
+    void expect_hatch_points(std::uint64_t count, const Place& place) {
+        limits_.make_room(layers_.back().hatches, count, place);
+    }
+    void add_point(double x, double y) {
+        RawLayer& layer = layers_.back();
+        layer.points.push_back({in_mm(x, layer.place) + 0.0, in_mm(y, layer.place) + 0.0});
+    }
+    void add_hatch_point(double x, double y) {
+        RawLayer& layer = layers_.back();
+        layer.hatches.push_back({in_mm(x, layer.place), in_mm(y, layer.place)});
+    }
+    template <class Place>
+    void end_hatches(std::int64_t part, const Place& place) {
+        limits_.make_room(layers_.back().hatch_ends, 1, place);
+        layers_.back().end_hatches(part_slot(part, place));
+    }
+
+    /// Ends a polyline of the direction given: 0 clockwise, 1 counter-clockwise, 2 open.
+    template <class Place>
+    void end_polyline(std::int64_t part, int direction, const Place& place) {
+        RawLayer& layer = layers_.back();
+        const std::size_t begin = layer.ends.empty() ? 0 : layer.ends.back().end;
+        const bool closed = direction != 2;
+        const bool returns = layer.points.size() > begin && layer.points.back() == layer.points[begin];
+        limits_.make_room(layer.ends, 1, place);
+        if (!layer.end_clean_contour(begin, closed, part_slot(part, place))) {
+            dropped_.note(place);
+            return;
+        }
+        if (!closed)
+            return;
+        if (!returns)
+            unclosed_.note(place);
+        // Where the points run the other way, the stated direction holds.
+        const double area = twice_area(layer, begin);
+        if (direction == 1 ? area < 0 : area > 0) {
+            std::reverse(layer.points.begin() + static_cast<std::ptrdiff_t>(begin), layer.points.end());
+            turned_.note(place);
+        }
+    }
+
+    /// Puts the parts into `file` in the order of their numbers.
+    void number_parts(const CommonLayerHeader& header, LayerFile& file) {
+        if (slots_.empty())
+            part_slot(1, [] { return std::string_view("the end"); });
+        std::vector<std::uint32_t> places(slots_.size());
+        for (const auto& [number, slot] : slots_) {
+            places[slot] = static_cast<std::uint32_t>(file.parts.size());
+            const auto label = header.labels.find(number);
+            file.parts.push_back({label == header.labels.end() ? std::string() : label->second, {}});
+        }
+        for (RawLayer& layer : layers_) {
+            for (auto& contour : layer.ends)
+                contour.part = places[contour.part];
+            for (auto& hatches : layer.hatch_ends)
+                hatches.part = places[hatches.part];
+        }
+    }
+
+    [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
+
+    void say(std::vector<std::string>& warnings) const {
+        unclosed_.say(warnings);
+        turned_.say(warnings);
+        dropped_.say(warnings);
+    }
+
+  private:
+    /// Coordinates beyond the limit could make areas and thicknesses overflow; no part is near it.
+    [[nodiscard]] double in_mm(double units, const std::string& place) const {
+        constexpr double farthest = 1e100;
+        const double mm = units * units_;
+        if (!(std::abs(mm) <= farthest))
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, layer at {}: found {} units of {} mm; heights and coordinates must "
+                                    "lie within {} mm",
+                                    name_, place, units, units_, farthest));
+        return mm;
+    }
+
+    /// Which of the parts met so far has this number.
+    template <class Place>
+    std::uint32_t part_slot(std::int64_t number, const Place& place) {
+        // A node of `slots_`, the part, and what is made of both for a while.
+        constexpr std::uint64_t part_bytes = 2 * (64 + sizeof(LayerPart));
+        if (last_slot_ == slots_.end() || last_slot_->first != number)
+            last_slot_ = slots_.find(number);
+        if (last_slot_ == slots_.end()) {
+            limits_.add_bytes_at(part_bytes, place);
+            last_slot_ = slots_.emplace(number, static_cast<std::uint32_t>(slots_.size())).first;
+        }
+        return last_slot_->second;
+    }
+
+    static double twice_area(const RawLayer& layer, std::size_t begin) {
+        const Point2& o = layer.points[begin];
+        double twice = 0;
+        for (std::size_t i = begin + 2; i < layer.points.size(); ++i) {
+            const Point2& a = layer.points[i - 1];
+            const Point2& b = layer.points[i];
+            twice += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+        }
+        return twice;
+    }
+
+    double units_;
+    const std::string& name_;
+    ReadLimits& limits_;
+    std::vector<RawLayer> layers_;
+    std::map<std::int64_t, std::uint32_t> slots_; ///< of parts, by their numbers
+    std::map<std::int64_t, std::uint32_t>::iterator last_slot_ = slots_.end();
+    Oddity unclosed_{"closed contours did not return to their first point; they were closed"};
+    Oddity turned_{"contours ran against their stated direction; they were turned round"};
+    Oddity dropped_{"contours had too few different points; they were dropped"};
+};
+
+/// Reads the geometry behind the header of an ASCII file. Throws Error{input} naming the line, Error{limit},
+/// Error{cancelled}.
+void read_ascii_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
+                         const Execution& execution, CommonLayerGeometry& geometry);
+
+/// Likewise of a binary file; errors name the byte.
+void read_binary_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
+                          const Execution& execution, CommonLayerGeometry& geometry);
+
+} // namespace lamella

@@ -1,0 +1,113 @@
+#include "read/common_layer_header.hpp"
+
+#include "read/common_layer_text.hpp"
+#include "read/coordinate_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::string_view end_command = "$$HEADEREND";
+
+std::string_view unquoted(std::string_view text) {
+    while (!text.empty() && is_blank(text.back()))
+        text.remove_suffix(1);
+    if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
+        text = text.substr(1, text.size() - 2);
+    return text;
+}
+
+/// The part's number in "/1,name".
+std::optional<std::int64_t> label_number(std::string_view line) {
+    if (!line.starts_with('/'))
+        return std::nullopt;
+    line.remove_prefix(1);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+    return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+} // namespace
+
+CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::string& name) {
+    CommonLayerHeader header;
+    CommonLayerText text(bytes, bytes.find(common_layer_start) + common_layer_start.size(), name);
+    bool ascii = false;
+    bool has_units = false;
+    for (;;) {
+        text.skip_blanks();
+        if (text.done())
+            text.fail("the end of the file", "the header must end with $$HEADEREND");
+        if (text.take(end_command))
+            break;
+        const std::size_t line_end = std::min(bytes.find_first_of("\r\n", text.at()), bytes.size());
+        if (!text.take("$$")) {
+            text.move_to(line_end); // the standard lets other characters be ignored
+            continue;
+        }
+        const std::string_view command = text.take_command();
+        if (command == "BINARY") {
+            header.binary = true;
+        } else if (command == "ASCII") {
+            ascii = true;
+        } else if (command == "ALIGN") {
+            header.aligned = true;
+        } else if (command == "UNITS") {
+            text.expect('/', "the units");
+            header.units_mm = text.number("the units");
+            has_units = true;
+            if (!(header.units_mm > 0))
+                text.fail(fmt::format("units of {} mm", header.units_mm), "they must be above 0");
+        } else if (command == "DIMENSION") {
+            text.expect('/', "the dimensions");
+            std::array<double, 6> box{};
+            for (std::size_t i = 0; i < box.size(); ++i) {
+                if (i > 0)
+                    text.expect(',', "the next dimension");
+                box[i] = text.number("a dimension");
+            }
+            header.dimension = box;
+        } else if (command == "LAYERS") {
+            text.expect('/', "the number of layers");
+            const double count = text.number("the number of layers");
+            if (count >= 0 && count < 1e15)
+                header.layers = static_cast<std::uint64_t>(count);
+        } else if (command == "LABEL") {
+            const std::string_view line = bytes.substr(text.at(), line_end - text.at());
+            const std::size_t comma = line.find(',');
+            if (const auto part = label_number(line); part && comma != std::string_view::npos)
+                header.labels.try_emplace(*part, unquoted(line.substr(comma + 1)));
+            text.move_to(line_end);
+        } else if (command == "USERDATA") {
+            // $$USERDATA/uid,length,bytes: the bytes may hold anything.
+            const std::size_t first = bytes.find(',', text.at());
+            if (first == std::string_view::npos)
+                text.fail("user data without a length", "it must read $$USERDATA/uid,length,data");
+            text.move_to(first + 1);
+            const double length = text.number("the length of the user data");
+            text.expect(',', "the user data");
+            if (!(length >= 0 && length <= static_cast<double>(bytes.size() - text.at())))
+                text.fail(fmt::format("user data of {} bytes", length),
+                          fmt::format("{} bytes are left in the file", bytes.size() - text.at()));
+            text.move_to(text.at() + static_cast<std::size_t>(length));
+        } else {
+            text.move_to(line_end); // VERSION, DATE and whatever else: nothing depends on it
+        }
+    }
+    header.end = text.at();
+    if (header.binary == ascii)
+        text.fail(header.binary ? "both $$BINARY and $$ASCII" : "neither $$BINARY nor $$ASCII",
+                  "the header must have one of them");
+    if (!has_units)
+        text.fail("no $$UNITS", "the header must say how many millimetres a unit is");
+    return header;
+}
+
+} // namespace lamella

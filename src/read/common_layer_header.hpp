@@ -1,0 +1,31 @@
+#pragma once
+
+// The header of a Common Layer Interface file: text, whatever the geometry is coded in.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+inline constexpr std::string_view common_layer_start = "$$HEADERSTART";
+
+/// What the header says.
+struct CommonLayerHeader {
+    bool binary = false;
+    double units_mm = 0;
+    bool aligned = false;
+    std::map<std::int64_t, std::string> labels;     ///< of the parts, by their numbers
+    std::optional<std::array<double, 6>> dimension; ///< mm
+    std::optional<std::uint64_t> layers;
+    std::size_t end = 0; ///< the byte behind $$HEADEREND
+};
+
+/// Reads the header of a file that has one. Throws Error{input} naming the line.
+[[nodiscard]] CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::string& name);
+
+} // namespace lamella

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "lamella/core/error.hpp"
+
+#include "container/text_place.hpp"
+#include "read/coordinate_text.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace lamella {
+
+/// A cursor over the text of a Common Layer Interface file, which reports places by line.
+class CommonLayerText {
+  public:
+    CommonLayerText(std::string_view text, std::size_t at, const std::string& name)
+        : text_(text), at_(at), name_(name) {}
+
+    [[nodiscard]] bool done() const { return at_ >= text_.size(); }
+    [[nodiscard]] std::size_t at() const { return at_; }
+    void move_to(std::size_t at) { at_ = at; }
+    [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
+
+    /// Blanks and // comments //.
+    void skip_blanks() {
+        while (!done()) {
+            if (is_blank(text_[at_])) {
+                ++at_;
+            } else if (rest().starts_with("//")) {
+                const std::size_t close = text_.find("//", at_ + 2);
+                if (close == std::string_view::npos)
+                    fail("a comment that does not end", "it must close with //");
+                at_ = close + 2;
+            } else {
+                return;
+            }
+        }
+    }
+
+    bool take(std::string_view token) {
+        if (!rest().starts_with(token))
+            return false;
+        at_ += token.size();
+        return true;
+    }
+
+    /// The letters of a command after $$, with "$$" taken.
+    std::string_view take_command() {
+        const std::size_t begin = at_;
+        while (!done() &&
+               ((text_[at_] >= 'A' && text_[at_] <= 'Z') || (text_[at_] >= 'a' && text_[at_] <= 'z')))
+            ++at_;
+        return text_.substr(begin, at_ - begin);
+    }
+
+    double number(const char* what) {
+        skip_blanks();
+        const std::size_t begin = at_;
+        const char* from = text_.data() + at_;
+        const char* const end = text_.data() + text_.size();
+        if (from != end && *from == '+')
+            ++from;
+        double value = 0;
+        const auto [to, error] = std::from_chars(from, end, value, std::chars_format::general);
+        if (error != std::errc() || !std::isfinite(value)) {
+            at_ = begin;
+            fail(fmt::format("'{}'", printable(rest().substr(0, rest().find_first_of(", \t\r\n")), 40)),
+                 fmt::format("{} must be a number", what));
+        }
+        at_ = static_cast<std::size_t>(to - text_.data());
+        return value;
+    }
+
+    void expect(char separator, const char* what) {
+        skip_blanks();
+        if (done() || text_[at_] != separator)
+            fail(done() ? "the end of the file" : fmt::format("'{}'", printable(rest().substr(0, 1), 8)),
+                 fmt::format("'{}' must stand before {}", separator, what));
+        ++at_;
+    }
+
+    [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+        throw Error(ErrorKind::input,
+                    fmt::format("{}, line {}: found {}; {}", name_, line_at(text_, at_), found, expected));
+    }
+
+  private:
+    std::string_view text_;
+    std::size_t at_;
+    const std::string& name_;
+};
+
+} // namespace lamella
