@@ -42,8 +42,8 @@ def read(
 ) -> Union[Mesh, Stack]:
     """Reads a mesh file or a slice file, whichever it is by its content.
 
-    path: str or os.PathLike. Meshes: STL, 3MF, AMF, OBJ, PLY, OFF, also packed with gzip. Layers: Common Layer
-        Interface, layered SVG, SLC, 3MF with slices, JSON, NumPy arrays.
+    path: str or os.PathLike. Meshes: STL, 3MF, AMF, OBJ, PLY, OFF. Layers: Common Layer Interface, layered SVG, SLC,
+        3MF with slices, JSON, NumPy arrays. Each may be packed with gzip.
     unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given.
     strict: makes a DefectError of what is otherwise a DefectWarning.
     max_triangles: more of them are a LimitError; 0 is any number.

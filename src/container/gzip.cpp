@@ -28,8 +28,32 @@ class Inflater {
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
 
-    z_stream& operator*() { return stream_; }
-    z_stream* operator->() { return &stream_; }
+    struct Step {
+        std::size_t taken; ///< bytes of what is packed
+        std::size_t made;  ///< bytes of the room
+        int code;          ///< what zlib says
+    };
+
+    /// Unpacks as much as is there and fits; each of the two is less than 4 GiB.
+    [[nodiscard]] Step unpack(std::span<const std::byte> packed, std::span<std::byte> room) {
+        // zlib reads from this pointer only; its type is older than const.
+        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
+        stream_.avail_in = static_cast<uInt>(packed.size());
+        stream_.next_out = reinterpret_cast<Bytef*>(room.data());
+        stream_.avail_out = static_cast<uInt>(room.size());
+        const int code = inflate(&stream_, Z_NO_FLUSH);
+        return {packed.size() - stream_.avail_in, room.size() - stream_.avail_out, code};
+    }
+
+    /// For the next member.
+    void start_again() {
+        if (inflateReset(&stream_) != Z_OK)
+            throw std::bad_alloc();
+    }
+
+    [[nodiscard]] const char* message() const {
+        return stream_.msg == nullptr ? "no such data" : stream_.msg;
+    }
 
   private:
     z_stream stream_{};
@@ -55,17 +79,12 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
     for (bool whole = false; !whole;) {
         if (cancel.stop_requested())
             throw Error(ErrorKind::cancelled, "cancelled");
-        const std::size_t given = std::min(step, packed.bytes.size() - at);
-        const std::span<std::byte> room = unpacked->room();
-        const std::size_t offered = std::min(step, room.size());
-        // zlib reads from this pointer only; its type is older than const.
-        inflater->next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.bytes.data() + at));
-        inflater->avail_in = static_cast<uInt>(given);
-        inflater->next_out = reinterpret_cast<Bytef*>(room.data());
-        inflater->avail_out = static_cast<uInt>(offered);
-        const int code = inflate(&*inflater, Z_NO_FLUSH);
-        at += given - inflater->avail_in;
-        unpacked->use(offered - inflater->avail_out);
+        const std::span<std::byte> all_room = unpacked->room();
+        const std::span<std::byte> room = all_room.first(std::min(step, all_room.size()));
+        const auto [taken, made, code] =
+            inflater.unpack(packed.bytes.subspan(at, std::min(step, packed.bytes.size() - at)), room);
+        at += taken;
+        unpacked->use(made);
         if (unpacked->size() > most)
             throw Error(
                 ErrorKind::limit,
@@ -80,22 +99,26 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
             whole = std::ranges::all_of(rest, [](std::byte byte) { return byte == std::byte{0}; });
             if (!whole && !is_gzip(rest))
                 fail("something else follows what is packed with gzip, expected the end of the file");
-            if (!whole && inflateReset(&*inflater) != Z_OK)
-                throw std::bad_alloc();
+            inflater.start_again();
         } else if (code == Z_MEM_ERROR) {
             throw std::bad_alloc();
-        } else if (code == Z_BUF_ERROR ||
-                   (code == Z_OK && at == packed.bytes.size() && inflater->avail_out != 0)) {
+        } else if (code == Z_BUF_ERROR || (code == Z_OK && at == packed.bytes.size() && made < room.size())) {
             fail("the file ends before what is packed with gzip in it; it is cut off");
         } else if (code != Z_OK) {
             fail(fmt::format("what is packed with gzip is broken ({}); fetch the file once more",
-                             inflater->msg == nullptr ? "no such data" : inflater->msg));
+                             inflater.message()));
         }
     }
     if (unpacked->size() == 0)
         fail("nothing is packed in it, expected a file with content");
     unpacked->trim();
     return {packed.name, unpacked->bytes(), unpacked};
+}
+
+std::string unpack_gzip_head(std::span<const std::byte> packed, std::size_t most) {
+    std::string head(most, '\0');
+    head.resize(Inflater().unpack(packed, std::as_writable_bytes(std::span(head))).made);
+    return head;
 }
 
 } // namespace lamella

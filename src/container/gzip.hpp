@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <stop_token>
+#include <string>
 
 namespace lamella {
 
@@ -21,5 +22,9 @@ namespace lamella {
 /// a stop is requested.
 [[nodiscard]] ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes,
                                      const std::stop_token& cancel = {});
+
+/// The first bytes of what a gzip file holds, `most` of them or as many as its own first bytes `packed` tell;
+/// fewer where they are broken.
+[[nodiscard]] std::string unpack_gzip_head(std::span<const std::byte> packed, std::size_t most);
 
 } // namespace lamella

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/byte_source.hpp"
+#include "container/gzip.hpp"
 #include "container/text_place.hpp"
 #include "container/zip_reader.hpp"
 #include "read/common_layer.hpp"
@@ -56,6 +57,15 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                     source.name, printable(bytes.substr(0, 16), 48)));
 }
 
+LayerFile read_opened(const ByteSource& opened, const LayerReadOptions& options, ReadLimits& limits,
+                      const Execution& execution) {
+    if (!is_gzip(opened.bytes))
+        return read_source(opened, options, limits, execution);
+    const ByteSource unpacked = unpack_gzip(opened, options.max_memory, execution.cancel);
+    limits.add_bytes(unpacked.bytes.size());
+    return read_source(unpacked, options, limits, execution);
+}
+
 } // namespace
 
 LayerStack LayerFile::merged() const {
@@ -73,18 +83,18 @@ LayerStack LayerFile::merged() const {
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
     const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    const ByteSource source = open_bytes(path, most, execution.cancel);
-    ReadLimits limits(source.name, options);
-    if (!source.mapped)
-        limits.add_bytes(source.bytes.size());
-    return read_source(source, options, limits, execution);
+    const ByteSource opened = open_bytes(path, most, execution.cancel);
+    ReadLimits limits(opened.name, options);
+    if (!opened.mapped)
+        limits.add_bytes(opened.bytes.size());
+    return read_opened(opened, options, limits, execution);
 }
 
 LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,
                       const LayerReadOptions& options, const Execution& execution) {
     ReadLimits limits(name, options);
     limits.add_bytes(bytes.size());
-    return read_source(copy_bytes(bytes, name), options, limits, execution);
+    return read_opened(copy_bytes(bytes, name), options, limits, execution);
 }
 
 } // namespace lamella

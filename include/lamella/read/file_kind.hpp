@@ -14,7 +14,8 @@ enum class FileKind {
 };
 
 /// What a file with these first bytes is for: `read_mesh`, `read_layers`, or one after the other. 4096 bytes
-/// are enough. Nothing is promised of the file: whether it is in order, its reader says. O(bytes).
-[[nodiscard]] FileKind file_kind(std::string_view head) noexcept;
+/// are enough; of a file packed with gzip, it is what is packed that counts. Nothing is promised of the file:
+/// whether it is in order, its reader says. O(bytes).
+[[nodiscard]] FileKind file_kind(std::string_view head);
 
 } // namespace lamella

@@ -14,7 +14,7 @@
 namespace lamella {
 
 struct LayerReadOptions {
-    /// More bytes than this, of what an archive unpacks to and of the layers, are Error{limit}; 0: three
+    /// More bytes than this, of what is unpacked and of the layers, are Error{limit}; 0: three
     /// quarters of the memory there is. They are counted before there is memory for them.
     std::uint64_t max_memory = 0;
 };
@@ -39,10 +39,10 @@ struct LayerFile {
 };
 
 /// Reads a slice file, by its content: Common Layer Interface (binary or ASCII), layered SVG, SLC, 3MF with
-/// slice stacks, JSON of layers or NumPy arrays. "-" reads standard input. Layers come in normal form and in
-/// ascending z; what the format does not say is made from what it does (a Common Layer Interface layer knows
-/// its top: its cut is taken half-way up). Throws Error{input} with file, byte or line, what was found and
-/// what was expected.
+/// slice stacks, JSON of layers or NumPy arrays, each also packed with gzip. "-" reads standard
+/// input. Layers come in normal form and in ascending z; what the format does not say is made from what it
+/// does (a Common Layer Interface layer knows its top: its cut is taken half-way up). Throws Error{input} with
+/// file, byte or line, what was found and what was expected.
 [[nodiscard]] LayerFile read_layers(const std::string& path, const LayerReadOptions& options = {},
                                     const Execution& execution = {});
 

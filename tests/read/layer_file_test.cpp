@@ -1,0 +1,83 @@
+#include "lamella/core/error.hpp"
+#include "lamella/read/file_kind.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include "temporary_folder.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+
+namespace lamella {
+namespace {
+
+const std::string square =
+    "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n$$LAYER/1\n"
+    "$$POLYLINE/1,1,5,0,0,2,0,2,2,0,2,0,0\n$$GEOMETRYEND\n";
+
+/// The content of a file with this one packed in it; "" where there is no program to do it.
+std::string packed(const std::string& content) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("layers.cli");
+    std::ofstream(path, std::ios::binary) << content;
+    if (std::system(fmt::format("gzip -n '{}'", path).c_str()) != 0)
+        return {};
+    std::ifstream file(path + ".gz", std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+LayerFile read_packed(const std::string& content, std::uint64_t max_memory = 0) {
+    return read_layers(std::as_bytes(std::span(content)), "layers.cli.gz", {.max_memory = max_memory});
+}
+
+TEST(LayerFile, MayBePackedWithGzip) {
+    const std::string content = packed(square);
+    if (content.empty())
+        GTEST_SKIP() << "no gzip program";
+    const LayerFile file = read_packed(content);
+    EXPECT_EQ(file.format, "cli-ascii");
+    ASSERT_EQ(file.parts.size(), 1U);
+    ASSERT_EQ(file.parts.front().layers.size(), 1U);
+    EXPECT_EQ(file.parts.front().layers[0].points.size(), 4U);
+}
+
+TEST(LayerFile, PackedWithGzipIsKnownByItsFirstBytes) {
+    const std::string content = packed(square);
+    if (content.empty())
+        GTEST_SKIP() << "no gzip program";
+    EXPECT_EQ(file_kind(content), FileKind::layers);
+    EXPECT_EQ(file_kind(content.substr(0, content.size() - 10)), FileKind::layers);
+    EXPECT_EQ(file_kind(packed("solid part\n")), FileKind::mesh);
+    EXPECT_EQ(file_kind(packed("PK\3\4 3D/3dmodel.model")), FileKind::either);
+    for (std::size_t length = 0; length < 20; ++length)
+        EXPECT_EQ(file_kind(content.substr(0, length)), FileKind::mesh) << length;
+}
+
+TEST(LayerFile, WhatIsUnpackedCountsForTheLimit) {
+    const std::string content = packed(square + std::string(1 << 20, '\n'));
+    if (content.empty())
+        GTEST_SKIP() << "no gzip program";
+    EXPECT_EQ(read_packed(content, 2U << 20).parts.size(), 1U);
+    try {
+        static_cast<void>(read_packed(content, 1U << 19));
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::limit) << error.what();
+    }
+}
+
+TEST(LayerFile, PackedWithGzipAndCutOffIsAnError) {
+    const std::string content = packed(square);
+    if (content.empty())
+        GTEST_SKIP() << "no gzip program";
+    for (std::size_t length = 4; length < content.size(); ++length)
+        EXPECT_THROW(static_cast<void>(read_packed(content.substr(0, length))), Error) << length;
+}
+
+} // namespace
+} // namespace lamella
