@@ -32,6 +32,7 @@ export async function stopBrowser() {
 export async function open(name, { width = 1400, height = 900, colorScheme = 'light', view = 'layer' } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, offline: true, reducedMotion: 'reduce' });
   const page = await context.newPage();
+  page.setDefaultTimeout(120000); // a picture in space takes a processor seconds, and others may be at work
   const complaints = [];
   page.on('console', (message) => {
     // What the driver of the software renderer says of itself.

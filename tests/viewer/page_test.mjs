@@ -345,7 +345,7 @@ test('nothing moves while the page fills itself', async () => {
   const { page, close } = await open('rook.html', { view: 'both' });
   const places = () => page.evaluate(() => [...document.querySelectorAll('.pane, .timeline, .row, .card')].map((node) => JSON.stringify(node.getBoundingClientRect())));
   const before = await places();
-  await page.waitForSelector('canvas[data-built]', { timeout: 120000 });
+  await page.waitForSelector('canvas[data-built]');
   await page.keyboard.press('End');
   await shown(page);
   assert.deepEqual(await places(), before);

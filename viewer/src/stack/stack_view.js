@@ -69,6 +69,7 @@ export class StackView {
   #floor;
   #marks;
   #begun = false;
+  #goOn = () => {};
 
   /** @param {Promise} first all that takes a while waits for this, unless the stack is all that is to be seen */
   constructor(page, shelf, store, first) {
@@ -78,6 +79,7 @@ export class StackView {
     this.caption = element('p', { className: 'caption' });
     this.node = element('section', { className: 'pane', 'aria-label': 'The stack in space' }, this.caption);
     store.on(['view'], ({ view }) => {
+      if (view !== 'layer') this.#goOn();
       if (view === 'stack') afterNextPaint(() => this.#begin());
       if (view === 'both') first.then(() => this.#begin());
     });
@@ -172,7 +174,7 @@ export class StackView {
     this.#space.redraw();
   }
 
-  /** Puts up the walls piece by piece, with a break after each few milliseconds. */
+  /** Puts up the walls piece by piece, with a break after each few milliseconds, and one as long as nobody sees them. */
   async #build() {
     const { table, head } = this.#page;
     const total = table.shown.reduce((sum, n) => sum + n, 0);
@@ -200,6 +202,7 @@ export class StackView {
       if (performance.now() - since > millisecondsAtWork) {
         this.caption.textContent = `Building the stack: ${Math.floor((100 * number) / head.layers)} %`;
         await nextTurn();
+        while (this.#store.state.view === 'layer') await new Promise((resolve) => (this.#goOn = resolve));
         since = performance.now();
       }
     }
