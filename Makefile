@@ -4,11 +4,12 @@
 PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
-THREADED := core mesh contour read slicing polygon pipeline
-# Long tests in those rooms of what runs on one thread.
-UNTHREADED := Engines|Shapes|Head|Sole|Crossings
-# Tests of what takes many steps, and sanitizers make each of them slow.
-MANY_STEPS := WithoutLookingAtAll|AmongNeighbours|ReasonableNumberOfSteps|Beyond4GiB
+THREADED := core mesh read slicing pipeline
+# Sanitizers make each step slow. Left out there are tests of what takes many steps, the largest ones of those that
+# repeat themselves on many parts and, of threads, long ones of what runs on one.
+MANY_STEPS := WithoutLookingAtAll|AmongNeighbours|ReasonableNumberOfSteps|Beyond4GiB|CoarsensALargeMesh
+REPEATED := ^(RepairedMeshes|Engines|Sole|Head|Broken)\.|^Large/|EverySolid|DiagnosedMesh|^app\.(make|shard)$$
+UNTHREADED := ^(Engines|Shapes|Crossings)\.
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
@@ -52,18 +53,25 @@ test-large: packages-all
 test-asan: packages-all
 	cmake --preset asan-ubsan
 	cmake --build build-asan
-	$(CTEST) --test-dir build-asan --label-exclude '^(bench|house)$$' --exclude-regex '$(MANY_STEPS)'
+	$(CTEST) --test-dir build-asan --label-exclude '^(bench|house)$$' --exclude-regex '$(MANY_STEPS)|$(REPEATED)'
 
 test-tsan: packages-all
 	cmake --preset tsan
 	cmake --build build-tsan --target $(THREADED:%=lamella_%_test)
-	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$' --exclude-regex '^($(UNTHREADED))\.'
+	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$' \
+	    --exclude-regex '$(MANY_STEPS)|$(REPEATED)|$(UNTHREADED)'
 
 # What was compiled for the static library serves the shared one.
 test-shared: packages-all
 	cmake --preset release -D BUILD_SHARED_LIBS=ON
 	cmake --build build --target lamella_programs lamella_app_files examples/all
 	$(CTEST) --test-dir build --label-regex '^house$$'
+
+fuzz: packages-all  ## fuzz all readers, each for MINUTES (10 unless given); what is found is left in out/fuzz/
+	cmake --preset fuzz
+	cmake --build build-fuzz --target tests/fuzz/all
+	$(CTEST) --test-dir build-fuzz --label-regex '^fuzz$$'
+	tests/fuzz/fuzz.sh build-fuzz/tests/fuzz out/fuzz $(MINUTES)
 
 bench: packages  ## build and run the benchmarks (bench/README.md)
 	@tools/install_packages.sh tools/packages-bench.txt
@@ -145,5 +153,5 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
-        test-shared bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench page-bench paper \
-        format format-check lint install clean
+        test-shared fuzz bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench \
+        page-bench paper format format-check lint install clean
