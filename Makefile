@@ -7,9 +7,9 @@ CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
 THREADED := core mesh read slicing pipeline
 # Sanitizers make each step slow. Left out there are tests of what takes many steps, the largest ones of those that
 # repeat themselves on many parts and, of threads, long ones of what runs on one.
-MANY_STEPS := WithoutLookingAtAll|AmongNeighbours|ReasonableNumberOfSteps|Beyond4GiB|CoarsensALargeMesh
+MANY_STEPS := WithoutLookingAtAll|AmongNeighbours|ReasonableNumberOfSteps|Beyond4GiB|CoarsensALargeMesh|KeepsCountOfMany
 REPEATED := ^(RepairedMeshes|Engines|Sole|Head|Broken)\.|^Large/|EverySolid|DiagnosedMesh|^app\.(make|shard)$$
-UNTHREADED := ^(Engines|Shapes|Crossings)\.
+UNTHREADED := ^(Engines|Shapes|Crossings|StlRobustness|Amf)\.|Survives|OddFiles
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
