@@ -41,8 +41,8 @@ struct LayerFile {
 /// Reads a slice file, by its content: Common Layer Interface (binary or ASCII), layered SVG, SLC, 3MF with
 /// slice stacks, JSON of layers or NumPy arrays, each also packed with gzip. "-" reads standard
 /// input. Layers come in normal form and in ascending z; what the format does not say is made from what it
-/// does (a Common Layer Interface layer knows its top: its cut is taken half-way up). Throws Error{input} with
-/// file, byte or line, what was found and what was expected.
+/// does (a Common Layer Interface layer knows its top: its cut is taken half-way up). Throws Error{input}
+/// with file, byte or line, what was found and what was expected.
 [[nodiscard]] LayerFile read_layers(const std::string& path, const LayerReadOptions& options = {},
                                     const Execution& execution = {});
 
