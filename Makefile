@@ -4,12 +4,13 @@
 PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
-THREADED := core mesh read slicing pipeline
+THREADED := core mesh read slicing polygon pipeline
 # Sanitizers make each step slow. Left out there are tests of what takes many steps, the largest ones of those that
 # repeat themselves on many parts and, of threads, long ones of what runs on one.
 MANY_STEPS := WithoutLookingAtAll|AmongNeighbours|ReasonableNumberOfSteps|Beyond4GiB|CoarsensALargeMesh|KeepsCountOfMany
 REPEATED := ^(RepairedMeshes|Engines|Sole|Head|Broken)\.|^Large/|EverySolid|DiagnosedMesh|^app\.(make|shard)$$
-UNTHREADED := ^(Engines|Shapes|Crossings|StlRobustness|Amf)\.|Survives|OddFiles
+UNTHREADED := ^(Engines|Shapes|StlRobustness|Amf)\.|Survives|OddFiles
+OF_ONE_LAYER := ^(Compare|Contacts|Crossings|Fill|KnownNesting|MonotoneChains|Nesting|Offset|Selection|Simplify|SimplifyEach)\.
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
@@ -59,7 +60,7 @@ test-tsan: packages-all
 	cmake --preset tsan
 	cmake --build build-tsan --target $(THREADED:%=lamella_%_test)
 	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$' \
-	    --exclude-regex '$(MANY_STEPS)|$(REPEATED)|$(UNTHREADED)'
+	    --exclude-regex '$(MANY_STEPS)|$(REPEATED)|$(UNTHREADED)|$(OF_ONE_LAYER)'
 
 # What was compiled for the static library serves the shared one.
 test-shared: packages-all

@@ -1,5 +1,6 @@
 #include "lamella/core/error.hpp"
 
+#include "container/common_layer_format.hpp"
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
 
@@ -18,15 +19,6 @@ namespace lamella {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary numbers are read as memory has them");
-
-enum class Command : std::uint16_t {
-    layer_long = 127,
-    layer_short = 128,
-    polyline_short = 129,
-    polyline_long = 130,
-    hatches_short = 131,
-    hatches_long = 132,
-};
 
 /// A cursor over the binary geometry.
 class Bytes {
@@ -136,35 +128,35 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             progress.add(at - reported);
             reported = at;
         }
-        const auto command = static_cast<Command>(in.take<std::uint16_t>("a command"));
+        const auto command = static_cast<CommonLayerCommand>(in.take<std::uint16_t>("a command"));
         const auto in_layer = [&] {
             if (!geometry.in_layer())
                 in.fail(at, "geometry before the first layer", "contours belong to a layer");
+        };
+        const auto parameter = [&](bool is_long, const char* what) -> std::int64_t {
+            return is_long ? std::int64_t{in.take<std::int32_t>(what)}
+                           : std::int64_t{in.take<std::uint16_t>(what)};
         };
         const auto place = [&] {
             return fmt::format("byte {}", at);
         };
         switch (command) {
-        case Command::layer_long:
+        case CommonLayerCommand::layer_long:
             geometry.start_layer(finite_number(in, at, in.take<float>("a layer"), "a height"), place());
             break;
-        case Command::layer_short:
+        case CommonLayerCommand::layer_short:
             geometry.start_layer(in.take<std::uint16_t>("a layer"), place());
             break;
-        case Command::polyline_short:
-        case Command::polyline_long: {
+        case CommonLayerCommand::polyline_short:
+        case CommonLayerCommand::polyline_long: {
             in_layer();
-            const bool is_long = command == Command::polyline_long;
-            const auto parameter = [&]() -> std::int64_t {
-                return is_long ? std::int64_t{in.take<std::int32_t>("a polyline")}
-                               : std::int64_t{in.take<std::uint16_t>("a polyline")};
-            };
-            const std::int64_t part = parameter();
-            const std::int64_t direction = parameter();
+            const bool is_long = command == CommonLayerCommand::polyline_long;
+            const std::int64_t part = parameter(is_long, "a polyline");
+            const std::int64_t direction = parameter(is_long, "a polyline");
             if (direction < 0 || direction > 2)
                 in.fail(at, fmt::format("a polyline of direction {}", direction),
                         "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)");
-            const std::int64_t count = parameter();
+            const std::int64_t count = parameter(is_long, "a polyline");
             const std::size_t size = is_long ? 8 : 4;
             const char* first = in.take_records(count, size, "points");
             geometry.expect_points(static_cast<std::uint64_t>(count), place);
@@ -173,16 +165,12 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             geometry.end_polyline(part, static_cast<int>(direction), place);
             break;
         }
-        case Command::hatches_short:
-        case Command::hatches_long: {
+        case CommonLayerCommand::hatches_short:
+        case CommonLayerCommand::hatches_long: {
             in_layer();
-            const bool is_long = command == Command::hatches_long;
-            const auto parameter = [&]() -> std::int64_t {
-                return is_long ? std::int64_t{in.take<std::int32_t>("hatches")}
-                               : std::int64_t{in.take<std::uint16_t>("hatches")};
-            };
-            const std::int64_t part = parameter();
-            const std::int64_t count = parameter();
+            const bool is_long = command == CommonLayerCommand::hatches_long;
+            const std::int64_t part = parameter(is_long, "hatches");
+            const std::int64_t count = parameter(is_long, "hatches");
             const std::size_t size = is_long ? 8 : 4;
             const char* first = in.take_records(count, 2 * size, "hatches");
             geometry.expect_hatch_points(2 * static_cast<std::uint64_t>(count), place);

@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
+#include "container/common_layer_format.hpp"
 #include "write/decimal.hpp"
 #include "write/float_contour.hpp"
 #include "write/grid.hpp"
@@ -192,15 +193,6 @@ class AsciiWriter final : public SequentialWriter {
     Grid grid_;
 };
 
-enum class Command : std::uint16_t {
-    layer_long = 127,
-    layer_short = 128,
-    polyline_short = 129,
-    polyline_long = 130,
-    hatches_short = 131,
-    hatches_long = 132
-};
-
 template <class T>
 char* put(char* out, T value) {
     std::memcpy(out, &value, sizeof value);
@@ -214,7 +206,7 @@ char* put_long_head(char* out, int part, Direction direction, std::size_t points
         throw Error(
             ErrorKind::limit,
             fmt::format("layer {} has a contour of {} points; the format ends at 2^31 - 1", layer, points));
-    out = put(out, Command::polyline_long);
+    out = put(out, CommonLayerCommand::polyline_long);
     out = put(out, std::int32_t{part});
     out = put(out, std::int32_t{direction});
     return put(out, static_cast<std::int32_t>(points));
@@ -226,7 +218,7 @@ char* put_hatches_head(char* out, int part, std::size_t hatches, std::uint64_t l
     if (hatches > std::size_t{std::numeric_limits<std::int32_t>::max()})
         throw Error(ErrorKind::limit,
                     fmt::format("layer {} has {} hatch lines; the format ends at 2^31 - 1", layer, hatches));
-    out = put(out, Command::hatches_long);
+    out = put(out, CommonLayerCommand::hatches_long);
     out = put(out, std::int32_t{part});
     return put(out, static_cast<std::int32_t>(hatches));
 }
@@ -242,7 +234,7 @@ class LongWriter final : public SequentialWriter {
   private:
     static std::string layer_start(double z, double units) {
         std::array<char, 6> bytes{};
-        put(put(bytes.data(), Command::layer_long), static_cast<float>(z / units) + 0.0F);
+        put(put(bytes.data(), CommonLayerCommand::layer_long), static_cast<float>(z / units) + 0.0F);
         return {bytes.data(), bytes.size()};
     }
 
@@ -348,7 +340,7 @@ class ShortWriter final : public SequentialWriter {
 
     static std::string layer_start(std::int64_t height) {
         std::array<char, 4> bytes{};
-        put(put(bytes.data(), Command::layer_short), static_cast<std::uint16_t>(height));
+        put(put(bytes.data(), CommonLayerCommand::layer_short), static_cast<std::uint16_t>(height));
         return {bytes.data(), bytes.size()};
     }
 
@@ -400,7 +392,7 @@ class ShortWriter final : public SequentialWriter {
         const bool counted =
             points.size() / 2 <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted) {
-            at = put(at, Command::hatches_short);
+            at = put(at, CommonLayerCommand::hatches_short);
             at = put(at, static_cast<std::uint16_t>(part));
             at = put(at, static_cast<std::uint16_t>(points.size() / 2));
         } else {
@@ -418,7 +410,7 @@ class ShortWriter final : public SequentialWriter {
         char* at = out.room(long_head + listed * float_point_size);
         const bool counted = listed <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted) {
-            at = put(at, Command::polyline_short);
+            at = put(at, CommonLayerCommand::polyline_short);
             at = put(at, static_cast<std::uint16_t>(part));
             at = put(at, std::uint16_t{direction});
             at = put(at, static_cast<std::uint16_t>(listed));

@@ -341,6 +341,14 @@ test('every control has a name, and tab reaches them in order', async () => {
   await close();
 });
 
+test('the stack that rested while the layer alone was seen is built when both are', async () => {
+  const { page, complaints, close } = await open('rook.html');
+  await page.keyboard.press('3');
+  await page.waitForSelector('canvas[data-built]');
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test('nothing moves while the page fills itself', async () => {
   const { page, close } = await open('rook.html', { view: 'both' });
   const places = () => page.evaluate(() => [...document.querySelectorAll('.pane, .timeline, .row, .card')].map((node) => JSON.stringify(node.getBoundingClientRect())));

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+namespace lamella {
+
+// What the reader and the writer of the Common Layer Interface both know of its binary geometry. Short
+// commands have 16-bit numbers, long ones 32-bit integers and floats.
+enum class CommonLayerCommand : std::uint16_t {
+    layer_long = 127,
+    layer_short = 128,
+    polyline_short = 129,
+    polyline_long = 130,
+    hatches_short = 131,
+    hatches_long = 132,
+};
+
+} // namespace lamella
