@@ -2,7 +2,9 @@
 
 #include "core/vectors.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -75,10 +77,9 @@ template <int width>
     constexpr auto lanes = std::make_index_sequence<width>{};
     const std::size_t n = edges.size;
 
-    V least = V{} + std::numeric_limits<double>::infinity();
-    // The least square of a distance between neighbours. (GCC 12 takes vectors apart to compare for equality;
-    // differences it can do, and they are zero for equal points only.)
-    V closest = V{} + 1.0;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    V least = V{} + infinity;
+    V closest = V{} + infinity;
     // NaN is not less than anything: the first point has no predecessor.
     V x_before = V{} + std::numeric_limits<double>::quiet_NaN();
     V y_before = x_before;
@@ -99,10 +100,10 @@ template <int width>
         x_before = px;
         y_before = py;
     }
-    CutSurvey result{std::numeric_limits<double>::infinity(), false};
+    CutSurvey result{infinity, infinity};
     for (int k = 0; k < width; ++k) {
         result.least_x = least[k] < result.least_x ? least[k] : result.least_x;
-        result.repeats |= !(closest[k] > 0);
+        result.closest = closest[k] < result.closest ? closest[k] : result.closest;
     }
     if (i < n) {
         V px;
@@ -112,7 +113,10 @@ template <int width>
         store<width>(py, y + i);
         for (; i < n; ++i) {
             result.least_x = x[i] < result.least_x ? x[i] : result.least_x;
-            result.repeats |= i > 0 && x[i] == x[i - 1] && y[i] == y[i - 1];
+            if (i == 0)
+                continue;
+            const double gap = (x[i] - x[i - 1]) * (x[i] - x[i - 1]) + (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
+            result.closest = gap < result.closest ? gap : result.closest;
         }
     }
     return result;
@@ -192,6 +196,24 @@ template <int width, bool past_cache>
 }
 
 template <int width>
+[[gnu::always_inline]] inline double largest(const double* values, std::size_t n) {
+    using V = typename Vector<width>::Doubles;
+    V most{};
+    std::size_t i = 0;
+    for (; i + width <= n; i += width) {
+        V v = at<width>(values + i).v;
+        v = v < V{} ? -v : v;
+        most = v > most ? v : most;
+    }
+    double result = 0;
+    for (int k = 0; k < width; ++k)
+        result = most[k] > result ? most[k] : result;
+    for (; i < n; ++i)
+        result = std::max(result, std::abs(values[i]));
+    return result;
+}
+
+template <int width>
 [[gnu::always_inline]] inline std::size_t find_not_above(const double* x, std::size_t from, std::size_t n,
                                                          double value) {
     using V = typename Vector<width>::Doubles;
@@ -229,11 +251,15 @@ template <int width>
                                           Point2* to) {                                                      \
             lamella::cut<width, true>(edges, begin, end, z, to);                                             \
         }                                                                                                    \
+        target static double largest(const double* values, std::size_t n) {                                  \
+            return lamella::largest<width>(values, n);                                                       \
+        }                                                                                                    \
         target static std::size_t find_not_above(const double* x, std::size_t from, std::size_t n,           \
                                                  double value) {                                             \
             return lamella::find_not_above<width>(x, from, n, value);                                        \
         }                                                                                                    \
-        static constexpr PointKernels kernels{prepare, survey, cut, cut_past_cache, find_not_above};         \
+        static constexpr PointKernels kernels{                                                               \
+            prepare, survey, cut, cut_past_cache, largest, find_not_above};                                  \
     }
 // NOLINTEND(bugprone-macro-parentheses)
 

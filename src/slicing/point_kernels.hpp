@@ -30,9 +30,9 @@ struct EdgeColumns {
 /// What is learnt of a contour on one plane while its points are computed.
 struct CutSurvey {
     double least_x;
-    /// Some point equals the one before it, or is nearer than 1e-150 mm (the last and the first are not
-    /// compared).
-    bool repeats;
+    /// The least square of a distance between a point and the one before it (the last and the first are not
+    /// compared): zero where two are equal, and where they are nearer than 1e-162.
+    double closest;
 };
 
 struct PointKernels {
@@ -47,6 +47,8 @@ struct PointKernels {
     /// The same for places that are not in the cache and are not read soon: where the processor can, it
     /// writes whole lines to memory without fetching them first. On lines that are in the cache it is slower.
     void (*cut_past_cache)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
+    /// The largest |values[i]|, i < n.
+    double (*largest)(const double* values, std::size_t n);
     /// The first i in [from, n) with x[i] <= value, else n.
     std::size_t (*find_not_above)(const double* x, std::size_t from, std::size_t n, double value);
 };

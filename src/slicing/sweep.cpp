@@ -7,14 +7,16 @@
 #include "core/orientation.hpp"
 #include "core/pages.hpp"
 #include "slicing/cut_graph.hpp"
+#include "slicing/cut_points.hpp"
 #include "slicing/ordered_delivery.hpp"
 #include "slicing/plane_index.hpp"
 #include "slicing/point_arena.hpp"
 #include "slicing/point_kernels.hpp"
-#include "slicing/shrunken_contours.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -30,7 +32,8 @@
 // successor. All planes up to there are a *run*, served by this one walk.
 //
 // Measure. For each plane of the run the points are computed, in the cache, only to learn where the ring
-// starts in normal form and how many points it keeps.
+// starts in normal form and how many points it keeps. On their way through a run all points move along
+// straight lines, so what is clear on two planes is so between them too, and is not measured there.
 //
 // Write. When a stretch of planes is complete, the rings of each layer are put in order, their places in the
 // layer's array are known, and the points are computed again, straight into their places. To compute twice is
@@ -61,42 +64,9 @@ struct Ring {
     std::uint64_t place; ///< in the layer's array
 };
 
-/// Points of one contour on one plane, in walk order.
-class Scratch {
-  public:
-    void reserve(std::size_t n) {
-        if (x_.size() < n) {
-            x_ = PageArray<double>(n + n / 2);
-            y_ = PageArray<double>(n + n / 2);
-        }
-    }
-    [[nodiscard]] double* x() const noexcept { return x_.data(); }
-    [[nodiscard]] double* y() const noexcept { return y_.data(); }
-    [[nodiscard]] Point2 point(std::size_t i) const noexcept { return {x_[i], y_[i]}; }
-
-    /// Drops points that equal their predecessor. Returns how many are left of n.
-    [[nodiscard]] std::size_t drop_repeats(std::size_t n, bool closed) const noexcept {
-        std::size_t kept = 1;
-        for (std::size_t i = 1; i < n; ++i) {
-            if (x_[i] == x_[kept - 1] && y_[i] == y_[kept - 1])
-                continue;
-            x_[kept] = x_[i];
-            y_[kept] = y_[i];
-            ++kept;
-        }
-        while (closed && kept > 1 && x_[kept - 1] == x_[0] && y_[kept - 1] == y_[0])
-            --kept;
-        return kept;
-    }
-
-  private:
-    PageArray<double> x_;
-    PageArray<double> y_;
-};
-
 /// What one worker computes with.
 struct Bench {
-    Scratch scratch;
+    CutPoints points;
     PageArray<double> spare_columns; ///< of a run whose edges have no room in the columns
 };
 
@@ -372,10 +342,82 @@ class alignas(128) SlabSweep {
         if (begin == end)
             return;
         const EdgeColumns edges = lay_out_edges(run, bench);
-        for (std::uint32_t plane = begin; plane < end; ++plane) {
-            end_if_stopping();
-            rings_[run.rings + plane - run.begin] = measure_ring(run, edges, plane, bench);
+        constexpr std::uint32_t worth_a_tolerance = 4; // planes
+        if (!run.closed || end - begin < worth_a_tolerance) {
+            for (std::uint32_t plane = begin; plane < end; ++plane)
+                measure_ring(run, edges, plane, 0, bench);
+            return;
         }
+        const double tolerance = tolerance_of(edges, begin, end - 1);
+        const bool begin_clear = measure_ring(run, edges, begin, tolerance, bench);
+        const bool end_clear = measure_ring(run, edges, end - 1, tolerance, bench);
+        measure_between(run, edges, {begin, begin_clear}, {end - 1, end_clear}, tolerance, bench);
+    }
+
+    /// What is farther apart than this on two planes of a run, as computed, is apart in truth, and what is so
+    /// far apart in truth is apart as computed. 0 where that cannot be told.
+    ///
+    /// As computed a point is less than 7 * 2^-52 times the extent below away from its place (EdgeCut, and no
+    /// edge of the run is lower than the distance of the two planes, so that no inverse overflows). Where two
+    /// distances are a and b at least in truth, so is every distance between them if it moves along a
+    /// line. Four points are in play, two there and two here: 28, and sqrt(2) times as much in the plane.
+    double tolerance_of(const EdgeColumns& edges, std::uint32_t first, std::uint32_t last) const {
+        const std::size_t stride = edges.stride();
+        const auto largest = [&](std::size_t column) {
+            return kernels_.largest(edges.data + column * stride, edges.size);
+        };
+        const double extent = std::max(largest(2) + largest(3), largest(4) + largest(5));
+        const double tolerance = 0x1p-46 * extent;
+        constexpr double least_normal = std::numeric_limits<double>::min();
+        const bool told = tolerance * tolerance >= least_normal && std::isfinite(tolerance * tolerance) &&
+                          ranks_.z(last) - ranks_.z(first) >= least_normal;
+        return told ? tolerance : 0;
+    }
+
+    /// A plane of a run that is measured, and whether all was clear there.
+    struct Measured {
+        std::uint32_t plane;
+        bool clear;
+    };
+
+    /// Computes the rings between two planes on which they are known.
+    ///
+    /// Points move along straight lines from plane to plane. Hence a point that is the leftmost by far on
+    /// both planes is so between them. Neighbours lie on two edges of a triangle and come together in a
+    /// corner that is not between the planes: the nearer they are to it the closer, so they are farther from
+    /// one another between the planes than on one of them.
+    void measure_between(Run& run, const EdgeColumns& edges, Measured low, Measured high, double tolerance,
+                         Bench& bench) {
+        if (high.plane - low.plane < 2)
+            return;
+        Ring* const rings = rings_.data() + run.rings - run.begin;
+        if (low.clear && high.clear && rings[low.plane].start == rings[high.plane].start) {
+            for (std::uint32_t plane = low.plane + 1; plane < high.plane; ++plane)
+                take_over(run, edges, plane, rings[low.plane].start, bench);
+            return;
+        }
+        const std::uint32_t middle = low.plane + (high.plane - low.plane) / 2;
+        const bool clear = measure_ring(run, edges, middle, tolerance, bench);
+        measure_between(run, edges, low, {middle, clear}, tolerance, bench);
+        measure_between(run, edges, {middle, clear}, high, tolerance, bench);
+    }
+
+    /// Computes a ring that has all its points and starts at the one leftmost point, which is known.
+    void take_over(Run& run, const EdgeColumns& edges, std::uint32_t plane, std::uint32_t start,
+                   Bench& bench) {
+        const double z = ranks_.z(plane);
+        const auto point = [&](std::size_t i) {
+            Point2 p;
+            kernels_.cut(edges, i, i + 1, z, &p);
+            return p;
+        };
+        const Point2 first = point(start);
+        const Point2 before = point(start == 0 ? run.size - 1 : start - 1);
+        const Point2 after = point(start + 1 == run.size ? 0 : start + 1);
+        if (orientation(before, first, after) == 0) // it may be a line
+            measure_ring(run, edges, plane, 0, bench);
+        else
+            rings_[run.rings + plane - run.begin] = {first, start, run.size, 0};
     }
 
     /// Notes for each plane the rings of the runs from `first` on.
@@ -434,52 +476,32 @@ class alignas(128) SlabSweep {
         return {columns_.data() + EdgeColumns::columns * run.columns, run.size};
     }
 
-    Ring measure_ring(const Run& run, const EdgeColumns& edges, std::uint32_t plane, Bench& bench) {
-        Scratch& scratch = bench.scratch;
-        std::size_t n = run.size;
-        scratch.reserve(EdgeColumns::padded(n));
-        const CutSurvey survey = kernels_.survey(edges, ranks_.z(plane), scratch.x(), scratch.y());
-        const bool repeats = survey.repeats || (run.closed && scratch.point(0) == scratch.point(n - 1));
+    /// Computes the ring of a run on a plane. True when its start is the leftmost point by more than the
+    /// tolerance and all neighbours are farther than that from one another; never when that is 0.
+    bool measure_ring(const Run& run, const EdgeColumns& edges, std::uint32_t plane, double tolerance,
+                      Bench& bench) {
+        end_if_stopping();
+        CutPoints& points = bench.points;
+        const CutSurvey survey = points.compute(edges, ranks_.z(plane));
+        const double closest =
+            run.closed ? std::min(survey.closest, points.squared_closing()) : survey.closest;
+        const bool repeats = !(closest > 0);
         if (repeats)
-            n = scratch.drop_repeats(n, run.closed);
-        Ring ring{scratch.point(0), 0, 0, 0};
-        if (n >= (run.closed ? 3U : 2U) &&
-            (!run.closed || find_start(scratch, n, survey.least_x, repeats, ring)))
-            ring.count = static_cast<std::uint32_t>(n);
-        return ring;
-    }
-
-    /// Where the ring of n points in the scratch starts in normal form. False when it is a line.
-    bool find_start(const Scratch& scratch, std::size_t n, double least, bool repeats, Ring& ring) const {
-        const double* x = scratch.x();
-        const double* y = scratch.y();
-        std::size_t start = kernels_.find_not_above(x, 0, n, least);
-        bool tie = false;
-        for (std::size_t i = kernels_.find_not_above(x, start + 1, n, least); i < n;
-             i = kernels_.find_not_above(x, i + 1, n, least)) {
-            if (y[i] < y[start]) {
-                start = i;
-                tie = false;
-            } else if (y[i] == y[start]) {
-                tie = true;
-            }
+            points.drop_repeats(run.closed);
+        const auto count = static_cast<std::uint32_t>(points.size());
+        Ring& ring = rings_[run.rings + plane - run.begin];
+        ring = {points[0], 0, 0, 0};
+        if (!run.closed) {
+            ring.count = count >= 2 ? count : 0;
+            return false;
         }
-        const std::size_t before = start == 0 ? n - 1 : start - 1;
-        const std::size_t after = start + 1 == n ? 0 : start + 1;
-        // A ring turns at its smallest point, unless it comes back upon itself.
-        const bool fold = orientation(scratch.point(before), scratch.point(start), scratch.point(after)) == 0;
-        if (repeats || tie || fold) {
-            std::vector<Point2> points(n);
-            for (std::size_t i = 0; i < n; ++i)
-                points[i] = scratch.point(i);
-            if (folds_flat(points) || lies_on_line(points))
-                return false;
-            if (tie)
-                start = smallest_rotation(points);
-        }
-        ring.start = static_cast<std::uint32_t>(start);
-        ring.first = scratch.point(start);
-        return true;
+        if (count < 3)
+            return false;
+        const RingStart start = points.start(survey.least_x, tolerance, repeats);
+        if (start.flat)
+            return false;
+        ring = {points[start.index], static_cast<std::uint32_t>(start.index), count, 0};
+        return tolerance > 0 && start.alone && closest > tolerance * tolerance;
     }
 
     // ------------------------------------------------------------------------------------------------ write
@@ -622,11 +644,12 @@ class alignas(128) SlabSweep {
             cut(edges, 0, ring.start, z, to + (edges.size - ring.start));
             return;
         }
-        bench.scratch.reserve(edges.stride());
-        kernels_.survey(edges, z, bench.scratch.x(), bench.scratch.y());
-        const std::size_t n = bench.scratch.drop_repeats(edges.size, closed);
+        CutPoints& points = bench.points;
+        points.compute(edges, z);
+        points.drop_repeats(closed);
+        const std::size_t n = points.size();
         for (std::size_t i = 0; i < n; ++i)
-            to[i] = bench.scratch.point(i + ring.start < n ? i + ring.start : i + ring.start - n);
+            to[i] = points[i + ring.start < n ? i + ring.start : i + ring.start - n];
     }
 
     /// Forgets the runs that end before `plane` (all planes before it are written), and moves the others

@@ -118,16 +118,21 @@ TEST_P(PointKernelsTest, SurveyGivesTheBitsOfTheFormula) {
             PageArray<double> y;
             const CutSurvey result = survey(edges, z, x, y);
             double least = std::numeric_limits<double>::infinity();
-            bool repeats = false;
+            double closest = least;
             for (std::size_t i = 0; i < n; ++i) {
                 const Point2 expected = edges.at(i, z);
                 const Point2 found{x[i], y[i]};
                 ASSERT_EQ(std::memcmp(&expected, &found, sizeof expected), 0) << i << " of " << n;
                 least = std::min(least, expected.x);
-                repeats |= i > 0 && expected == edges.at(i - 1, z);
+                if (i > 0) {
+                    const Point2 before = edges.at(i - 1, z);
+                    const double dx = expected.x - before.x;
+                    const double dy = expected.y - before.y;
+                    closest = std::min(closest, dx * dx + dy * dy);
+                }
             }
             EXPECT_EQ(result.least_x, least);
-            EXPECT_EQ(result.repeats, repeats);
+            EXPECT_EQ(result.closest, closest);
         }
     }
 }
@@ -207,11 +212,11 @@ TEST_P(PointKernelsTest, SurveySeesARepeatWhereverItIs) {
     test::Random random(22);
     for (const std::size_t n : sizes()) {
         const std::vector<Point2> points = random_points(n, random);
-        EXPECT_FALSE(survey(standing_on(points), 0.5).repeats) << n;
+        EXPECT_GT(survey(standing_on(points), 0.5).closest, 0.0) << n;
         for (std::size_t i = 1; i < n; ++i) {
             std::vector<Point2> repeated = points;
             repeated[i] = repeated[i - 1];
-            EXPECT_TRUE(survey(standing_on(repeated), 0.5).repeats) << i << " of " << n;
+            EXPECT_EQ(survey(standing_on(repeated), 0.5).closest, 0.0) << i << " of " << n;
         }
     }
 }
@@ -223,15 +228,32 @@ TEST_P(PointKernelsTest, SurveyTakesNothingElseForARepeat) {
         for (std::size_t i = 1; i < n; ++i) {
             std::vector<Point2> close = points;
             close[i].x = close[i - 1].x;
-            EXPECT_FALSE(survey(standing_on(close), 0.5).repeats) << "same x only, " << i << " of " << n;
+            EXPECT_GT(survey(standing_on(close), 0.5).closest, 0.0) << "same x only, " << i << " of " << n;
             close[i] = {points[i].x, points[i - 1].y};
-            EXPECT_FALSE(survey(standing_on(close), 0.5).repeats) << "same y only, " << i << " of " << n;
+            EXPECT_GT(survey(standing_on(close), 0.5).closest, 0.0) << "same y only, " << i << " of " << n;
             close[i] = {points[i - 1].x, std::nextafter(points[i - 1].y, 2)};
-            EXPECT_FALSE(survey(standing_on(close), 0.5).repeats) << "nearest, " << i << " of " << n;
+            EXPECT_GT(survey(standing_on(close), 0.5).closest, 0.0) << "nearest, " << i << " of " << n;
         }
         if (n > 2) {
             points.back() = points.front();
-            EXPECT_FALSE(survey(standing_on(points), 0.5).repeats) << "last and first are not compared";
+            EXPECT_GT(survey(standing_on(points), 0.5).closest, 0.0) << "last and first are not compared";
+        }
+    }
+}
+
+TEST_P(PointKernelsTest, SurveyFindsTheClosestNeighboursWhereverTheyAre) {
+    for (const std::size_t n : sizes()) {
+        std::vector<Point2> points(n);
+        for (std::size_t i = 0; i < n; ++i)
+            points[i] = {static_cast<double>(i), 0};
+        const double alone = std::numeric_limits<double>::infinity();
+        EXPECT_EQ(survey(standing_on(points), 0.5).closest, n == 1 ? alone : 1.0);
+        for (std::size_t i = 1; i < n; ++i) {
+            std::vector<Point2> close = points;
+            close[i] = {points[i - 1].x + 0.5, 0.25}; // the next one is as far, and higher
+            if (i + 1 < n)
+                close[i + 1].y = 2;
+            EXPECT_EQ(survey(standing_on(close), 0.5).closest, 0.5 * 0.5 + 0.25 * 0.25) << i << " of " << n;
         }
     }
 }
@@ -248,6 +270,24 @@ TEST_P(PointKernelsTest, SurveyFindsTheLeastXWhereverItIs) {
             EXPECT_EQ(survey(standing_on(points), 0.5).least_x, 95.0) << i << " of " << n;
         }
     }
+}
+
+TEST_P(PointKernelsTest, LargestIsTheLargestMagnitudeWhereverItIs) {
+    test::Random random(27);
+    for (const std::size_t n : sizes()) {
+        std::vector<double> values(n + 1);
+        for (double& v : values)
+            v = random.real(-1, 1);
+        values[n] = 7; // does not count
+        for (std::size_t i = 0; i < n; ++i) {
+            std::vector<double> marked = values;
+            for (const double extreme : {-2.0, 2.0}) {
+                marked[i] = extreme;
+                EXPECT_EQ(kernels_.largest(marked.data(), n), 2.0) << i << " of " << n;
+            }
+        }
+    }
+    EXPECT_EQ(kernels_.largest(nullptr, 0), 0.0);
 }
 
 TEST_P(PointKernelsTest, FindNotAboveFindsTheFirstOne) {

@@ -402,6 +402,60 @@ TEST(Sweep, CountsTheChainsOfAnyTriangles) {
 // ------------------------------------------------------------------------- threads, orders, kinds of the
 // mesh
 
+/// A wall between two rings of corners, which are what is left of a few points when some of them are moved by
+/// a few units in the last place: edges that nearly meet, walls that are nearly upright, sections that are
+/// nearly lines, and several points that are nearly the leftmost.
+IndexedMesh nearly_degenerate_wall(test::Random& random) {
+    const auto corners = static_cast<std::uint32_t>(random.integer(3, 12));
+    const auto coordinate = [&] {
+        return static_cast<double>(random.integer(0, 2)) + 1 +
+               static_cast<double>(random.integer(-2, 2)) * (random.integer(0, 1) == 0 ? 0 : 0x1p-52);
+    };
+    IndexedMesh wall;
+    for (const double z : {0.0, 1.0})
+        for (std::uint32_t i = 0; i < corners; ++i)
+            wall.vertices.push_back({coordinate(), coordinate(), z});
+    if (random.integer(0, 1) == 0) // the same above as below, but for a little
+        for (std::uint32_t i = 0; i < corners; ++i) {
+            wall.vertices[corners + i] = wall.vertices[i];
+            wall.vertices[corners + i].x += static_cast<double>(random.integer(-1, 1)) * 0x1p-52;
+            wall.vertices[corners + i].z = 1;
+        }
+    for (std::uint32_t i = 0; i < corners; ++i) {
+        const std::uint32_t next = (i + 1) % corners;
+        wall.triangles.push_back({i, next, corners + next});
+        wall.triangles.push_back({i, corners + next, corners + i});
+    }
+    return wall;
+}
+
+TEST(Sweep, FindsOnManyPlanesWhatItFindsOnFew) {
+    constexpr std::ptrdiff_t few = 3; // too few to conclude from some of them to those between
+    test::Random random(45);
+    std::vector<double> z{1e-300, 1e-17, 1e-15, 1e-12, 1 - 1e-12, 1 - 0x1p-53};
+    for (int i = 1; i < 18; ++i)
+        z.push_back(random.real(0, 1));
+    std::sort(z.begin(), z.end());
+    std::set<std::size_t> counts;
+    for (int round = 0; round < 3000; ++round) {
+        const IndexedMesh wall = nearly_degenerate_wall(random);
+        for (const SliceAt at : both_rules) {
+            const Plan plan = plan_listed(z, at);
+            const LayerStack together = slice(wall, plan, {.threads = 1});
+            for (std::ptrdiff_t i = 0; i < std::ssize(plan.layers); i += few) {
+                const std::ptrdiff_t end = std::min(i + few, std::ssize(plan.layers));
+                Plan part = plan;
+                part.layers = {plan.layers.begin() + i, plan.layers.begin() + end};
+                expect_same(slice(wall, part, {.threads = 1}),
+                            LayerStack(together.begin() + i, together.begin() + end));
+                counts.insert(together[static_cast<std::size_t>(i)].points.size());
+            }
+            ASSERT_FALSE(HasFailure()) << "round " << round;
+        }
+    }
+    EXPECT_GT(counts.size(), 10U) << "rings that lost points, and rings that did not";
+}
+
 TEST(Sweep, GivesTheSameBytesForAnyThreadsOrderAndKindOfMesh) {
     const std::vector<std::pair<std::string, TriangleSoup>> shapes{
         {"box", make_box(3, 4, 5)},
