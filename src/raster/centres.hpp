@@ -16,8 +16,8 @@ namespace lamella {
 
 /// Where an edge crosses the centres of a row.
 struct CentreCrossing {
-    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept {
-        return {least_whole(edge.upper.y - 0.5, height), least_whole(edge.lower.y - 0.5, height)};
+    [[nodiscard]] static RowRange rows(double upper, double lower, std::uint32_t height) noexcept {
+        return {least_whole(upper - 0.5, height), least_whole(lower - 0.5, height)};
     }
     CentreCrossing(const PictureEdge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }
@@ -29,8 +29,8 @@ struct CentreCrossing {
 /// Draws the rows of a picture from the top down.
 class CentreRows {
   public:
-    CentreRows(std::span<const PictureEdge> edges, const PixelGrid& grid)
-        : crossings_(edges, grid.height), width_(grid.width) {}
+    CentreRows(std::span<const Layer> parts, const PixelGrid& grid)
+        : crossings_(parts, grid), width_(grid.width) {}
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
 

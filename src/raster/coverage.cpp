@@ -84,7 +84,7 @@ std::uint32_t CoverageRows::cover(std::uint32_t row) {
 }
 
 void CoverageRows::draw_knot(Pieces knot, int left, std::uint32_t row) {
-    if (knot.size() == 2 && draw_bend(knot, left, row))
+    if (draw_line(knot, left, row))
         return;
     if (find_slabs(knot, row)) {
         for (std::size_t i = 1; i < heights_.size(); ++i)
@@ -96,28 +96,43 @@ void CoverageRows::draw_knot(Pieces knot, int left, std::uint32_t row) {
         draw_slab(knot, left, row + i / strips, row + (i + 1) / strips);
 }
 
-bool CoverageRows::draw_bend(Pieces knot, int left, std::uint32_t row) {
-    const bool in_order = knot[0].top < knot[1].top;
-    const auto& upper = knot[in_order ? 0 : 1];
-    const auto& lower = knot[in_order ? 1 : 0];
-    const double top = row;
-    const double bend = upper.bottom;
-    const double bottom = row + 1.0;
-    const PictureEdge& upper_edge = pieces_.edge(upper);
-    const PictureEdge& lower_edge = pieces_.edge(lower);
-    if (upper.top != top || lower.top != bend || lower.bottom != bottom ||
-        upper_edge.winding != lower_edge.winding)
+bool CoverageRows::draw_line(Pieces knot, int left, std::uint32_t row) {
+    line_.clear();
+    int winding = 0;
+    for (const auto& piece : knot) {
+        const PictureEdge& edge = pieces_.edge(piece);
+        if (edge.level())
+            continue; // a step of the line, of no height
+        if (winding != 0 && winding != edge.winding)
+            return false; // the line turns, or there are two
+        winding = edge.winding;
+        line_.push_back({piece.top, piece.bottom, &edge});
+    }
+    // A line that runs to the left all the way lies the wrong way round.
+    if (line_.size() > 1 && line_.front().top > line_.back().top)
+        std::reverse(line_.begin(), line_.end());
+    const auto higher = [](const LinePiece& a, const LinePiece& b) {
+        return a.top < b.top;
+    };
+    if (!std::is_sorted(line_.begin(), line_.end(), higher))
+        std::sort(line_.begin(), line_.end(), higher);
+    double reached = row;
+    for (const LinePiece& piece : line_) {
+        const double middle = 0.5 * (piece.top + piece.bottom);
+        if (piece.top != reached || !(piece.top < middle && middle < piece.bottom))
+            return false; // there are gaps, or others beside it, or a piece is so low that numbers end
+        reached = piece.bottom;
+    }
+    if (reached != row + 1.0)
         return false;
-    const double upper_middle = 0.5 * (top + bend);
-    const double lower_middle = 0.5 * (bend + bottom);
-    if (!(upper_middle < bend && bend <= lower_middle && lower_middle < bottom))
-        return false; // a slab so thin that numbers end
-    const int right = left + upper_edge.winding;
+    const int right = left + winding;
     if ((left == 0) == (right == 0))
         return true;
-    const double sign = left == 0 ? 1 : -1;
-    draw_border(upper_edge, upper_edge.column(upper_middle), bend - top, sign * (bend - top));
-    draw_border(lower_edge, lower_edge.column(lower_middle), bottom - bend, sign * (bottom - bend));
+    for (const LinePiece& piece : line_) {
+        const double height = piece.bottom - piece.top;
+        draw_border(*piece.edge, piece.edge->column(0.5 * (piece.top + piece.bottom)), height,
+                    left == 0 ? height : -height);
+    }
     return true;
 }
 

@@ -17,9 +17,9 @@ namespace lamella {
 
 /// The piece of an edge that lies in a row, from `top` to `bottom`.
 struct RowPiece {
-    [[nodiscard]] static RowRange rows(const PictureEdge& edge, std::uint32_t height) noexcept {
-        const double above = std::clamp(edge.upper.y, 0.0, static_cast<double>(height));
-        return {static_cast<std::uint32_t>(above), least_whole(edge.lower.y, height)};
+    [[nodiscard]] static RowRange rows(double upper, double lower, std::uint32_t height) noexcept {
+        const double above = std::clamp(upper, 0.0, static_cast<double>(height));
+        return {static_cast<std::uint32_t>(above), least_whole(lower, height)};
     }
     RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept;
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept;
@@ -39,8 +39,8 @@ struct RowPiece {
 /// Draws the rows of a picture from the top down.
 class CoverageRows {
   public:
-    CoverageRows(std::span<const PictureEdge> edges, const PixelGrid& grid, const RasterOptions& options)
-        : pieces_(edges, grid.height), width_(grid.width), strips_(options.antialias),
+    CoverageRows(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options)
+        : pieces_(parts, grid), width_(grid.width), strips_(options.antialias),
           coverage_(grid.width, 1, options.gamma) {}
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
@@ -54,11 +54,19 @@ class CoverageRows {
         const PictureEdge* edge;
     };
 
+    /// A piece of a line with bends.
+    struct LinePiece {
+        double top;
+        double bottom;
+        const PictureEdge* edge;
+    };
+
     /// The same for the coverage; says how many rows from there on look the same.
     std::uint32_t cover(std::uint32_t row);
     void draw_knot(Pieces knot, int left, std::uint32_t row);
-    /// A knot of two that are one line with a bend, as most knots are; false where it is another.
-    bool draw_bend(Pieces knot, int left, std::uint32_t row);
+    /// A knot of which all is one line with bends from the row's upper to its lower border, as most knots
+    /// are; false where it is another.
+    bool draw_line(Pieces knot, int left, std::uint32_t row);
     /// The heights between which nothing happens in a knot; false where that would be too many.
     bool find_slabs(Pieces knot, std::uint32_t row);
     void add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
@@ -70,6 +78,7 @@ class CoverageRows {
     std::uint32_t width_;
     unsigned strips_; ///< see RasterOptions::antialias
     CoverageRow coverage_;
+    std::vector<LinePiece> line_;
     std::vector<double> heights_;
     std::vector<Border> borders_;
 };

@@ -7,13 +7,13 @@
 #include "lamella/raster/picture.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace lamella {
 
-/// Where edges lie of which only that they are to the left of the picture makes a difference.
+/// Where edges lie that are to the left of the picture: how far makes no difference.
 inline constexpr double left_of_picture = -1;
 
 /// The least whole number that is not below v, between 0 and `most`. (To ask std::ceil is a call, where
@@ -35,6 +35,17 @@ struct PictureEdge {
     double slope = 0;         ///< columns per row; 0 for a level edge
     std::int32_t winding = 0; ///< 1 if the ring runs downwards here, else -1
 
+    /// Of the edge of a ring that runs between these points.
+    PictureEdge(const Point2& from, const Point2& to) noexcept {
+        const bool down = from.y < to.y;
+        upper = down ? from : to;
+        lower = down ? to : from;
+        winding = down ? 1 : -1;
+        if (std::max(from.x, to.x) <= 0)
+            upper.x = lower.x = left_of_picture;
+        if (!level())
+            slope = (lower.x - upper.x) / (lower.y - upper.y);
+    }
     /// The column at height v, if that lies between the ends.
     [[nodiscard]] double column(double v) const noexcept {
         const auto [low, high] = std::minmax(upper.x, lower.x);
@@ -43,8 +54,8 @@ struct PictureEdge {
     [[nodiscard]] bool level() const noexcept { return upper.y == lower.y; }
 };
 
-/// Of all closed rings, those edges that lie in the picture's rows and not to the right of it. Where an edge
-/// lies to the left of the picture makes no difference, so it is upright there, and level ones are missing.
-[[nodiscard]] std::vector<PictureEdge> picture_edges(std::span<const Layer> parts, const PixelGrid& grid);
+/// Where points are in a picture. A coordinate beyond 2^40 pixels is taken for that many: far outside, and
+/// still a number to count with.
+void place_in_picture(std::span<const Point2> points, const PixelGrid& grid, Point2* to);
 
 } // namespace lamella

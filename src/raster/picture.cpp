@@ -5,7 +5,6 @@
 #include "raster/centres.hpp"
 #include "raster/coverage.hpp"
 #include "raster/drawn_row.hpp"
-#include "raster/edges.hpp"
 
 #include <fmt/format.h>
 
@@ -53,10 +52,9 @@ double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
 double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
                  const RowSink& sink) {
     check(grid, options);
-    const std::vector<PictureEdge> edges = picture_edges(parts, grid);
     if (options.antialias == 1)
-        return draw(CentreRows(edges, grid), grid.height, sink);
-    return draw(CoverageRows(edges, grid, options), grid.height, sink);
+        return draw(CentreRows(parts, grid), grid.height, sink);
+    return draw(CoverageRows(parts, grid, options), grid.height, sink);
 }
 
 GreyPicture paint(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options) {

@@ -2,6 +2,7 @@
 
 // Down a picture, row by row, with the edges that each row meets.
 
+#include "core/pages.hpp"
 #include "raster/edges.hpp"
 
 #include <algorithm>
@@ -20,7 +21,9 @@ struct RowRange {
 };
 
 /// Keeps what the edges of one row are to an algorithm, its `Item`s, in order from row to row. An Item has
-///     static RowRange rows(const PictureEdge&, std::uint32_t height);    the rows that it has to do with
+///     static RowRange rows(double upper, double lower, std::uint32_t height);
+///                                the rows that an edge between these heights has to do with; the first one
+///                                depends on the upper end, never falls with it, and the last on the lower
 ///     Item(const PictureEdge&, std::uint32_t row);                       in the first of them
 ///     void move_to(const PictureEdge&, std::uint32_t row);               from one to the next, or further
 ///     bool operator<(const Item&) const;                          a strict weak order along the row
@@ -34,8 +37,8 @@ class RowSweep {
         std::uint32_t edge;
     };
 
-    RowSweep(std::span<const PictureEdge> edges, std::uint32_t height) : height_(height) {
-        sort_by_first_row(edges);
+    RowSweep(std::span<const Layer> parts, const PixelGrid& grid) : height_(grid.height) {
+        collect(parts, grid);
     }
 
     [[nodiscard]] std::span<const Entry> entries() const noexcept { return entries_; }
@@ -76,26 +79,58 @@ class RowSweep {
         return a < b || (!(b < a) && a.edge < b.edge);
     }
 
-    void sort_by_first_row(std::span<const PictureEdge> edges) {
-        std::vector<std::uint32_t> ends(std::size_t{height_} + 2);
-        std::vector<RowRange> rows(edges.size());
+    /// Keeps the edges that some row meets, in the order of their first rows.
+    void collect(std::span<const Layer> parts, const PixelGrid& grid) {
+        std::size_t points = 0;
+        for (const Layer& layer : parts)
+            points += layer.points.size();
+        // Only as much of this memory as is touched is ever there.
+        const PageArray<PictureEdge> edges(points);
+        const PageArray<RowRange> rows(points);
         std::size_t used = 0;
-        for (std::size_t i = 0; i < edges.size(); ++i) {
-            rows[i] = Item::rows(edges[i], height_);
-            if (rows[i].first < rows[i].end) {
-                ++ends[rows[i].first + 1];
-                ++used;
-            }
-        }
+        std::vector<std::size_t> ends(std::size_t{height_} + 2);
+        for_each_edge(parts, grid, [&](const Point2& from, const Point2& to, const RowRange& met) {
+            edges[used] = PictureEdge(from, to);
+            rows[used++] = met;
+            ++ends[met.first + 1];
+        });
         for (std::size_t i = 1; i < ends.size(); ++i)
             ends[i] += ends[i - 1];
-        edges_.resize(used);
-        rows_.resize(used);
-        for (std::size_t i = 0; i < edges.size(); ++i) {
-            if (rows[i].first < rows[i].end) {
-                const std::uint32_t place = ends[rows[i].first]++;
-                edges_[place] = edges[i];
-                rows_[place] = rows[i];
+        edges_ = PageArray<PictureEdge>(used);
+        rows_ = PageArray<RowRange>(used);
+        for (std::size_t i = 0; i < used; ++i) {
+            const std::size_t place = ends[rows[i].first]++;
+            edges_[place] = edges[i];
+            rows_[place] = rows[i];
+        }
+    }
+
+    /// Calls found(from, to, rows) for the edges of all rings that some row meets and that are not to the
+    /// right of the picture, nor level and to the left of it.
+    template <class Found>
+    void for_each_edge(std::span<const Layer> parts, const PixelGrid& grid, const Found& found) const {
+        std::vector<Point2> places; // of a ring's points
+        std::vector<RowRange> rows; // those of an edge that is as high as the point
+        for (const Layer& layer : parts) {
+            for (std::size_t i = 0; i < layer.rings; ++i) {
+                const std::span<const Point2> ring = layer.contour(i);
+                const std::size_t n = ring.size();
+                places.resize(std::max(n, places.size()));
+                rows.resize(places.size());
+                place_in_picture(ring, grid, places.data());
+                for (std::size_t k = 0; k < n; ++k)
+                    rows[k] = Item::rows(places[k].y, places[k].y, height_);
+                for (std::size_t k = 0, before = n - 1; k < n; before = k++) {
+                    const RowRange met{std::min(rows[before].first, rows[k].first),
+                                       std::max(rows[before].end, rows[k].end)};
+                    const Point2& from = places[before];
+                    const Point2& to = places[k];
+                    if (met.first >= met.end || std::min(from.x, to.x) >= grid.width)
+                        continue;
+                    if (from.y == to.y && std::max(from.x, to.x) <= 0)
+                        continue;
+                    found(from, to, met);
+                }
             }
         }
     }
@@ -134,8 +169,8 @@ class RowSweep {
     }
 
     std::uint32_t height_;
-    std::vector<PictureEdge> edges_; ///< in the order of their first rows
-    std::vector<RowRange> rows_;
+    PageArray<PictureEdge> edges_; ///< in the order of their first rows
+    PageArray<RowRange> rows_;
     std::size_t begun_ = 0;
     std::vector<Entry> entries_;
     std::vector<Entry> fresh_;

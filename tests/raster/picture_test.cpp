@@ -242,6 +242,57 @@ TEST(Picture, IsExactWithCornersAnywhere) {
     }
 }
 
+TEST(Picture, IsExactAlongLinesOfAnyNumberOfEdges) {
+    // Dozens of corners of rim and hole in each row.
+    constexpr std::uint32_t size = 40;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        Random random(seed);
+        const Point2 middle{random.real(19, 21), random.real(19, 21)};
+        const Contour rim = star(random, middle, 17, 17.0000001, 6000);
+        const Contour hole = reversed(star(random, middle, 9, 9.0000001, 3000));
+        const Layer layer = layer_of({rim, hole});
+        const GreyPicture picture = paint_one(layer, plain(size, size), 2);
+        for (std::uint32_t r = 0; r < size; ++r) {
+            const double off = std::abs(r + 0.5 - middle.y);
+            if (off > 7 && off < 19)
+                continue; // tops and bottoms, which are cut into strips
+            for (std::uint32_t c = 0; c < size; ++c)
+                ASSERT_NEAR(picture.row(r)[c], 255 * (clipped_area(rim, c, r) - clipped_area(hole, c, r)),
+                            0.5 + 1e-6)
+                    << "seed " << seed << ", column " << c << ", row " << r;
+        }
+    }
+}
+
+TEST(Picture, IsExactAlongLinesWithStepsBackAndForth) {
+    constexpr std::uint32_t size = 12;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Random random(seed);
+        // Falls row by row, by many corners to the left and right, some of them on one height.
+        Contour ring;
+        double y = random.real(-1, 1);
+        while (y < size) {
+            ring.push_back({random.real(3, 5), y});
+            y += random.integer(0, 3) == 0 ? 0 : random.real(0, 0.2);
+        }
+        const Contour line = ring;
+        ring.push_back({11, y});
+        ring.push_back({11, line.front().y});
+        const Layer layer = layer_of({ring});
+        const GreyPicture picture = paint_one(layer, plain(size, size), 2);
+        for (std::uint32_t r = 2; r + 1 < size; ++r) { // the line goes through the whole row
+            for (std::uint32_t c = 0; c < size; ++c) {
+                double covered = 0; // trapezoids from the line to the right
+                for (std::size_t i = 0; i + 1 < line.size(); ++i)
+                    covered +=
+                        clipped_area({line[i], line[i + 1], {11, line[i + 1].y}, {11, line[i].y}}, c, r);
+                ASSERT_NEAR(picture.row(r)[c], 255 * covered, 0.5 + 1e-6)
+                    << "seed " << seed << ", column " << c << ", row " << r;
+            }
+        }
+    }
+}
+
 TEST(Picture, IsExactWhereBodiesOverlap) {
     constexpr std::uint32_t size = 16;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
