@@ -1,10 +1,12 @@
 #include "experiment.hpp"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -15,6 +17,29 @@
 
 namespace lamella::bench {
 
+namespace {
+
+/// A virtual machine may have given back memory that was free for a while, and then has to ask for each page
+/// again, which takes longer than slicing into it. A process that takes as much as a measurement may, and
+/// ends, leaves memory behind that is there.
+void have_memory_ready() {
+    const auto free =
+        static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const std::size_t bytes = std::min(std::size_t{3} << 29, free / 2);
+    const pid_t child = fork();
+    if (child == 0) {
+        void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (memory != MAP_FAILED) {
+            madvise(memory, bytes, MADV_HUGEPAGE);
+            madvise(memory, bytes, MADV_POPULATE_WRITE);
+        }
+        _exit(0);
+    }
+    waitpid(child, nullptr, 0);
+}
+
+} // namespace
+
 std::uint64_t run_in_child(const std::function<void(std::span<std::byte>)>& body,
                            std::span<std::byte> result) {
     int ends[2];
@@ -23,6 +48,7 @@ std::uint64_t run_in_child(const std::function<void(std::span<std::byte>)>& body
         std::exit(1);
     }
     std::cout.flush();
+    have_memory_ready();
     const pid_t child = fork();
     if (child == 0) {
         try {
