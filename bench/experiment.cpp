@@ -35,7 +35,8 @@ void have_memory_ready() {
         }
         _exit(0);
     }
-    waitpid(child, nullptr, 0);
+    if (child > 0)
+        waitpid(child, nullptr, 0);
 }
 
 } // namespace

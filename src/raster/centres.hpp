@@ -16,8 +16,9 @@ namespace lamella {
 
 /// Where an edge crosses the centres of a row.
 struct CentreCrossing {
-    [[nodiscard]] static RowRange rows(double upper, double lower, std::uint32_t height) noexcept {
-        return {least_whole(upper - 0.5, height), least_whole(lower - 0.5, height)};
+    [[nodiscard]] static RowRange rows(double y, std::uint32_t height) noexcept {
+        const std::uint32_t centre = least_whole(y - 0.5, height); // the first one below
+        return {centre, centre};
     }
     CentreCrossing(const PictureEdge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }

@@ -17,9 +17,9 @@ namespace lamella {
 
 /// The piece of an edge that lies in a row, from `top` to `bottom`.
 struct RowPiece {
-    [[nodiscard]] static RowRange rows(double upper, double lower, std::uint32_t height) noexcept {
-        const double above = std::clamp(upper, 0.0, static_cast<double>(height));
-        return {static_cast<std::uint32_t>(above), least_whole(lower, height)};
+    [[nodiscard]] static RowRange rows(double y, std::uint32_t height) noexcept {
+        const double within = std::clamp(y, 0.0, static_cast<double>(height));
+        return {static_cast<std::uint32_t>(within), least_whole(y, height)};
     }
     RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept;
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept;

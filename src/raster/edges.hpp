@@ -2,12 +2,10 @@
 
 // The edges of contours, as a picture sees them.
 
-#include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/raster/picture.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -54,8 +52,8 @@ struct PictureEdge {
     [[nodiscard]] bool level() const noexcept { return upper.y == lower.y; }
 };
 
-/// Where points are in a picture. A coordinate beyond 2^40 pixels is taken for that many: far outside, and
-/// still a number to count with.
+/// Writes to `to`, which has room for them, where points are in a picture. A coordinate beyond 2^40 pixels is
+/// taken for that many: far outside, and still a number to count with.
 void place_in_picture(std::span<const Point2> points, const PixelGrid& grid, Point2* to);
 
 } // namespace lamella

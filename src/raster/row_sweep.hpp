@@ -2,6 +2,8 @@
 
 // Down a picture, row by row, with the edges that each row meets.
 
+#include "lamella/contour/layer.hpp"
+
 #include "core/pages.hpp"
 #include "raster/edges.hpp"
 
@@ -21,9 +23,9 @@ struct RowRange {
 };
 
 /// Keeps what the edges of one row are to an algorithm, its `Item`s, in order from row to row. An Item has
-///     static RowRange rows(double upper, double lower, std::uint32_t height);
-///                                the rows that an edge between these heights has to do with; the first one
-///                                depends on the upper end, never falls with it, and the last on the lower
+///     static RowRange rows(double y, std::uint32_t height);   the first row that an edge with its upper end
+///     at
+///                                y has to do with, and the end of those of one with its lower end there
 ///     Item(const PictureEdge&, std::uint32_t row);                       in the first of them
 ///     void move_to(const PictureEdge&, std::uint32_t row);               from one to the next, or further
 ///     bool operator<(const Item&) const;                          a strict weak order along the row
@@ -110,7 +112,7 @@ class RowSweep {
     template <class Found>
     void for_each_edge(std::span<const Layer> parts, const PixelGrid& grid, const Found& found) const {
         std::vector<Point2> places; // of a ring's points
-        std::vector<RowRange> rows; // those of an edge that is as high as the point
+        std::vector<RowRange> rows; // of edges that begin and end at the point
         for (const Layer& layer : parts) {
             for (std::size_t i = 0; i < layer.rings; ++i) {
                 const std::span<const Point2> ring = layer.contour(i);
@@ -119,7 +121,7 @@ class RowSweep {
                 rows.resize(places.size());
                 place_in_picture(ring, grid, places.data());
                 for (std::size_t k = 0; k < n; ++k)
-                    rows[k] = Item::rows(places[k].y, places[k].y, height_);
+                    rows[k] = Item::rows(places[k].y, height_);
                 for (std::size_t k = 0, before = n - 1; k < n; before = k++) {
                     const RowRange met{std::min(rows[before].first, rows[k].first),
                                        std::max(rows[before].end, rows[k].end)};
