@@ -61,6 +61,11 @@ PixelGrid grid_of(const Box3& box) {
             .v0 = -box.min.y / mm};
 }
 
+/// As the writers of pictures have them.
+RasterOptions raster_options(const Layer& layer, unsigned antialias) {
+    return {.antialias = antialias, .winds_once = antialias > 1 && winds_once({&layer, 1})};
+}
+
 /// On one thread, one step after the other.
 struct Steps {
     Cost slicing;
@@ -80,7 +85,7 @@ Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
     const PixelGrid grid = grid_of(opened.box);
     steps.raster = cost_of([&] {
         for (const Layer& layer : layers)
-            rasterise({&layer, 1}, grid, {.antialias = antialias}, [](auto, auto) {});
+            rasterise({&layer, 1}, grid, raster_options(layer, antialias), [](auto, auto) {});
     });
     const auto writer = open_job(opened, path, antialias);
     steps.pictures = cost_of([&] {
@@ -100,8 +105,8 @@ void touch(std::size_t layers) {
     }
 }
 
-/// Whether each layer's picture covers the area of the section: exactly but for stretches of rows where very
-/// much lies close together, of which each point of a contour may be one.
+/// Whether each layer's picture covers the area of the section: exactly, but in layers with overlaps for
+/// stretches of rows where very much lies close together, of which each point of a contour may be one.
 bool right(const Part& part, unsigned antialias) {
     const OpenedPart opened = open_part(part, {});
     const double mm = pixel_mm(opened.box);
@@ -109,11 +114,14 @@ bool right(const Part& part, unsigned antialias) {
     const std::vector<double> areas = section_areas(opened.mesh, opened.plan);
     const LayerStack layers = slice(opened.mesh, opened.plan);
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        const double covered =
-            rasterise({&layers[i], 1}, grid, {.antialias = antialias}, [](auto, auto) {}) * mm * mm;
+        const RasterOptions options = raster_options(layers[i], antialias);
+        const double covered = rasterise({&layers[i], 1}, grid, options, [](auto, auto) {}) * mm * mm;
         const LayerMeasure measured = measure(layers[i]);
-        const double bound = antialias == 1 ? mm * measured.perimeter_mm
-                                            : mm * mm / antialias * static_cast<double>(measured.points);
+        double bound = 1e-9 * areas[i];
+        if (antialias == 1)
+            bound += mm * measured.perimeter_mm;
+        else if (!options.winds_once)
+            bound += mm * mm / antialias * static_cast<double>(measured.points);
         if (std::abs(covered - areas[i]) > bound + 1e-9)
             return false;
     }

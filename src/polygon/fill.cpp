@@ -21,20 +21,34 @@ namespace {
 
 enum class Fate : std::uint8_t { kept, reversed, dropped, united };
 
+/// What fill() begins with.
+struct Look {
+    explicit Look(const Layer& layer)
+        : chains(layer), grid(ChainGrid::of(chains)),
+          contacts(find_contacts(layer, chains, grid ? &*grid : nullptr)),
+          nest(nesting(layer, chains, grid ? &*grid : nullptr, contacts)) {}
+
+    /// Whether no rings are in contact and all of them bound material, with none around it.
+    [[nodiscard]] bool clean() const noexcept {
+        if (contacts.groups > 0)
+            return false;
+        for (std::size_t i = 0; i < nest.rings(); ++i)
+            if (nest.kind[i] != RingKind::outer && !(nest.kind[i] == RingKind::hole && nest.winding[i] == 1))
+                return false;
+        return true;
+    }
+
+    MonotoneChains chains;
+    std::optional<ChainGrid> grid;
+    Contacts contacts;
+    Nesting nest;
+};
+
 /// Of a ring with material on one side or on both, or on none.
 Fate fate(bool outside, bool inside, bool counter_clockwise) noexcept {
     if (outside == inside)
         return Fate::dropped;
     return inside == counter_clockwise ? Fate::kept : Fate::reversed;
-}
-
-bool clean(const Contacts& contacts, const Nesting& nest) noexcept {
-    if (contacts.groups > 0)
-        return false;
-    for (std::size_t i = 0; i < nest.rings(); ++i)
-        if (nest.kind[i] != RingKind::outer && !(nest.kind[i] == RingKind::hole && nest.winding[i] == 1))
-            return false;
-    return true;
 }
 
 class Filler {
@@ -151,13 +165,33 @@ std::string_view fill_rule_name(FillRule rule) noexcept {
 Filled fill(const Layer& layer, FillRule rule) {
     if (rule == FillRule::none)
         return {.layer = layer};
-    const MonotoneChains chains(layer);
-    const std::optional<ChainGrid> grid = ChainGrid::of(chains);
-    const Contacts contacts = find_contacts(layer, chains, grid ? &*grid : nullptr);
-    const Nesting nest = nesting(layer, chains, grid ? &*grid : nullptr, contacts);
-    if (clean(contacts, nest))
+    const Look look(layer);
+    if (look.clean())
         return {.layer = layer};
-    return Filler(layer, rule, contacts, nest).run();
+    return Filler(layer, rule, look.contacts, look.nest).run();
+}
+
+bool winds_once(std::span<const Layer> parts) {
+    std::vector<ChainBox> boxes;
+    for (const Layer& layer : parts) {
+        if (layer.rings == 0)
+            continue;
+        if (layer.points.size() >= Contacts::none)
+            return false;
+        const Look look(layer);
+        if (!look.clean())
+            return false;
+        ChainBox box = look.chains.box(0);
+        for (std::size_t i = 1; i < layer.rings; ++i)
+            box.add(look.chains.box(i));
+        boxes.push_back(box);
+    }
+    std::ranges::sort(boxes, {}, &ChainBox::x0);
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (std::size_t j = i + 1; j < boxes.size() && boxes[j].x0 <= boxes[i].x1; ++j)
+            if (boxes[i].meets(boxes[j]))
+                return false;
+    return true;
 }
 
 } // namespace lamella

@@ -47,7 +47,7 @@ void RowPiece::reach(const PictureEdge& edge, std::uint32_t row, double top_colu
 
 DrawnRow CoverageRows::draw(std::uint32_t row) {
     const std::uint32_t times = cover(row);
-    const std::span<const PixelRun> runs = coverage_.take();
+    const std::span<const PixelRun> runs = coverage_.take(0);
     return {runs, coverage_.covered(), times};
 }
 
@@ -75,7 +75,7 @@ std::uint32_t CoverageRows::cover(std::uint32_t row) {
         if (!alone)
             draw_knot(pieces.subspan(begin, end - begin), winding, row);
         else if ((winding == 0) != (right == 0))
-            coverage_.begin_along(pieces[begin].low, pieces[begin].high, right != 0 ? 1 : -1);
+            coverage_.begin_along(0, pieces[begin].low, pieces[begin].high, right != 0 ? 1 : -1);
         winding = right;
         begin = end;
     }
@@ -169,7 +169,7 @@ void CoverageRows::draw_border(const PictureEdge& edge, double middle_column, do
     const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
     const double half =
         std::min({0.5 * std::abs(height * edge.slope), middle_column - low, high - middle_column});
-    coverage_.begin_along(middle_column - half, middle_column + half, weight);
+    coverage_.begin_along(0, middle_column - half, middle_column + half, weight);
 }
 
 void CoverageRows::draw_slab(Pieces knot, int left, double from, double to) {

@@ -2,7 +2,7 @@
 
 // Pixels by the part of their area that is covered.
 
-#include "raster/coverage_row.hpp"
+#include "raster/coverage_band.hpp"
 #include "raster/drawn_row.hpp"
 #include "raster/edges.hpp"
 #include "raster/row_sweep.hpp"
@@ -41,7 +41,7 @@ class CoverageRows {
   public:
     CoverageRows(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options)
         : pieces_(parts, grid), width_(grid.width), strips_(options.antialias),
-          coverage_(grid.width, 1, options.gamma) {}
+          coverage_(grid.width, 1, 1, options.gamma) {}
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
 
@@ -76,8 +76,8 @@ class CoverageRows {
 
     RowSweep<RowPiece> pieces_;
     std::uint32_t width_;
-    unsigned strips_; ///< see RasterOptions::antialias
-    CoverageRow coverage_;
+    unsigned strips_;       ///< see RasterOptions::antialias
+    CoverageBand coverage_; ///< of one row
     std::vector<LinePiece> line_;
     std::vector<double> heights_;
     std::vector<Border> borders_;

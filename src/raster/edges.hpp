@@ -56,4 +56,9 @@ struct PictureEdge {
 /// taken for that many: far outside, and still a number to count with.
 void place_in_picture(std::span<const Point2> points, const PixelGrid& grid, Point2* to);
 
+/// Writes to `to` in which bands of a picture points lie: from 0 to count - 1, -1 for those above and `count`
+/// for those below. A point half a rounding above a border may be taken for one below.
+void find_bands(std::span<const Point2> points, const PixelGrid& grid, double bands_per_row,
+                std::int32_t count, std::int32_t* to);
+
 } // namespace lamella

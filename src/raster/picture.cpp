@@ -5,6 +5,7 @@
 #include "raster/centres.hpp"
 #include "raster/coverage.hpp"
 #include "raster/drawn_row.hpp"
+#include "raster/summed_coverage.hpp"
 
 #include <fmt/format.h>
 
@@ -38,12 +39,21 @@ void check(const PixelGrid& grid, const RasterOptions& options) {
 template <class Rows>
 double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
     double covered = 0;
+    std::vector<PixelRun> same; // of the last rows, which look the same
+    std::uint32_t times = 0;
     for (std::uint32_t row = 0; row < height;) {
         const DrawnRow drawn = rows.draw(row);
         covered += drawn.covered * drawn.times;
-        sink(drawn.runs, drawn.times);
+        if (times > 0 && !std::ranges::equal(same, drawn.runs)) {
+            sink(same, times);
+            times = 0;
+        }
+        if (times == 0)
+            same.assign(drawn.runs.begin(), drawn.runs.end());
+        times += drawn.times;
         row += drawn.times;
     }
+    sink(same, times);
     return covered;
 }
 
@@ -54,6 +64,8 @@ double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const Rast
     check(grid, options);
     if (options.antialias == 1)
         return draw(CentreRows(parts, grid), grid.height, sink);
+    if (options.winds_once)
+        return draw(SummedRows(parts, grid, options.gamma), grid.height, sink);
     return draw(CoverageRows(parts, grid, options), grid.height, sink);
 }
 

@@ -75,10 +75,10 @@ bool close_to_an_edge(const Layer& layer, double x, double y) {
     return false;
 }
 
-double covered(const Layer& layer, unsigned antialias) {
+double covered(const Layer& layer, const RasterOptions& options) {
     std::uint32_t rows = 0;
     const double result =
-        rasterise({&layer, 1}, {.width = width, .height = height}, {.antialias = antialias},
+        rasterise({&layer, 1}, {.width = width, .height = height}, options,
                   [&](std::span<const PixelRun> row, std::uint32_t times) {
                       require(times > 0 && !row.empty() && row.front().end > 0 && row.back().end == width);
                       for (std::size_t i = 1; i < row.size(); ++i)
@@ -101,11 +101,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             require((picture.row(r)[c] == 255) == inside || close_to_an_edge(layer, c + 0.5, r + 0.5));
             middles += picture.row(r)[c] / 255.0;
         }
-    require(std::abs(covered(layer, 1) - middles) < 1e-6);
+    require(std::abs(covered(layer, {.antialias = 1}) - middles) < 1e-6);
     for (const unsigned antialias : {2U, 5U, 64U}) {
-        const double area = covered(layer, antialias);
+        const double area = covered(layer, {.antialias = antialias});
         require(area >= 0 && area <= width * height + 1e-6);
         require(!layer.points.empty() || area == 0);
+        // Strips of the sweep are off by less than their share for each point.
+        const double sum = covered(layer, {.antialias = antialias, .winds_once = true});
+        require(sum >= 0 && sum <= width * height + 1e-6);
+        require(!winds_once({&layer, 1}) ||
+                std::abs(sum - area) <= 1e-6 + static_cast<double>(layer.points.size()) / antialias);
     }
     return 0;
 }

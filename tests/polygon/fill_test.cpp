@@ -265,6 +265,49 @@ TEST(Fill, IsRightWhereSidesRunBesideOneAnotherForLong) {
         }
 }
 
+TEST(WindsOnce, IsTrueOfCleanPartsThatLieApart) {
+    const Layer body =
+        layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(1, 1, 9, 9)), rectangle(2, 2, 3, 3)},
+                 {{{0, 0}, {5, 5}, {20, 3}}});
+    EXPECT_TRUE(winds_once({}));
+    EXPECT_TRUE(winds_once({&body, 1}));
+    const std::vector<Layer> apart{body, Layer{}, layer_of({rectangle(11, 0, 12, 5)}),
+                                   layer_of({rectangle(0, 10.5, 20, 11)}), layer_of({}, {{{0, 0}, {9, 9}}})};
+    EXPECT_TRUE(winds_once(apart));
+}
+
+TEST(WindsOnce, IsFalseOfWhatTouchesOverlapsOrIsTurned) {
+    const Contour body = rectangle(0, 0, 10, 10);
+    for (const Layer& layer :
+         {layer_of({reversed(body)}), layer_of({body, body}), layer_of({body, rectangle(2, 2, 3, 3)}),
+          layer_of({body, rectangle(10, 0, 20, 10)}), layer_of({body, rectangle(5, 5, 20, 20)}),
+          layer_of({body, reversed(rectangle(1, 1, 9, 9)), reversed(rectangle(2, 2, 3, 3))}),
+          layer_of({body, reversed(rectangle(20, 1, 29, 9))}), layer_of({{{0, 0}, {4, 4}, {4, 0}, {0, 4}}}),
+          layer_of({body, {{20, 0}, {30, 0}}})})
+        EXPECT_FALSE(winds_once({&layer, 1}));
+    const Layer one = layer_of({body});
+    for (const Contour& other : {rectangle(10, 0, 20, 10), rectangle(3, 3, 4, 4), rectangle(-5, -5, 5, 50)}) {
+        const std::vector<Layer> parts{layer_of({rectangle(50, 0, 51, 1)}), one, layer_of({other})};
+        EXPECT_FALSE(winds_once(parts));
+    }
+}
+
+TEST(WindsOnce, IsTrueOnlyWhereTheWindingNumberIsNoughtOrOne) {
+    Random random(33);
+    int clean = 0;
+    for (int round = 0; round < 3000; ++round) {
+        const bool integers = round % 2 == 0;
+        const Layer layer = layer_of(random_rings(random, 100, integers ? 12 : 20, 3, integers));
+        if (!winds_once({&layer, 1}))
+            continue;
+        ++clean;
+        ASSERT_EQ(test::winding_area(layer, [](int winding) { return winding < 0 || winding > 1; }), 0)
+            << "round " << round;
+        ASSERT_FALSE(fill(layer, FillRule::nonzero).changed());
+    }
+    EXPECT_GT(clean, 300);
+}
+
 TEST(Fill, OfAnEmptyLayerIsEmpty) {
     EXPECT_EQ(fill(Layer{}, FillRule::nonzero).layer.contours(), 0U);
     EXPECT_EQ(fill(layer_of({{}, {{1, 1}}}), FillRule::nonzero).layer.contours(), 0U);

@@ -4,6 +4,7 @@
 
 #include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
+#include "raster/clipped_area.hpp"
 
 #include <gtest/gtest.h>
 
@@ -91,34 +92,6 @@ double sampled(const Layer& layer, std::uint32_t column, std::uint32_t row, int 
     return inside / static_cast<double>(samples * samples);
 }
 
-/// What of a convex ring lies where `inside`, a distance to a line, is positive.
-template <class Inside>
-Contour cut_off(const Contour& ring, Inside inside) {
-    Contour kept;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Point2& p = ring[i];
-        const Point2& q = ring[(i + 1) % ring.size()];
-        const double dp = inside(p);
-        const double dq = inside(q);
-        if (dp >= 0)
-            kept.push_back(p);
-        if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {
-            const double t = dp / (dp - dq);
-            kept.push_back({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)});
-        }
-    }
-    return kept;
-}
-
-/// The area of a convex ring within a pixel, by cutting it off at the pixel's sides.
-double clipped_area(Contour ring, double column, double row) {
-    ring = cut_off(ring, [&](const Point2& p) { return p.x - column; });
-    ring = cut_off(ring, [&](const Point2& p) { return column + 1 - p.x; });
-    ring = cut_off(ring, [&](const Point2& p) { return p.y - row; });
-    ring = cut_off(ring, [&](const Point2& p) { return row + 1 - p.y; });
-    return ring.size() < 3 ? 0 : std::abs(ring_area(ring));
-}
-
 /// A counter-clockwise one.
 Contour triangle(Random& random, double from, double to) {
     Contour ring;
@@ -134,7 +107,7 @@ Contour common(Contour ring, const Contour& other) {
     for (std::size_t i = 0; i < other.size(); ++i) {
         const Point2& from = other[i];
         const Point2& to = other[(i + 1) % other.size()];
-        ring = cut_off(ring, [&](const Point2& p) {
+        ring = test::cut_off(ring, [&](const Point2& p) {
             return (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x);
         });
     }
@@ -217,7 +190,7 @@ TEST(Picture, IsExactWhereNoCornerLiesInTheRow) {
                             [r](const Point2& p) { return p.y > r && p.y < r + 1; }))
                 continue;
             for (std::uint32_t c = 0; c < size; ++c) {
-                ASSERT_NEAR(picture.row(r)[c], 255 * clipped_area(ring, c, r), 0.5 + 1e-6)
+                ASSERT_NEAR(picture.row(r)[c], 255 * test::clipped_area(ring, c, r), 0.5 + 1e-6)
                     << "seed " << seed << ", column " << c << ", row " << r;
                 ++checked;
             }
@@ -237,7 +210,7 @@ TEST(Picture, IsExactWithCornersAnywhere) {
         const GreyPicture picture = paint_one(layer_of({ring}), plain(size, size), 4);
         for (std::uint32_t r = 0; r < size; ++r)
             for (std::uint32_t c = 0; c < size; ++c)
-                ASSERT_NEAR(picture.row(r)[c], 255 * clipped_area(ring, c, r), 0.5 + 1e-6)
+                ASSERT_NEAR(picture.row(r)[c], 255 * test::clipped_area(ring, c, r), 0.5 + 1e-6)
                     << "seed " << seed << ", column " << c << ", row " << r;
     }
 }
@@ -257,7 +230,8 @@ TEST(Picture, IsExactAlongLinesOfAnyNumberOfEdges) {
             if (off > 7 && off < 19)
                 continue; // tops and bottoms, which are cut into strips
             for (std::uint32_t c = 0; c < size; ++c)
-                ASSERT_NEAR(picture.row(r)[c], 255 * (clipped_area(rim, c, r) - clipped_area(hole, c, r)),
+                ASSERT_NEAR(picture.row(r)[c],
+                            255 * (test::clipped_area(rim, c, r) - test::clipped_area(hole, c, r)),
                             0.5 + 1e-6)
                     << "seed " << seed << ", column " << c << ", row " << r;
         }
@@ -284,8 +258,8 @@ TEST(Picture, IsExactAlongLinesWithStepsBackAndForth) {
             for (std::uint32_t c = 0; c < size; ++c) {
                 double covered = 0; // trapezoids from the line to the right
                 for (std::size_t i = 0; i + 1 < line.size(); ++i)
-                    covered +=
-                        clipped_area({line[i], line[i + 1], {11, line[i + 1].y}, {11, line[i].y}}, c, r);
+                    covered += test::clipped_area(
+                        {line[i], line[i + 1], {11, line[i + 1].y}, {11, line[i].y}}, c, r);
                 ASSERT_NEAR(picture.row(r)[c], 255 * covered, 0.5 + 1e-6)
                     << "seed " << seed << ", column " << c << ", row " << r;
             }
@@ -304,8 +278,8 @@ TEST(Picture, IsExactWhereBodiesOverlap) {
         const GreyPicture picture = paint(parts, plain(size, size), {.antialias = 16});
         for (std::uint32_t r = 0; r < size; ++r)
             for (std::uint32_t c = 0; c < size; ++c) {
-                const double covered =
-                    clipped_area(a, c, r) + clipped_area(b, c, r) - clipped_area(both, c, r);
+                const double covered = test::clipped_area(a, c, r) + test::clipped_area(b, c, r) -
+                                       test::clipped_area(both, c, r);
                 ASSERT_NEAR(picture.row(r)[c], 255 * covered, 0.5 + 1e-6)
                     << "seed " << seed << ", column " << c << ", row " << r;
             }
@@ -322,7 +296,7 @@ TEST(Picture, IsExactForSidesAlongThePixels) {
             const GreyPicture picture = paint_one(layer_of({ring}), plain(16, 16), antialias);
             for (std::uint32_t r = 0; r < 16; ++r)
                 for (std::uint32_t c = 0; c < 16; ++c)
-                    ASSERT_NEAR(picture.row(r)[c], 255 * clipped_area(ring, c, r), 0.5 + 1e-6)
+                    ASSERT_NEAR(picture.row(r)[c], 255 * test::clipped_area(ring, c, r), 0.5 + 1e-6)
                         << "seed " << seed << ", column " << c << ", row " << r;
         }
     }

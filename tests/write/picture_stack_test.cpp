@@ -1,15 +1,18 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/fill.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "png_file.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
+#include "write/layer_pictures.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,6 +63,27 @@ TEST(PictureFolder, ShowsTheAreaOfEachLayer) {
         EXPECT_LE(covered * 0.02 * 0.04, once + 1e-3 * measure(layers[i]).perimeter_mm);
         EXPECT_GE(covered > 0, layers[i].rings > 0);
     }
+}
+
+TEST(LayerPictures, CoverOnceWhatOverlaps) {
+    const PixelGrid grid{.width = 60, .height = 60, .u0 = 30, .v0 = 30};
+    const LayerPictures pictures(grid, {});
+    const LayerStack layers = random_layers(9, 60, 50, {0, 0}, false);
+    int overlapping = 0;
+    for (std::size_t i = 1; i < layers.size(); ++i) {
+        const std::span<const Layer> parts(&layers[i - 1], 1 + i % 2);
+        overlapping += winds_once(parts) ? 0 : 1;
+        const PngFile picture = read_png(std::string(pictures.picture(parts).file->view()));
+        const GreyPicture expected = paint(parts, grid);
+        std::size_t others = 0;
+        for (std::size_t k = 0; k < expected.values.size(); ++k) {
+            ASSERT_NEAR(picture.values[k], expected.values[k], 1);
+            others += picture.values[k] != expected.values[k] ? 1 : 0;
+        }
+        ASSERT_LE(others, 1U) << "rounded another way";
+    }
+    EXPECT_GT(overlapping, 20);
+    EXPECT_LT(overlapping, 59);
 }
 
 TEST(PictureFolder, PutsAllPartsIntoOnePicture) {

@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace lamella {
@@ -47,5 +48,11 @@ struct Filled {
 /// Expected O(n) to find that a layer is clean, O(n log n) to find what overlaps; to unite rings of m points
 /// with k crossings, O((m + k) log m). Throws Error{limit} for a layer of more than 2^32 - 2 points.
 [[nodiscard]] Filled fill(const Layer& layer, FillRule rule);
+
+/// Whether the winding number of all parts together is known to be 0 or 1 everywhere: the boxes of the parts
+/// lie apart, and in each no rings touch, counter-clockwise ones lie in nothing, clockwise ones in one body.
+/// Open chains do not count. False also for parts that only touch, and for those too large to say. Takes as
+/// long as fill() takes to find that a layer is clean; O(b^2) more for b parts whose boxes share abscissae.
+[[nodiscard]] bool winds_once(std::span<const Layer> parts);
 
 } // namespace lamella

@@ -35,6 +35,11 @@ struct RasterOptions {
     /// 1 is no anti-aliasing: a pixel is covered, or not, as its centre is. A centre on a contour counts when
     /// the material lies to its right or, on a level line, below it: bodies side by side share no pixel.
     unsigned antialias = 8;
+    /// The caller knows that the winding number is 0 or 1 everywhere, as polygon's `winds_once` finds: then
+    /// coverage is a sum over the edges in any order, which is many times as fast, and exact. Where it is not
+    /// so, what is covered several times in one pixel counts as often, up to the whole pixel. Makes no
+    /// difference without anti-aliasing.
+    bool winds_once = false;
     /// A pixel's value is 255 coverage^gamma, rounded.
     double gamma = 1;
 };
@@ -56,7 +61,8 @@ using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t 
 /// Returns the covered area in pixels, before it was rounded to values.
 ///
 /// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (with strips, where rows are
-/// cut into them), in memory for the points and one row. Throws Error{usage} for a grid or options that make
+/// cut into them), in memory for the points and one row; with `winds_once` O(p + c + r), in memory for a few
+/// rows. Throws Error{usage} for a grid or options that make
 /// no picture.
 double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
                  const RowSink& sink);

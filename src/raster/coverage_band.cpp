@@ -1,0 +1,135 @@
+#include "raster/coverage_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lamella {
+
+namespace {
+
+// The coverage of a column is the integral of the slope over it. With the slope s per column, that is
+//     s (i + 1 - from)^2 / 2            in the first column i,
+//     s (k + 1/2 - from)                in a column k that it passes through,
+//     weight - s (to - j)^2 / 2         in the last column j, and the weight from there on.
+[[gnu::always_inline]] inline void slope(RowChanges<double>::Row row, double width, double from, double to,
+                                         double weight) {
+    if (from >= width)
+        return;
+    if (to <= 0) {
+        row.add(0, weight);
+        return;
+    }
+    if (from < 0) {
+        const double risen = weight * (-from / (to - from));
+        row.add(0, risen);
+        weight -= risen;
+        from = 0;
+    }
+    if (to > width) {
+        weight *= (width - from) / (to - from);
+        to = width;
+    }
+    const auto i = static_cast<std::uint32_t>(from);
+    const auto j = static_cast<std::uint32_t>(to);
+    if (i == j) {
+        const double moment = weight * (0.5 * (from + to) - i);
+        row.add(i, weight - moment);
+        row.add(i + 1, moment);
+        return;
+    }
+    const double rise = weight / (to - from);
+    const double ahead = (i + 1) - from;
+    const double behind = to - j;
+    const double last = weight - 0.5 * rise * behind * behind;
+    double before = 0.5 * rise * ahead * ahead;
+    row.add(i, before);
+    if (i + 1 < j) {
+        row.add(i + 1, rise * (ahead + 0.5) - before);
+        for (std::uint32_t k = i + 2; k < j; ++k)
+            row.add(k, rise);
+        before = rise * (j - 0.5 - from);
+    }
+    row.add(j, last - before);
+    row.add(j + 1, weight - last);
+}
+
+} // namespace
+
+CoverageBand::CoverageBand(std::uint32_t width, std::uint32_t rows, double full, double gamma)
+    : width_(width), full_(full), own_(width, rows), common_(width, 1), runs_(std::size_t{width} + 1) {
+    for (std::size_t i = 0; i < value_of_.size(); ++i)
+        value_of_[i] =
+            static_cast<std::uint8_t>(std::lround(255 * std::pow(static_cast<double>(i) / 255, gamma)));
+}
+
+void CoverageBand::begin_along(std::uint32_t row, double from, double to, double weight) {
+    slope(own_.row(row), width_, from, to, weight);
+}
+
+void CoverageBand::begin_in_all(double u, double weight) {
+    slope(common_.row(0), width_, u, u, weight);
+}
+
+void CoverageBand::begin_along(const PictureEdge& edge, std::uint32_t top, std::uint32_t end, double weight) {
+    const double last_y = std::min<double>(edge.lower.y, end);
+    double y = std::max<double>(edge.upper.y, top);
+    if (!(y < last_y))
+        return;
+    if (edge.slope == 0 && y == top && last_y == end) {
+        begin_in_all(edge.upper.x, weight);
+        return;
+    }
+    const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
+    const auto column = [&](double v) {
+        return std::clamp(edge.upper.x + (v - edge.upper.y) * edge.slope, low, high);
+    };
+    const double width = width_;
+    double x = y == edge.upper.y ? edge.upper.x : column(y);
+    for (auto row = static_cast<std::uint32_t>(y); y < last_y; ++row) {
+        const double next_y = std::min(last_y, row + 1.0);
+        const double next_x = next_y == edge.lower.y ? edge.lower.x : column(next_y);
+        slope(own_.row(row - top), width, std::min(x, next_x), std::max(x, next_x), weight * (next_y - y));
+        x = next_x;
+        y = next_y;
+    }
+}
+
+std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
+    // What the loop uses is kept out of the object: stores of bytes would have it fetched again each time.
+    const std::uint32_t width = width_;
+    const double full = full_;
+    const double most_value = 255 / full;
+    PixelRun* next = runs_.data();
+    double covered = 0;
+    double coverage = 0;
+    double clamped = 0;
+    std::uint32_t since = 0;
+    std::uint8_t value = 0;
+    if (common_.touched(0)) {
+        auto to = own_.row(row);
+        common_.for_each(0, [&](std::size_t column, double change) { to.add(column, change); });
+    }
+    own_.for_each(row, [&](std::size_t column, double change) {
+        coverage += change;
+        const auto here = static_cast<std::uint32_t>(column);
+        if (here >= width)
+            return;
+        covered += clamped * (here - since);
+        since = here;
+        clamped = coverage < 0 ? 0 : coverage; // not std::clamp, which is taken for two branches
+        clamped = full < clamped ? full : clamped;
+        // To 32 bits and signed: that is one instruction.
+        const std::uint8_t value_here =
+            value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(clamped * most_value + 0.5))];
+        // A run that ends here is written in any case, and stays where it has pixels and another value.
+        *next = {here, value};
+        next += value_here != value && here > 0 ? 1 : 0;
+        value = value_here;
+    });
+    own_.clear(row);
+    covered_ = (covered + clamped * (width - since)) / full;
+    *next++ = {width, value};
+    return {runs_.data(), next};
+}
+
+} // namespace lamella

@@ -1,0 +1,78 @@
+#pragma once
+
+// What changes along rows of pixels.
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// For each of a few rows, what a number changes by from one column to the next. Only columns where it does
+/// cost time, not those between them, nor rows where it does nowhere: a bit for each column tells where they
+/// are, and what other columns hold is never looked at. A row is two columns longer than the picture is wide.
+template <class Number>
+class RowChanges {
+  public:
+    RowChanges(std::uint32_t width, std::uint32_t rows)
+        : columns_(std::size_t{width} + 2), words_(columns_ / 64 + 1),
+          changes_(std::make_unique_for_overwrite<Number[]>(columns_ * rows)), changed_(words_ * rows),
+          touched_(rows) {}
+
+    /// A row to add to.
+    class Row {
+      public:
+        void add(std::size_t column, Number by) noexcept {
+            std::uint64_t& bits = changed_[column / 64];
+            const std::uint64_t bit = std::uint64_t{1} << (column % 64);
+            changes_[column] = ((bits & bit) != 0 ? changes_[column] : Number{0}) + by;
+            bits |= bit;
+        }
+
+      private:
+        friend RowChanges;
+        Row(Number* changes, std::uint64_t* changed) noexcept : changes_(changes), changed_(changed) {}
+
+        Number* changes_;
+        std::uint64_t* changed_;
+    };
+    [[nodiscard]] Row row(std::uint32_t row) noexcept {
+        touched_[row] = 1;
+        return {changes_.get() + columns_ * row, changed_.data() + words_ * row};
+    }
+    /// Whether anything was added since the row was cleared.
+    [[nodiscard]] bool touched(std::uint32_t row) const noexcept { return touched_[row] != 0; }
+
+    /// Calls found(column, change) from left to right.
+    template <class Found>
+    void for_each(std::uint32_t row, const Found& found) const {
+        if (!touched(row))
+            return;
+        const Number* const changes = changes_.get() + columns_ * row;
+        const std::uint64_t* const changed = changed_.data() + words_ * row;
+        for (std::size_t word = 0; word < words_; ++word) {
+            for (std::uint64_t bits = changed[word]; bits != 0; bits &= bits - 1) {
+                const std::size_t column = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+                found(column, changes[column]);
+            }
+        }
+    }
+    void clear(std::uint32_t row) noexcept {
+        if (std::exchange(touched_[row], std::uint8_t{0}) != 0)
+            std::fill_n(changed_.begin() + static_cast<std::ptrdiff_t>(words_ * row), words_,
+                        std::uint64_t{0});
+    }
+
+  private:
+    std::size_t columns_;
+    std::size_t words_;
+    std::unique_ptr<Number[]> changes_;
+    std::vector<std::uint64_t> changed_;
+    std::vector<std::uint8_t> touched_;
+};
+
+} // namespace lamella
