@@ -33,24 +33,28 @@ namespace {
     const auto j = static_cast<std::uint32_t>(to);
     if (i == j) {
         const double moment = weight * (0.5 * (from + to) - i);
-        row.add(i, weight - moment);
-        row.add(i + 1, moment);
+        row.add_from(i, weight - moment, moment);
         return;
     }
     const double rise = weight / (to - from);
     const double ahead = (i + 1) - from;
     const double behind = to - j;
+    const double first = 0.5 * rise * ahead * ahead;
     const double last = weight - 0.5 * rise * behind * behind;
-    double before = 0.5 * rise * ahead * ahead;
-    row.add(i, before);
-    if (i + 1 < j) {
-        row.add(i + 1, rise * (ahead + 0.5) - before);
-        for (std::uint32_t k = i + 2; k < j; ++k)
-            row.add(k, rise);
-        before = rise * (j - 0.5 - from);
+    if (i + 1 == j) {
+        row.add_from(i, first, last - first, weight - last);
+        return;
     }
-    row.add(j, last - before);
-    row.add(j + 1, weight - last);
+    const double second = rise * (ahead + 0.5);
+    const double last_but_one = rise * (j - 0.5 - from);
+    if (i + 2 == j) {
+        row.add_from(i, first, second - first, last - second, weight - last);
+        return;
+    }
+    row.add_from(i, first, second - first);
+    for (std::uint32_t k = i + 2; k < j; ++k)
+        row.add(k, rise);
+    row.add_from(j, last - last_but_one, weight - last);
 }
 
 } // namespace

@@ -28,9 +28,7 @@ class CoverageBand {
     void begin_along(const PictureEdge& edge, std::uint32_t top, std::uint32_t end, double weight);
     /// Within a pixel: what begins in it, and that times how far to the right, from 0 to 1, it does.
     void begin_within(std::uint32_t row, std::size_t column, double weight, double moment) {
-        auto changes = own_.row(row);
-        changes.add(column, weight - moment);
-        changes.add(column + 1, moment);
+        own_.row(row).add_from(column, weight - moment, moment);
     }
     /// In all rows of the band, those that were taken and those to come, until clear_common().
     void begin_in_all(double u, double weight);

@@ -33,6 +33,23 @@ class RowChanges {
             bits |= bit;
         }
 
+        /// To a column and those after it.
+        template <class... Numbers>
+        void add_from(std::size_t column, Numbers... by) noexcept {
+            const std::size_t first = column % 64;
+            if (first + sizeof...(by) <= 64) { // all of their bits are side by side, and fetched once
+                std::uint64_t& bits = changed_[column / 64];
+                const std::uint64_t before = bits >> first;
+                std::size_t i = 0;
+                ((changes_[column + i] = ((before >> i & 1) != 0 ? changes_[column + i] : Number{0}) + by,
+                  ++i),
+                 ...);
+                bits |= ((std::uint64_t{1} << sizeof...(by)) - 1) << first;
+            } else {
+                (add(column++, by), ...);
+            }
+        }
+
       private:
         friend RowChanges;
         Row(Number* changes, std::uint64_t* changed) noexcept : changes_(changes), changed_(changed) {}
