@@ -83,7 +83,8 @@ void CoverageBand::begin_along(const PictureEdge& edge, std::uint32_t top, std::
         begin_in_all(edge.upper.x, weight);
         return;
     }
-    const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
+    const double low = std::min(edge.upper.x, edge.lower.x);
+    const double high = std::max(edge.upper.x, edge.lower.x);
     const auto column = [&](double v) {
         return std::clamp(edge.upper.x + (v - edge.upper.y) * edge.slope, low, high);
     };
