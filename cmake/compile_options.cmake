@@ -21,8 +21,11 @@ if(LAMELLA_WERROR AND NOT (LAMELLA_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "
     target_compile_options(lamella_options INTERFACE -Werror)
 endif()
 if(LAMELLA_SANITIZE)
-    target_compile_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE} -fno-omit-frame-pointer
-                                                     -fno-sanitize-recover=all)
+    # Not where a target has the property LAMELLA_UNSANITIZED.
+    set(sanitized $<NOT:$<BOOL:$<TARGET_PROPERTY:LAMELLA_UNSANITIZED>>>)
+    foreach(option -fsanitize=${LAMELLA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+        target_compile_options(lamella_options INTERFACE $<${sanitized}:${option}>)
+    endforeach()
     target_link_options(lamella_options INTERFACE -fsanitize=${LAMELLA_SANITIZE})
 endif()
 

@@ -26,18 +26,22 @@ namespace lamella {
 namespace {
 
 /// Parts are called by the name of their file.
-const std::string& path_of(const Plate& plate, const PlatePart& part) {
-    return plate.files[plate.shapes[part.shape].input].path;
+const PlateFile& file_of(const Plate& plate, const PlatePart& part) {
+    return plate.files[plate.shapes[part.shape].input];
 }
 
 void check_heights(const Plate& plate) {
-    for (const PlatePart& part : plate.parts)
-        if (part.box.min.z == part.box.max.z)
-            throw Error(
-                ErrorKind::input,
-                fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing to "
-                            "slice; rotate it or choose another direction",
-                            path_of(plate, part), part.box.min.z));
+    for (const PlatePart& part : plate.parts) {
+        if (part.box.min.z != part.box.max.z)
+            continue;
+        const PlateFile& file = file_of(plate, part);
+        // What its reading met may be the cause.
+        const std::string cause = file.warnings.empty() ? "" : fmt::format(" ({})", file.warnings.front());
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing to "
+                                "slice; rotate it or choose another direction{}",
+                                file.path, part.box.min.z, cause));
+    }
 }
 
 /// Whether a plane at z can cut anything of the box, by the rule of the plane.

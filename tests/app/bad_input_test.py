@@ -58,6 +58,11 @@ class BadInput(ProgramTest):
         self.write("flat.stl", binary_stl([((0, 0, 5), (1, 0, 5), (0, 1, 5))]))
         self.refuse(3, r"flat\.stl.*flat.*z = 5.*rotate", "flat.stl")
 
+    def test_a_mesh_that_is_flat_because_its_file_was_cut_off(self):
+        whole = binary_stl(box_triangles(20, 20, 20))
+        self.write("cut.stl", whole[:84 + 50])  # one triangle of the bottom
+        self.refuse(3, r"cut\.stl.*flat.*count is 12.*after 1 whole triangle", "cut.stl")
+
     def test_planes_that_miss_the_part(self):
         self.box()
         self.write("z.txt", "100\n200\n")

@@ -44,7 +44,7 @@ class Kills(ProgramTest):
             self.succeed(*command, "--scale", "1.1")
             old = content(self.path("out"))
             self.assertNotEqual(old, new)
-            for _ in range(100 if AT_LENGTH else 8):
+            for _ in range(40 if AT_LENGTH else 8):
                 process = self.start(*command)
                 time.sleep(chance.uniform(0, took))
                 process.send_signal(signal.SIGKILL)

@@ -6,6 +6,7 @@
 #include "even_planes.hpp"
 #include "expect_error.hpp"
 #include "expect_layers.hpp"
+#include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 
 #include <gtest/gtest.h>
@@ -136,7 +137,7 @@ class InFlight {
 
 TEST(SliceTo, BoundsThePointsInFlight) {
     const TriangleSoup soup = body();
-    const Plan plan = even_planes(2000);
+    const Plan plan = even_planes(test::sanitized ? 300 : 2000);
     SliceReport whole;
     std::uint64_t largest = 0;
     for (const Layer& layer : slice(soup, plan, {}, &whole))

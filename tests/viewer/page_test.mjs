@@ -25,6 +25,7 @@ before(async () => {
   lamella('make', 'box', '--size', '20,30,10', '-o', 'box.stl');
   writeFileSync(file('open.stl'), stl(boxTriangles().slice(0, -2)));
   lamella('view', 'rook.stl');
+  lamella('view', 'rook.stl', '--layer-height', '0.5', '-o', 'coarse.html');
   lamella('view', 'box.stl');
   lamella('view', 'open.stl');
   lamella('info', 'open.stl', '--report', 'open_mesh.html');
@@ -342,7 +343,7 @@ test('every control has a name, and tab reaches them in order', async () => {
 });
 
 test('the stack that rested while the layer alone was seen is built when both are', async () => {
-  const { page, complaints, close } = await open('rook.html');
+  const { page, complaints, close } = await open('coarse.html');
   await page.keyboard.press('3');
   await page.waitForSelector('canvas[data-built]');
   assert.deepEqual(complaints, []);
@@ -350,7 +351,7 @@ test('the stack that rested while the layer alone was seen is built when both ar
 });
 
 test('nothing moves while the page fills itself', async () => {
-  const { page, close } = await open('rook.html', { view: 'both' });
+  const { page, close } = await open('coarse.html', { view: 'both' });
   const places = () => page.evaluate(() => [...document.querySelectorAll('.pane, .timeline, .row, .card')].map((node) => JSON.stringify(node.getBoundingClientRect())));
   const before = await places();
   await page.waitForSelector('canvas[data-built]');
