@@ -157,7 +157,9 @@ Mesh SourceMesh::to_slice(const Execution& execution) const {
 
 Plate SourceMesh::plate() const {
     Plate plate;
-    plate.files.emplace_back().path = origin_.path.empty() ? "the mesh" : origin_.path;
+    PlateFile& file = plate.files.emplace_back();
+    file.path = origin_.path.empty() ? "the mesh" : origin_.path;
+    file.warnings = origin_.warnings;
     plate.shapes.push_back({mesh_});
     plate.parts.push_back({.label = origin_.label, .box = box_});
     plate.box = box_;

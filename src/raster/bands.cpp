@@ -35,6 +35,8 @@ Bands::Bands(std::span<const Layer> parts, const PixelGrid& grid)
 void Bands::cut(std::span<const Point2> ring, std::vector<std::int32_t>& band_of,
                 std::vector<Stretch>& found) {
     const std::size_t n = ring.size();
+    if (n == 0)
+        return;
     band_of.resize(std::max(n, band_of.size()));
     find_bands(ring, grid_, 1.0 / rows_, count_, band_of.data());
     const Point2* before = &ring[n - 1];

@@ -41,7 +41,7 @@ class CoverageRows {
   public:
     CoverageRows(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options)
         : pieces_(parts, grid), width_(grid.width), strips_(options.antialias),
-          coverage_(grid.width, 1, 1, options.gamma) {}
+          coverage_(grid.width, 1, options.gamma) {}
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
 

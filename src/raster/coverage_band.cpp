@@ -11,7 +11,7 @@ namespace {
 //     s (i + 1 - from)^2 / 2            in the first column i,
 //     s (k + 1/2 - from)                in a column k that it passes through,
 //     weight - s (to - j)^2 / 2         in the last column j, and the weight from there on.
-[[gnu::always_inline]] inline void slope(RowChanges<double>::Row row, double width, double from, double to,
+[[gnu::always_inline]] inline void slope(RowChanges::Row row, double width, double from, double to,
                                          double weight) {
     if (from >= width)
         return;
@@ -59,8 +59,8 @@ namespace {
 
 } // namespace
 
-CoverageBand::CoverageBand(std::uint32_t width, std::uint32_t rows, double full, double gamma)
-    : width_(width), full_(full), own_(width, rows), common_(width, 1), runs_(std::size_t{width} + 1) {
+CoverageBand::CoverageBand(std::uint32_t width, std::uint32_t rows, double gamma)
+    : width_(width), own_(width, rows), common_(width, 1), runs_(std::size_t{width} + 1) {
     for (std::size_t i = 0; i < value_of_.size(); ++i)
         value_of_[i] =
             static_cast<std::uint8_t>(std::lround(255 * std::pow(static_cast<double>(i) / 255, gamma)));
@@ -102,8 +102,6 @@ void CoverageBand::begin_along(const PictureEdge& edge, std::uint32_t top, std::
 std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
     // What the loop uses is kept out of the object: stores of bytes would have it fetched again each time.
     const std::uint32_t width = width_;
-    const double full = full_;
-    const double most_value = 255 / full;
     PixelRun* next = runs_.data();
     double covered = 0;
     double coverage = 0;
@@ -122,17 +120,17 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
         covered += clamped * (here - since);
         since = here;
         clamped = coverage < 0 ? 0 : coverage; // not std::clamp, which is taken for two branches
-        clamped = full < clamped ? full : clamped;
+        clamped = 1 < clamped ? 1 : clamped;
         // To 32 bits and signed: that is one instruction.
         const std::uint8_t value_here =
-            value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(clamped * most_value + 0.5))];
+            value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(clamped * 255 + 0.5))];
         // A run that ends here is written in any case, and stays where it has pixels and another value.
         *next = {here, value};
         next += value_here != value && here > 0 ? 1 : 0;
         value = value_here;
     });
     own_.clear(row);
-    covered_ = (covered + clamped * (width - since)) / full;
+    covered_ = covered + clamped * (width - since);
     *next++ = {width, value};
     return {runs_.data(), next};
 }

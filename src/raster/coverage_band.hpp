@@ -17,8 +17,7 @@ namespace lamella {
 /// Sums up how far the pixels of a few rows are covered, from the places where material begins and ends.
 class CoverageBand {
   public:
-    /// `full` is the coverage of a pixel that gets the value 255.
-    CoverageBand(std::uint32_t width, std::uint32_t rows, double full, double gamma);
+    CoverageBand(std::uint32_t width, std::uint32_t rows, double gamma);
 
     /// Material of the given weight along a slope, from nothing at u = `from` to all of it at `to` and until
     /// the end of the row; a negative weight ends it.
@@ -43,9 +42,8 @@ class CoverageBand {
 
   private:
     std::uint32_t width_;
-    double full_;
-    RowChanges<double> own_;    ///< of the coverage, for each row
-    RowChanges<double> common_; ///< one row: what all have in common
+    RowChanges own_;    ///< of the coverage, for each row
+    RowChanges common_; ///< one row: what all have in common
     std::array<std::uint8_t, 256> value_of_{};
     std::vector<PixelRun> runs_;
     double covered_ = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -12,38 +13,36 @@
 
 namespace lamella {
 
-/// For each of a few rows, what a number changes by from one column to the next. Only columns where it does
-/// cost time, not those between them, nor rows where it does nowhere: a bit for each column tells where they
-/// are, and what other columns hold is never looked at. A row is two columns longer than the picture is wide.
-template <class Number>
+/// For each of a few rows, what the coverage changes by from one column to the next. Only columns where it
+/// does cost time, not those between them, nor rows where it does nowhere: a bit for each column tells where
+/// they are, and what other columns hold is never looked at. A row is two columns longer than the picture is
+/// wide.
 class RowChanges {
   public:
     RowChanges(std::uint32_t width, std::uint32_t rows)
         : columns_(std::size_t{width} + 2), words_(columns_ / 64 + 1),
-          changes_(std::make_unique_for_overwrite<Number[]>(columns_ * rows)), changed_(words_ * rows),
+          changes_(std::make_unique_for_overwrite<double[]>(columns_ * rows)), changed_(words_ * rows),
           touched_(rows) {}
 
     /// A row to add to.
     class Row {
       public:
-        void add(std::size_t column, Number by) noexcept {
+        void add(std::size_t column, double by) noexcept {
             std::uint64_t& bits = changed_[column / 64];
             const std::uint64_t bit = std::uint64_t{1} << (column % 64);
-            changes_[column] = ((bits & bit) != 0 ? changes_[column] : Number{0}) + by;
+            changes_[column] = ((bits & bit) != 0 ? changes_[column] : 0) + by;
             bits |= bit;
         }
 
         /// To a column and those after it.
-        template <class... Numbers>
-        void add_from(std::size_t column, Numbers... by) noexcept {
+        template <std::same_as<double>... Changes>
+        void add_from(std::size_t column, Changes... by) noexcept {
             const std::size_t first = column % 64;
             if (first + sizeof...(by) <= 64) { // all of their bits are side by side, and fetched once
                 std::uint64_t& bits = changed_[column / 64];
                 const std::uint64_t before = bits >> first;
                 std::size_t i = 0;
-                ((changes_[column + i] = ((before >> i & 1) != 0 ? changes_[column + i] : Number{0}) + by,
-                  ++i),
-                 ...);
+                ((changes_[column + i] = ((before >> i & 1) != 0 ? changes_[column + i] : 0) + by, ++i), ...);
                 bits |= ((std::uint64_t{1} << sizeof...(by)) - 1) << first;
             } else {
                 (add(column++, by), ...);
@@ -52,9 +51,9 @@ class RowChanges {
 
       private:
         friend RowChanges;
-        Row(Number* changes, std::uint64_t* changed) noexcept : changes_(changes), changed_(changed) {}
+        Row(double* changes, std::uint64_t* changed) noexcept : changes_(changes), changed_(changed) {}
 
-        Number* changes_;
+        double* changes_;
         std::uint64_t* changed_;
     };
     [[nodiscard]] Row row(std::uint32_t row) noexcept {
@@ -69,7 +68,7 @@ class RowChanges {
     void for_each(std::uint32_t row, const Found& found) const {
         if (!touched(row))
             return;
-        const Number* const changes = changes_.get() + columns_ * row;
+        const double* const changes = changes_.get() + columns_ * row;
         const std::uint64_t* const changed = changed_.data() + words_ * row;
         for (std::size_t word = 0; word < words_; ++word) {
             for (std::uint64_t bits = changed[word]; bits != 0; bits &= bits - 1) {
@@ -87,7 +86,7 @@ class RowChanges {
   private:
     std::size_t columns_;
     std::size_t words_;
-    std::unique_ptr<Number[]> changes_;
+    std::unique_ptr<double[]> changes_;
     std::vector<std::uint64_t> changed_;
     std::vector<std::uint8_t> touched_;
 };

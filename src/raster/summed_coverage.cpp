@@ -12,7 +12,7 @@ namespace lamella {
 SummedRows::SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma)
     : bands_(parts, grid), width_(grid.width), height_(grid.height),
       downwards_(grid.ux * grid.vy > grid.uy * grid.vx ? -1 : 1),
-      coverage_(grid.width, bands_.rows(), 1, gamma) {}
+      coverage_(grid.width, bands_.rows(), gamma) {}
 
 DrawnRow SummedRows::draw(std::uint32_t row) {
     if (row == end_) {
