@@ -122,8 +122,9 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
         clamped = coverage < 0 ? 0 : coverage; // not std::clamp, which is taken for two branches
         clamped = 1 < clamped ? 1 : clamped;
         // To 32 bits and signed: that is one instruction.
+        const double rounded_up = clamped * 255 + 0.5;
         const std::uint8_t value_here =
-            value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(clamped * 255 + 0.5))];
+            value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(rounded_up))];
         // A run that ends here is written in any case, and stays where it has pixels and another value.
         *next = {here, value};
         next += value_here != value && here > 0 ? 1 : 0;
