@@ -83,16 +83,11 @@ void CoverageBand::begin_along(const PictureEdge& edge, std::uint32_t top, std::
         begin_in_all(edge.upper.x, weight);
         return;
     }
-    const double low = std::min(edge.upper.x, edge.lower.x);
-    const double high = std::max(edge.upper.x, edge.lower.x);
-    const auto column = [&](double v) {
-        return std::clamp(edge.upper.x + (v - edge.upper.y) * edge.slope, low, high);
-    };
     const double width = width_;
-    double x = y == edge.upper.y ? edge.upper.x : column(y);
+    double x = y == edge.upper.y ? edge.upper.x : edge.column(y);
     for (auto row = static_cast<std::uint32_t>(y); y < last_y; ++row) {
         const double next_y = std::min(last_y, row + 1.0);
-        const double next_x = next_y == edge.lower.y ? edge.lower.x : column(next_y);
+        const double next_x = next_y == edge.lower.y ? edge.lower.x : edge.column(next_y);
         slope(own_.row(row - top), width, std::min(x, next_x), std::max(x, next_x), weight * (next_y - y));
         x = next_x;
         y = next_y;

@@ -16,7 +16,8 @@ LayerPictures::LayerPictures(const PixelGrid& grid, const RasterOptions& options
 
 LayerPicture LayerPictures::picture(std::span<const Layer> parts) const {
     RasterOptions options = options_;
-    // Looking pays: most layers do, and are drawn in a fraction of the time then.
+    // To look takes less than drawing, and contours finer than pixels are drawn in a fraction of the time
+    // then.
     options.winds_once = options.antialias > 1 && winds_once(parts);
     PngEncoder encoder(grid_.width, grid_.height);
     const double covered =

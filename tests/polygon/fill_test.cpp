@@ -283,7 +283,7 @@ TEST(WindsOnce, IsFalseOfWhatTouchesOverlapsOrIsTurned) {
           layer_of({body, rectangle(10, 0, 20, 10)}), layer_of({body, rectangle(5, 5, 20, 20)}),
           layer_of({body, reversed(rectangle(1, 1, 9, 9)), reversed(rectangle(2, 2, 3, 3))}),
           layer_of({body, reversed(rectangle(20, 1, 29, 9))}), layer_of({{{0, 0}, {4, 4}, {4, 0}, {0, 4}}}),
-          layer_of({body, {{20, 0}, {30, 0}}})})
+          layer_of({body, {{20, 0}, {30, 0}}}), layer_of({{{20, 0}}, body})})
         EXPECT_FALSE(winds_once({&layer, 1}));
     const Layer one = layer_of({body});
     for (const Contour& other : {rectangle(10, 0, 20, 10), rectangle(3, 3, 4, 4), rectangle(-5, -5, 5, 50)}) {

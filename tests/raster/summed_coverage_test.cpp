@@ -148,6 +148,13 @@ TEST(SummedCoverage, UnitesParts) {
     expect_right(parts, {.width = 120, .height = 60}, "parts");
 }
 
+TEST(SummedCoverage, TakesRingsOfNoneAndOfFewPoints) {
+    Layer layer = layer_of({rectangle(1, 1, 3, 3), {{5, 5}}, {{5, 1}, {6, 4}}});
+    layer.offsets.push_back(layer.offsets.back());
+    ++layer.rings;
+    EXPECT_EQ(drawn({&layer, 1}, {.width = 10, .height = 10}).covered, 4);
+}
+
 TEST(SummedCoverage, HasTheAreaOfContoursMuchFinerThanPixels) {
     Random random(4);
     std::vector<Contour> rings;

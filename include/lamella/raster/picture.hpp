@@ -36,9 +36,10 @@ struct RasterOptions {
     /// the material lies to its right or, on a level line, below it: bodies side by side share no pixel.
     unsigned antialias = 8;
     /// The caller knows that the winding number is 0 or 1 everywhere, as polygon's `winds_once` tells: then
-    /// coverage is a sum over the edges in any order, which is many times as fast, and exact. Where it is not
-    /// so, what is covered several times in one pixel counts as often, up to the whole pixel. Makes no
-    /// difference without anti-aliasing. Writers of pictures find it out by themselves.
+    /// coverage is a sum over the edges in any order, exact, and several times as fast where contours are
+    /// finer than pixels. Where it is not so, what is covered several times in one pixel counts as often, up
+    /// to the whole pixel. Makes no difference without anti-aliasing. Writers of pictures find it out by
+    /// themselves.
     bool winds_once = false;
     /// A pixel's value is 255 coverage^gamma, rounded.
     double gamma = 1;
