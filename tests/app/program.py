@@ -1,5 +1,6 @@
 """What the tests of the program share: starting it in a folder of its own, and small STL files."""
 
+import contextlib
 import json
 import os
 import struct
@@ -62,10 +63,20 @@ class ProgramTest(unittest.TestCase):
 
     def has_unfinished_file(self, process):
         """Whether the process is writing a file: one without a name in the folder, or one with a temporary name."""
-        descriptors = Path(f"/proc/{process.pid}/fd")
-        opened = [os.readlink(link) for link in descriptors.iterdir()] if descriptors.exists() else []
-        return any(name.startswith(str(self.folder)) and name.endswith(" (deleted)") for name in opened) or any(
-            name.endswith(".tmp") for name in self.listing())
+        return any(name.startswith(str(self.folder)) and name.endswith(" (deleted)")
+                   for name in self.open_files(process)) or any(name.endswith(".tmp") for name in self.listing())
+
+    @staticmethod
+    def open_files(process):
+        """What the process has open at this moment. It runs on: what is listed may be closed before it is asked for."""
+        names = []
+        try:
+            for link in Path(f"/proc/{process.pid}/fd").iterdir():
+                with contextlib.suppress(FileNotFoundError):
+                    names.append(os.readlink(link))
+        except FileNotFoundError:
+            pass  # it has ended
+        return names
 
     def path(self, name):
         return self.folder / name
