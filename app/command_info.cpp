@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "diagnosis_report.hpp"
 #include "input_kind.hpp"
+#include "messages.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
@@ -44,10 +45,6 @@ struct InfoArguments {
     ReadLimits limits;
     RunOptions run;
 };
-
-std::string line(std::string_view name, std::string_view value) {
-    return fmt::format("  {:<11} {}\n", name, value);
-}
 
 int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
               const Execution& execution) {
@@ -108,18 +105,18 @@ std::string layers_text(const LayerFile& file, const LayerTotals& totals) {
     for (const std::string& label : labels_of(file)) {
         if (file.parts.size() == 1 && label.empty())
             continue;
-        text += line(name, label.empty() ? "(without a label)" : one_line(label));
+        text += result_line(name, label.empty() ? "(without a label)" : one_line(label));
         name = "";
     }
     const LayerStack& layers = file.parts.front().layers;
-    text += line("layers", grouped(layers.size()));
+    text += result_line("layers", grouped(layers.size()));
     if (!layers.empty())
-        text += line("from",
-                     fmt::format("z = {} to {} mm", brief(layers.front().bottom), brief(layers.back().top)));
-    text += line("contours", grouped(totals.contours));
-    text += line("open chains", totals.open_chains == 0 ? "none" : grouped(totals.open_chains));
-    text += line("points", grouped(totals.points));
-    text += line("volume", fmt::format("{} mm3", brief(totals.volume_mm3)));
+        text += result_line(
+            "from", fmt::format("z = {} to {} mm", brief(layers.front().bottom), brief(layers.back().top)));
+    text += result_line("contours", grouped(totals.contours));
+    text += result_line("open chains", totals.open_chains == 0 ? "none" : grouped(totals.open_chains));
+    text += result_line("points", grouped(totals.points));
+    text += result_line("volume", fmt::format("{} mm3", brief(totals.volume_mm3)));
     return text;
 }
 

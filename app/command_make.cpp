@@ -188,7 +188,7 @@ void check_extension(const std::string& output) {
 }
 
 /// In the format of the extension: STL unless it is that of another one.
-void write(const std::string& output, const TriangleSoup& soup, const MakeArguments& arguments) {
+void write_mesh(const std::string& output, const TriangleSoup& soup, const MakeArguments& arguments) {
     const std::string extension = std::filesystem::path(output).extension().string();
     if (arguments.ascii && extension == ".ply")
         throw Error(ErrorKind::usage,
@@ -229,7 +229,7 @@ Made make_whole(const std::string& output, const MakeArguments& arguments, const
     if (arguments.shuffle && arguments.order != "shuffle")
         soup = shuffled(soup, *arguments.shuffle);
     soup = soup.transformed(pose);
-    write(output, soup, arguments);
+    write_mesh(output, soup, arguments);
     return {soup.size(), bounding_box(soup)};
 }
 

@@ -21,7 +21,7 @@
 namespace lamella::app {
 namespace {
 
-[[noreturn]] void refuse(const std::string& place, std::string_view text) {
+[[noreturn]] void refuse_entry(const std::string& place, std::string_view text) {
     throw Error(ErrorKind::usage, fmt::format("{}: {}", place, text));
 }
 
@@ -33,8 +33,8 @@ void set_key(Command& command, const std::string& place, std::string_view key, c
 void check_key(Command& command, const std::string& place, std::string_view key) {
     const Option* option = find_option(command, key);
     if (option == nullptr || !option->configurable)
-        refuse(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, key,
-                                  option_suggestion(command, key, "")));
+        refuse_entry(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, key,
+                                        option_suggestion(command, key, "")));
 }
 
 /// Numbers as the command line takes a list of them; nothing when an item is no number.
@@ -87,14 +87,14 @@ void read_toml(const std::string& path, const std::string& content, Command& com
     try {
         table = toml::parse(content);
     } catch (const toml::parse_error& error) {
-        refuse(fmt::format("{}:{}", path, error.source().begin.line), error.description());
+        refuse_entry(fmt::format("{}:{}", path, error.source().begin.line), error.description());
     }
     for (const auto& [key, node] : table) {
         const std::string place = fmt::format("{}:{}", path, key.source().begin.line);
         check_key(command, place, key.str());
         const auto text = as_text(node);
         if (!text)
-            refuse(place, fmt::format("{}: {}", key.str(), no_value));
+            refuse_entry(place, fmt::format("{}: {}", key.str(), no_value));
         set_key(command, place, key.str(), *text);
     }
 }
@@ -109,15 +109,15 @@ void read_json(const std::string& path, const std::string& content, Command& com
                        content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size())),
                        '\n') +
             1;
-        refuse(fmt::format("{}:{}", path, line), "this is not JSON");
+        refuse_entry(fmt::format("{}:{}", path, line), "this is not JSON");
     }
     if (!object.is_object())
-        refuse(path, "expected one JSON object such as {\"layer-height\": 0.1}");
+        refuse_entry(path, "expected one JSON object such as {\"layer-height\": 0.1}");
     for (const auto& [key, value] : object.items()) {
         check_key(command, path, key);
         const auto text = as_text(value);
         if (!text)
-            refuse(path, fmt::format("{}: {}", key, no_value));
+            refuse_entry(path, fmt::format("{}: {}", key, no_value));
         set_key(command, path, key, *text);
     }
 }

@@ -1,6 +1,7 @@
 #include "diagnosis_report.hpp"
 
 #include "command_line.hpp"
+#include "messages.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "stats_json.hpp"
@@ -24,10 +25,6 @@ using Json = nlohmann::ordered_json;
 /// Places of each kind that are listed.
 constexpr std::size_t listed = 3;
 constexpr std::size_t listed_in_json = 16;
-
-std::string line(std::string_view name, std::string_view value) {
-    return fmt::format("  {:<11} {}\n", name, value);
-}
 
 std::string point(const Point3& p) {
     return fmt::format("({}, {}, {})", brief(p.x), brief(p.y), brief(p.z));
@@ -147,10 +144,10 @@ std::string defects_text(std::string_view name, const std::vector<Defect>& defec
     for (const Defect& defect : defects) {
         if (defect.count == 0)
             continue;
-        text += line(name, fmt::format("{} {}: {}", grouped(defect.count),
-                                       defect.count == 1 ? defect.one : defect.many, defect.meaning));
+        text += result_line(name, fmt::format("{} {}: {}", grouped(defect.count),
+                                              defect.count == 1 ? defect.one : defect.many, defect.meaning));
         for (const std::string& place : defect.places)
-            text += line("", "  " + place);
+            text += result_line("", "  " + place);
         name = "";
     }
     return text;
@@ -239,29 +236,29 @@ std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate&
     const Box3& box = counts.box;
     std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), format_name(file.format));
     if (file.unit_mm)
-        text += line("unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm)));
+        text += result_line("unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm)));
     if (plate.parts.size() > 1)
-        text += line("parts", parts_text(file, plate));
-    text += line("triangles", grouped(file.stored_triangles));
-    text += line("vertices", grouped(counts.vertices));
-    text += line("size", size(box));
-    text += line("from", fmt::format("{} to {}", point(box.min), point(box.max)));
-    text += line("volume", counts.closed() ? fmt::format("{} mm3", brief(counts.volume_mm3))
-                                           : "none: the surface is not closed");
-    text += line("area", fmt::format("{} mm2", brief(counts.area_mm2)));
-    text += line("shells", shells_text(counts));
-    text += line("closed", counts.closed() ? "yes" : "no");
+        text += result_line("parts", parts_text(file, plate));
+    text += result_line("triangles", grouped(file.stored_triangles));
+    text += result_line("vertices", grouped(counts.vertices));
+    text += result_line("size", size(box));
+    text += result_line("from", fmt::format("{} to {}", point(box.min), point(box.max)));
+    text += result_line("volume", counts.closed() ? fmt::format("{} mm3", brief(counts.volume_mm3))
+                                                  : "none: the surface is not closed");
+    text += result_line("area", fmt::format("{} mm2", brief(counts.area_mm2)));
+    text += result_line("shells", shells_text(counts));
+    text += result_line("closed", counts.closed() ? "yes" : "no");
     const std::string defects = defects_text("defects", defects_of(found));
-    text += defects.empty() ? line("defects", "none") : defects;
+    text += defects.empty() ? result_line("defects", "none") : defects;
     if (found.self_intersections) {
         const std::string meetings = defects_text("meetings", meetings_of(*found.self_intersections));
-        text +=
-            meetings.empty() ? line("meetings", "none: no two triangles cross, overlap or touch") : meetings;
+        text += meetings.empty() ? result_line("meetings", "none: no two triangles cross, overlap or touch")
+                                 : meetings;
         std::uint64_t pairs = 0;
         for (const PartMeetings& part : found.self_intersections->parts)
             pairs += part.part_a != part.part_b ? 1 : 0;
         if (pairs > 0)
-            text += line("", fmt::format("{} of shells are involved", counted(pairs, "pair")));
+            text += result_line("", fmt::format("{} of shells are involved", counted(pairs, "pair")));
     }
     return text;
 }

@@ -37,6 +37,10 @@ std::string_view deed(Stage stage) {
 
 } // namespace
 
+std::string result_line(std::string_view name, std::string_view value) {
+    return fmt::format("  {:<11} {}\n", name, value);
+}
+
 std::string one_line(std::string text) {
     for (char& c : text) {
         const auto code = static_cast<unsigned char>(c);

@@ -14,8 +14,6 @@ namespace {
 // Enough for the threads not to wait for each other, little enough not to be felt: 16 MB.
 constexpr std::size_t most_points = (std::size_t{16} << 20) / sizeof(Point2);
 
-constexpr std::chrono::milliseconds between_signals{50};
-
 } // namespace
 
 void LayerQueue::put(Layer&& layer, const std::stop_token& stop) {

@@ -178,7 +178,7 @@ LayerPointer after(const SharedLayer& layer, const LayerSteps& steps) {
     return std::make_shared<SharedLayer>(take_steps(steps, layer.get(), changes));
 }
 
-py::tuple state_of(const py::object& self) {
+py::tuple layer_state(const py::object& self) {
     const Layer& layer = layer_of(self);
     return py::make_tuple(layer.index, layer.z, layer.bottom, layer.top, view_of(layer.points.span(), self),
                           offsets_of(self), layer.rings, view_of(layer.hatches.span(), self));
@@ -275,7 +275,7 @@ void require_ascending(const std::vector<LayerPointer>& layers) {
                                               std::to_string(i + 1) + " is not above the one before it");
 }
 
-StackPointer stack_of(std::vector<LayerPointer> layers, const std::string& label) {
+StackPointer stack_of_layers(std::vector<LayerPointer> layers, const std::string& label) {
     require_ascending(layers);
     auto stack = std::make_shared<Stack>();
     stack->box = box_of(layers);
@@ -292,7 +292,8 @@ py::tuple pickled(const Stack& stack) {
 StackPointer unpickled(const py::tuple& state) {
     if (state.size() != 8)
         throw Error(ErrorKind::input, "this is no pickled stack of layers");
-    StackPointer stack = stack_of(state[0].cast<std::vector<LayerPointer>>(), state[1].cast<std::string>());
+    StackPointer stack =
+        stack_of_layers(state[0].cast<std::vector<LayerPointer>>(), state[1].cast<std::string>());
     stack->box = box_of(state[2].cast<Bounds>());
     stack->matrix = transform_of(state[3].cast<Matrix>());
     stack->path = state[4].cast<std::string>();
@@ -438,7 +439,7 @@ void bind_layer(py::module_& module) {
             py::is_operator())
         .def("__hash__", [](const SharedLayer& self) { return self.hash() >> 1; })
         .def("__repr__", &layer_text)
-        .def(py::pickle(&state_of, &layer_of_state));
+        .def(py::pickle(&layer_state, &layer_of_state));
 }
 
 void bind_stack(py::module_& module) {
@@ -446,7 +447,7 @@ void bind_stack(py::module_& module) {
         module, "Stack",
         "Layers in ascending z, as lamella.slice and lamella.read give them. A sequence of Layer: stack[i],\n"
         "stack[a:b], len(stack), and for layer in stack. It never changes.")
-        .def(py::init(&stack_of), py::arg("layers"), py::arg("label") = "part")
+        .def(py::init(&stack_of_layers), py::arg("layers"), py::arg("label") = "part")
         .def_property_readonly("z", numbers_of<double>([](const SharedLayer& l) { return l.get().z; }),
                                "Where the layers were cut, in millimetres: (layers,) float64.")
         .def_property_readonly("bottom",

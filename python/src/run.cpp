@@ -10,8 +10,6 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-constexpr std::chrono::milliseconds between_signals{50};
-
 /// Says when the work is done.
 class Bell {
   public:

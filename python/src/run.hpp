@@ -6,6 +6,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -29,6 +30,9 @@ class ProgressBox {
 
 /// Calls `listener(stage, done, total)` for everything in the box. None is no listener.
 void tell(ProgressBox& box, const pybind11::object& listener);
+
+/// How long a thread of Python waits before it looks for signals again.
+inline constexpr std::chrono::milliseconds between_signals{50};
 
 /// Throws what a signal handler of Python raised, such as KeyboardInterrupt. Only Python's main thread has
 /// such handlers; elsewhere this does nothing.

@@ -27,7 +27,7 @@ namespace {
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-std::vector<Point3> points_of(const Doubles& rows) {
+std::vector<Point3> vertices_of(const Doubles& rows) {
     std::vector<Point3> points(static_cast<std::size_t>(rows.shape(0)));
     const double* x = rows.data();
     for (Point3& p : points) {
@@ -57,7 +57,7 @@ MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
         throw Error(ErrorKind::limit, "vertices: a mesh has 2^32 - 1 at most");
     const py::gil_scoped_release released;
     IndexedMesh mesh;
-    mesh.vertices = points_of(vertices);
+    mesh.vertices = vertices_of(vertices);
     mesh.triangles = triangles_of(faces, mesh.vertices.size());
     check(mesh);
     if (mesh.triangles.empty())
@@ -116,7 +116,7 @@ const IndexedMesh& welded_of(const SourceMesh& source) {
     return source.welded({});
 }
 
-py::tuple state_of(const py::object& self) {
+py::tuple mesh_state(const py::object& self) {
     const MeshOrigin& origin = self.cast<const SourceMesh&>().origin();
     return py::make_tuple(self.attr("vertices"), self.attr("faces"), py::bytes(origin.path), origin.format,
                           origin.name, origin.label, origin.unit_mm, origin.stored_triangles, origin.warnings,
@@ -248,7 +248,7 @@ void bind_meshes(py::module_& module) {
              })
         .def("__len__", [](const SourceMesh& self) { return self.mesh().size(); })
         .def("__repr__", &mesh_text)
-        .def(py::pickle(&state_of, &mesh_of_state));
+        .def(py::pickle(&mesh_state, &mesh_of_state));
 
     module.def("mesh_of_arrays", &mesh_of_arrays);
     module.def("read_mesh", [](const std::string& path, const std::string& label,

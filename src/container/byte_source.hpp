@@ -8,6 +8,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
 
 namespace lamella {
 
@@ -17,6 +18,10 @@ struct ByteSource {
     std::span<const std::byte> bytes;
     std::shared_ptr<const void> owner; ///< the bytes live as long as any copy of this
     bool mapped = false;               ///< they are those of a file, and come from it when they are touched
+
+    [[nodiscard]] std::string_view text() const noexcept {
+        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    }
 };
 
 /// Opens a file of any size. A regular file is memory-mapped: nothing is read before it is touched, and the

@@ -16,10 +16,8 @@
 #include <vector>
 
 namespace lamella {
-namespace {
 
-/// What of the job's wishes can only be had with the whole mesh in memory; "" if nothing.
-std::string needs_whole_mesh(const FileJob& job, const Engine& with) {
+std::string wish_for_whole_mesh(const FileJob& job, const Engine& with) {
     if (with.welds)
         return fmt::format("the engine {}", with.name);
     if (job.strict)
@@ -37,8 +35,6 @@ std::string needs_whole_mesh(const FileJob& job, const Engine& with) {
     return {};
 }
 
-} // namespace
-
 std::unique_ptr<LayerSource> open_layer_source(const FileJob& job, const Engine& with,
                                                const Execution& execution) {
     const JobMemory memory(job);
@@ -55,7 +51,7 @@ std::unique_ptr<LayerSource> open_layer_source(const FileJob& job, const Engine&
         else
             other = &file;
     }
-    const std::string needs_all = needs_whole_mesh(job, with);
+    const std::string needs_all = wish_for_whole_mesh(job, with);
     const bool streamable = other == nullptr && needs_all.empty();
     if (bytes <= memory.limit || (!memory.asked && !streamable))
         return open_plate_source(job, std::move(files), memory, execution);

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 namespace lamella {
 
@@ -43,6 +44,10 @@ class LayerSource {
   protected:
     Plate plate_;
 };
+
+/// What of the job's wishes can only be had with the whole mesh in memory, as the program names it; "" if
+/// nothing.
+[[nodiscard]] std::string wish_for_whole_mesh(const FileJob& job, const Engine& with);
 
 /// Reads the job's files, or looks at them where they do not fit the memory of the job. Throws what
 /// load_plate throws, and Error{limit} where neither is possible.

@@ -28,11 +28,6 @@
 namespace lamella {
 namespace {
 
-/// Whether the job needs its meshes as a whole, wherever it is sliced.
-bool needs_whole_mesh(const FileJob& job, const Engine& with) {
-    return with.welds || job.strict || job.inspect || job.repair.change_the_mesh() || job.adaptive;
-}
-
 /// Where the layers of this rank come from.
 struct Source {
     std::unique_ptr<LayerSource> whole; ///< either
@@ -47,7 +42,7 @@ Source open_source(const FileJob& job, const Engine& with, Communicator& ranks, 
             throw Error(ErrorKind::usage,
                         "standard input reaches one of the ranks only; give the name of a file");
     std::vector<MeshInput> files;
-    bool can_share = !needs_whole_mesh(job, with);
+    bool can_share = wish_for_whole_mesh(job, with).empty();
     in_agreement(ranks, [&] {
         for (const PlateInput& input : job.inputs) {
             const MeshInput& file = files.emplace_back(input.path, MeshInput::unlimited, execution.cancel);

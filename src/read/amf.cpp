@@ -26,19 +26,14 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t longest_preface = 1U << 16;
 constexpr std::size_t longest_quote = 200;
-
-std::string_view view(const ByteSource& source) {
-    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
-}
 
 class AmfReader {
   public:
     AmfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
         : name_(source.name), remarks_(source.name, options.strict), limits_(source.name, options),
           execution_(execution), executor_(execution) {
-        source_ = is_zip(view(source)) ? unpacked(source, options) : source;
+        source_ = is_zip(source.text()) ? unpacked(source, options) : source;
     }
 
     MeshFile read() {
@@ -83,7 +78,7 @@ class AmfReader {
     }
 
     void read_document() {
-        const std::string_view text = view(source_);
+        const std::string_view text = source_.text();
         ProgressMeter progress(execution_, Stage::read, text.size());
         try {
             document_ = read_amf_document(text, source_.name, true, limits_, [&](std::size_t read) {
@@ -121,7 +116,7 @@ class AmfReader {
     }
 
     void read_by_parser() {
-        document_ = read_amf_document(view(source_), source_.name, false, limits_,
+        document_ = read_amf_document(source_.text(), source_.name, false, limits_,
                                       [&](std::size_t) { executor_.check_cancelled(); });
     }
 
@@ -237,6 +232,7 @@ class AmfReader {
 } // namespace
 
 bool is_amf(std::string_view text) {
+    constexpr std::size_t longest_preface = 1U << 16;
     return text.substr(0, longest_preface).find("<amf") != std::string_view::npos;
 }
 

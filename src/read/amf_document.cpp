@@ -25,7 +25,6 @@ namespace {
 constexpr std::size_t longest_label = 200;
 constexpr std::size_t longest_title = 1000;
 constexpr std::size_t longest_text = 1U << 16; ///< that anybody reads
-constexpr std::uint64_t node_bytes = 80;       ///< of a map, about
 
 struct Unit {
     std::string_view name; ///< in lower case

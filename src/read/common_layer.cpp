@@ -15,8 +15,6 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t longest_preface = 1U << 16; // comments before the header
-
 /// Heights are tops of layers, and an empty layer before the first one tells where that begins. Exports exist
 /// whose first layer lies on the bottom of the part and has contours: there heights are bottoms.
 void make_layers(std::vector<RawLayer>& raw, const CommonLayerHeader& header, std::uint64_t bytes,
@@ -54,6 +52,7 @@ void make_layers(std::vector<RawLayer>& raw, const CommonLayerHeader& header, st
 } // namespace
 
 bool is_common_layer(std::string_view bytes) {
+    constexpr std::size_t longest_preface = 1U << 16; // comments before the header
     const std::size_t at = bytes.substr(0, longest_preface).find(common_layer_start);
     return at != std::string_view::npos;
 }

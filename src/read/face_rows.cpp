@@ -255,8 +255,7 @@ class RowsReader {
     RowsReader(const ByteSource& source, const FaceRows& rows, Remarks& remarks, ReadLimits& limits,
                const Execution& execution)
         : source_(source), rows_(rows), remarks_(remarks), limits_(limits), executor_(execution),
-          progress_(execution, Stage::read, source.bytes.size()),
-          text_(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()) {}
+          progress_(execution, Stage::read, source.bytes.size()), text_(source.text()) {}
 
     MeshFile run() {
         read_lines(rows_.any_lines ? RowLayout::exact_lines : RowLayout::lines);

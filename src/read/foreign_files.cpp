@@ -1,5 +1,7 @@
 #include "read/foreign_files.hpp"
 
+#include "read/text_pieces.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -68,18 +70,10 @@ bool begins_with(std::string_view text, std::string_view first_bytes) {
                       [&](char expected, char byte) { return same(byte, expected); });
 }
 
-/// What stands after a byte order mark and blanks.
-std::string_view content(std::string_view text) {
-    if (text.starts_with("\xEF\xBB\xBF"))
-        text.remove_prefix(3);
-    const std::size_t first = text.find_first_not_of(" \t\r\n\v\f");
-    return first == std::string_view::npos ? std::string_view() : text.substr(first);
-}
-
 } // namespace
 
 std::string_view foreign_advice(std::string_view text) {
-    const std::string_view begin = content(text);
+    const std::string_view begin = after_blanks(text);
     for (const Foreign& foreign : foreign_files)
         if (begins_with(text, foreign.first_bytes) || begins_with(begin, foreign.first_bytes))
             return foreign.advice;

@@ -24,7 +24,7 @@ namespace {
 
 LayerFile read_source(const ByteSource& source, const LayerReadOptions& options, ReadLimits& limits,
                       const Execution& execution) {
-    const std::string_view bytes(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    const std::string_view bytes = source.text();
     if (is_zip(bytes)) {
         const OpcPackage package(source, options.max_memory);
         if (is_npz(package.zip()))

@@ -21,8 +21,6 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t longest_preface = 1U << 16;
-
 /// Numbers out of an attribute.
 class Numbers {
   public:
@@ -336,6 +334,7 @@ class SvgReader {
 } // namespace
 
 bool is_svg(std::string_view bytes) {
+    constexpr std::size_t longest_preface = 1U << 16;
     return bytes.substr(0, longest_preface).find("<svg") != std::string_view::npos ||
            bytes.substr(0, longest_preface).find(":svg") != std::string_view::npos;
 }

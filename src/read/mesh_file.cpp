@@ -55,10 +55,6 @@ Mesh MeshFile::mesh(const Execution& execution) const {
 
 namespace {
 
-std::string_view text_of(const ByteSource& source) {
-    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
-}
-
 /// Whether a zip archive is no 3MF package, but a packed AMF file, perhaps of another name.
 bool holds_amf(const ByteSource& source, const MeshReadOptions& options) {
     const ZipReader zip(source, options.max_memory);
@@ -69,7 +65,7 @@ bool holds_amf(const ByteSource& source, const MeshReadOptions& options) {
     if (any(".rels") || any(".model"))
         return false;
     return any(".amf") || any(".AMF") || any(".amf.xml") ||
-           (zip.entries().size() == 1 && is_amf(text_of(zip.read(zip.entries().front()))));
+           (zip.entries().size() == 1 && is_amf(zip.read(zip.entries().front()).text()));
 }
 
 /// The extension of a name in lower case, without the one of gzip: "stl" of "PART.STL.gz".
@@ -85,7 +81,7 @@ using Reader = MeshFile (*)(const ByteSource&, const MeshReadOptions&, const Exe
 
 /// By the content, where that tells; else by the extension.
 Reader reader_of(const ByteSource& source, const MeshReadOptions& options) {
-    const std::string_view text = text_of(source);
+    const std::string_view text = source.text();
     const std::string extension = extension_of(source.name);
     if (is_stl(source))
         return read_stl;
@@ -139,7 +135,7 @@ std::uint64_t MeshInput::bytes() const noexcept {
 bool MeshInput::can_stream() const {
     if (is_stl(*source_))
         return true;
-    return !is_gzip(source_->bytes) && !is_zip(text_of(*source_)) && reader_of(*source_, {}) == read_stl;
+    return !is_gzip(source_->bytes) && !is_zip(source_->text()) && reader_of(*source_, {}) == read_stl;
 }
 
 std::optional<std::uint64_t> MeshInput::records() const {

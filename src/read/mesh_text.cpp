@@ -3,6 +3,7 @@
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "read/read_limits.hpp"
+#include "read/text_pieces.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -12,10 +13,8 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t piece_bytes = std::size_t{1} << 20;
-
 /// A part of a run that one thread reads.
-struct Piece {
+struct ElementRun {
     std::string_view text;
     std::size_t mesh;
     std::size_t count = 0; ///< elements
@@ -26,9 +25,9 @@ struct Piece {
 /// Cuts runs where elements begin.
 template <class Item>
 void cut_run(std::string_view run, std::size_t mesh, const MeshTextKind<Item>& kind,
-             std::vector<Piece>& pieces) {
-    while (run.size() > piece_bytes) {
-        const std::size_t cut = run.find(kind.tag, piece_bytes);
+             std::vector<ElementRun>& pieces) {
+    while (run.size() > text_piece_bytes) {
+        const std::size_t cut = run.find(kind.tag, text_piece_bytes);
         if (cut == std::string_view::npos)
             break;
         pieces.push_back({run.substr(0, cut), mesh});
@@ -39,16 +38,16 @@ void cut_run(std::string_view run, std::size_t mesh, const MeshTextKind<Item>& k
 
 /// How many elements there are, if all are plain.
 template <class Item>
-void count_elements(Piece& piece, const MeshTextKind<Item>& kind) {
+void count_elements(ElementRun& piece, const MeshTextKind<Item>& kind) {
     const auto marks = static_cast<std::size_t>(std::count(piece.text.begin(), piece.text.end(), '<'));
     piece.count = marks / kind.marks;
     piece.plain = marks % kind.marks == 0 && piece.count <= piece.text.size() / kind.least;
 }
 
 /// Numbers the elements of each mesh and says how many each has; none where a piece is not plain.
-std::vector<std::optional<std::size_t>> number_elements(std::vector<Piece>& pieces, std::size_t meshes) {
+std::vector<std::optional<std::size_t>> number_elements(std::vector<ElementRun>& pieces, std::size_t meshes) {
     std::vector<std::optional<std::size_t>> counts(meshes, 0);
-    for (Piece& piece : pieces) {
+    for (ElementRun& piece : pieces) {
         std::optional<std::size_t>& count = counts[piece.mesh];
         if (!piece.plain)
             count.reset();
@@ -88,7 +87,7 @@ class Elements {
               const Done& done) {
         executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
             for (std::uint64_t i = begin; i < end; ++i) {
-                Piece& piece = pieces_[i];
+                ElementRun& piece = pieces_[i];
                 if (!wanted[piece.mesh])
                     continue;
                 const std::span<Item> items = items_of(piece.mesh).subspan(piece.first, piece.count);
@@ -98,7 +97,7 @@ class Elements {
     }
 
     void drop_odd(std::vector<bool>& wanted) const {
-        for (const Piece& piece : pieces_)
+        for (const ElementRun& piece : pieces_)
             if (!piece.plain)
                 wanted[piece.mesh] = false;
     }
@@ -106,7 +105,7 @@ class Elements {
   private:
     const MeshTextKind<Item>& kind_;
     std::span<const MeshText> texts_;
-    std::vector<Piece> pieces_;
+    std::vector<ElementRun> pieces_;
     std::vector<std::optional<std::size_t>> counts_;
 };
 

@@ -31,7 +31,7 @@ constexpr double farthest = 1e100;
 class Array {
   public:
     Array(const ZipReader& zip, const ZipEntry& entry) : source_(zip.read(entry)) {
-        bytes_ = {reinterpret_cast<const char*>(source_.bytes.data()), source_.bytes.size()};
+        bytes_ = source_.text();
         read_head();
     }
 

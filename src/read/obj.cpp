@@ -225,7 +225,7 @@ bool looks_like_obj(std::string_view text) {
 }
 
 MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
-    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    const std::string_view text = source.text();
     ReadLimits limits(source.name, options);
     const std::vector<std::size_t> cuts = cut_at_lines(text, after_byte_order_mark(text));
     std::vector<ObjPiece> pieces(cuts.size() - 1);

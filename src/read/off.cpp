@@ -126,7 +126,7 @@ bool is_off(std::string_view text) {
 }
 
 MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
-    const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    const std::string_view text = source.text();
     OffCounts counts;
     try {
         counts = read_head(text);

@@ -87,8 +87,8 @@ std::vector<OpcRelationship> OpcPackage::relationships(std::string_view part) co
     };
     handlers.end = [](XmlName) {
     };
-    parse_xml({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}, source.name,
-              handlers, {.namespaces = true, .utf8_only = true, .no_document_type = true});
+    parse_xml(source.text(), source.name, handlers,
+              {.namespaces = true, .utf8_only = true, .no_document_type = true});
     return found;
 }
 

@@ -51,8 +51,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 class HeaderReader {
   public:
     HeaderReader(const ByteSource& source, Remarks& remarks)
-        : source_(source), remarks_(remarks),
-          text_(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()) {}
+        : source_(source), remarks_(remarks), text_(source.text()) {}
 
     PlyHeader run() {
         next_line();

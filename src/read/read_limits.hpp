@@ -21,6 +21,9 @@
 
 namespace lamella {
 
+/// What a node of a set or map takes besides its value, about.
+inline constexpr std::uint64_t node_bytes = 80;
+
 /// Adds up, from any thread, what a reader is about to make. The first that is too much is Error{limit},
 /// which names the place up to which was counted, where that is given.
 class ReadLimits {

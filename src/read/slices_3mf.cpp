@@ -11,6 +11,7 @@
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/read_limits.hpp"
+#include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
 
@@ -28,10 +29,6 @@
 namespace lamella {
 
 namespace {
-
-constexpr std::string_view core_space = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
-constexpr std::string_view slice_space = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07";
-constexpr std::string_view model_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 
 /// One slice, in the unit of its object, with the contours as they stand there.
 struct Slice {
@@ -56,49 +53,33 @@ struct Object {
     std::vector<Use> components;
 };
 
-/// What a node of a map takes besides its value.
-constexpr std::uint64_t map_node_bytes = 64;
-
 /// What a copy of the contours takes.
 std::uint64_t contour_bytes(const RawLayer& raw) {
     return raw.points.size() * sizeof(Point2) + raw.ends.size() * sizeof(RawLayer::Contour);
 }
 
-double unit_mm(std::string_view name) {
-    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"micron", 0.001},
-                                                                        {"millimeter", 1},
-                                                                        {"centimeter", 10},
-                                                                        {"inch", 25.4},
-                                                                        {"foot", 304.8},
-                                                                        {"meter", 1000}}};
-    for (const auto& [known, mm] : units)
-        if (known == name)
-            return mm;
-    return 0;
-}
-
 /// One model part.
-class ModelReader {
+class SliceModelReader {
   public:
     using FindStack = std::function<std::shared_ptr<const Stack>(std::string_view path, std::uint32_t id)>;
 
-    ModelReader(std::string name, FindStack find, ReadLimits& limits)
+    SliceModelReader(std::string name, FindStack find, ReadLimits& limits)
         : name_(std::move(name)), find_(std::move(find)), limits_(limits) {}
 
     void start(XmlName element, const XmlAttributes& attributes, std::size_t line) {
         line_ = line;
-        if (element.space == slice_space)
+        if (element.space == three_mf::slices)
             start_slice_element(element.local, attributes);
-        else if (element.space == core_space)
+        else if (element.space == three_mf::core)
             start_core_element(element.local, attributes);
     }
 
     void end(XmlName element) {
-        if (element == XmlName{slice_space, "slicestack"})
+        if (element == XmlName{three_mf::slices, "slicestack"})
             end_stack();
-        else if (element == XmlName{slice_space, "polygon"})
+        else if (element == XmlName{three_mf::slices, "polygon"})
             end_polygon();
-        else if (element == XmlName{core_space, "object"})
+        else if (element == XmlName{three_mf::core, "object"})
             object_ = nullptr;
     }
 
@@ -129,17 +110,17 @@ class ModelReader {
     void start_core_element(std::string_view element, const XmlAttributes& attributes) {
         if (element == "model") {
             const std::string_view unit = attributes.find("unit");
-            unit_ = unit.data() == nullptr ? 1 : unit_mm(unit);
+            unit_ = unit.data() == nullptr ? 1 : three_mf::unit_mm(unit).value_or(0);
             if (unit_ == 0)
                 fail(fmt::format("the unit '{}'", printable(unit, 40)),
                      "it must be millimeter or another of 3MF's");
         } else if (element == "object") {
             const std::uint32_t id = whole(attributes, "id");
             const std::string_view name = attributes.find("name");
-            limits_.add_bytes_at(map_node_bytes + sizeof(Object) + name.size(), place());
+            limits_.add_bytes_at(node_bytes + sizeof(Object) + name.size(), place());
             object_ = &objects_[id];
             *object_ = {std::string(name), nullptr, {}};
-            if (const std::string_view stack = attributes.find(XmlName{slice_space, "slicestackid"});
+            if (const std::string_view stack = attributes.find(XmlName{three_mf::slices, "slicestackid"});
                 stack.data() != nullptr)
                 object_->stack = stack_of(whole_of(stack, "slicestackid"));
         } else if (element == "component" && object_ != nullptr) {
@@ -154,7 +135,7 @@ class ModelReader {
     void start_slice_element(std::string_view element, const XmlAttributes& attributes) {
         if (element == "slicestack") {
             stack_id_ = whole(attributes, "id");
-            limits_.add_bytes_at(map_node_bytes + sizeof(Stack), place());
+            limits_.add_bytes_at(node_bytes + sizeof(Stack), place());
             stack_ = std::make_shared<Stack>();
             const std::string_view bottom = attributes.find("zbottom");
             stack_->bottom = bottom.data() == nullptr ? 0 : number_of(bottom, "zbottom");
@@ -318,7 +299,7 @@ class PackageReader {
           executor_(execution) {}
 
     void read() {
-        const std::unique_ptr<ModelReader> model =
+        const std::unique_ptr<SliceModelReader> model =
             read_model(root_, [&](std::string_view path, std::uint32_t id) { return referred(path, id); });
         unit_ = model->unit();
         for (const Use& item : model->items())
@@ -335,12 +316,12 @@ class PackageReader {
   private:
     [[nodiscard]] std::string root_part() const {
         for (const OpcRelationship& relationship : package_.relationships(""))
-            if (relationship.type == model_type && !relationship.external)
+            if (relationship.type == three_mf::model_type && !relationship.external)
                 return relationship.target;
         return "3D/3dmodel.model";
     }
 
-    std::unique_ptr<ModelReader> read_model(const std::string& part, ModelReader::FindStack find) {
+    std::unique_ptr<SliceModelReader> read_model(const std::string& part, SliceModelReader::FindStack find) {
         const ZipEntry* entry = zip_.find(part);
         if (entry == nullptr)
             throw Error(ErrorKind::input, fmt::format("{}: found no part '{}', to which the package refers",
@@ -349,7 +330,7 @@ class PackageReader {
         const ByteSource source = zip_.read(*entry);
         const std::uint64_t unpacked = zip_.unpacked() - before;
         limits_.add_bytes_at(unpacked, [&] { return fmt::format("part '{}'", printable(part, 100)); });
-        auto model = std::make_unique<ModelReader>(source.name, std::move(find), limits_);
+        auto model = std::make_unique<SliceModelReader>(source.name, std::move(find), limits_);
         XmlHandlers handlers;
         handlers.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
             model->start(name, attributes, line);
@@ -360,8 +341,8 @@ class PackageReader {
         handlers.progress = [&](std::size_t) {
             executor_.check_cancelled();
         };
-        parse_xml({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()}, source.name,
-                  handlers, {.namespaces = true, .utf8_only = true, .no_document_type = true});
+        parse_xml(source.text(), source.name, handlers,
+                  {.namespaces = true, .utf8_only = true, .no_document_type = true});
         limits_.give_back(0, unpacked);
         model->say(file_.warnings);
         return model;
@@ -385,7 +366,7 @@ class PackageReader {
         return found->second;
     }
 
-    void place(const ModelReader& model, const Use& use, const Transform& outer, int depth) {
+    void place(const SliceModelReader& model, const Use& use, const Transform& outer, int depth) {
         constexpr int deepest = 32;
         constexpr std::size_t most = std::size_t{1} << 20;
         const auto object = model.objects().find(use.object);
@@ -538,7 +519,7 @@ class PackageReader {
     ReadLimits& limits_;
     Executor executor_;
     double unit_ = 1;
-    std::map<std::string, std::unique_ptr<ModelReader>> parts_;
+    std::map<std::string, std::unique_ptr<SliceModelReader>> parts_;
     std::vector<Placed> placed_;
     std::size_t uses_ = 0;
 };

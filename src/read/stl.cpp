@@ -5,6 +5,7 @@
 #include "container/text_place.hpp"
 #include "read/stl_ascii.hpp"
 #include "read/stl_binary.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -16,14 +17,6 @@ namespace lamella {
 
 namespace {
 
-/// What stands after a byte order mark and blanks.
-std::string_view content(std::string_view text) {
-    if (text.starts_with("\xEF\xBB\xBF"))
-        text.remove_prefix(3);
-    const std::size_t first = text.find_first_not_of(" \t\r\n\v\f");
-    return first == std::string_view::npos ? std::string_view() : text.substr(first);
-}
-
 /// Binary STL has control characters everywhere: in its numbers, and two in each attribute word.
 bool looks_like_text(std::string_view text) {
     constexpr std::size_t enough = 4096;
@@ -32,10 +25,6 @@ bool looks_like_text(std::string_view text) {
         const auto byte = static_cast<unsigned char>(c);
         return byte == 0x7F || (byte < 0x20 && !(byte >= '\t' && byte <= '\r'));
     });
-}
-
-std::string_view text_of(const ByteSource& source) {
-    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
 }
 
 bool has_stl_size(const ByteSource& source) {
@@ -49,7 +38,7 @@ enum class Form { binary, ascii };
 /// Throws Error{input} when it is neither.
 Form form_of(const ByteSource& source) {
     const std::uint64_t size = source.bytes.size();
-    const std::string_view text = text_of(source);
+    const std::string_view text = source.text();
     if (has_stl_size(source))
         return Form::binary;
     if (is_stl_ascii(text))
@@ -58,7 +47,7 @@ Form form_of(const ByteSource& source) {
     const auto fail = [&](std::string_view what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
     };
-    const std::string_view begin = content(text);
+    const std::string_view begin = after_blanks(text);
     if (looks_like_text(text)) {
         if (begins_with_solid(text))
             return Form::ascii; // its reader names the line where it goes wrong
@@ -77,7 +66,7 @@ Form form_of(const ByteSource& source) {
 } // namespace
 
 bool is_stl(const ByteSource& source) {
-    return has_stl_size(source) || is_stl_ascii(text_of(source));
+    return has_stl_size(source) || is_stl_ascii(source.text());
 }
 
 MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {

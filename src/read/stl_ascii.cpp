@@ -27,10 +27,8 @@ namespace {
 
 constexpr std::size_t nowhere = std::string_view::npos;
 
-/// Pieces are parsed in parallel; about as much text as 4,000 facets.
-constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 /// What is parsed before triangles are counted again.
-constexpr std::size_t stretch_bytes = 32 * piece_bytes;
+constexpr std::size_t stretch_bytes = 32 * text_piece_bytes;
 
 /// `keyword` is in lower case.
 bool matches(std::string_view word, std::string_view keyword) {
@@ -332,8 +330,8 @@ std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit)
 std::vector<Piece> cut_in_pieces(std::string_view text, std::size_t begin, std::size_t end, bool in_solid) {
     std::vector<Piece> pieces;
     pieces.push_back({.begin = begin, .begins_in_solid = in_solid, .limit = end});
-    for (std::size_t from = begin + piece_bytes; from < end; from += piece_bytes) {
-        const std::size_t cut = find_cut(text, from, std::min(from + piece_bytes, end));
+    for (std::size_t from = begin + text_piece_bytes; from < end; from += text_piece_bytes) {
+        const std::size_t cut = find_cut(text, from, std::min(from + text_piece_bytes, end));
         if (cut == nowhere || cut <= pieces.back().begin)
             continue;
         pieces.back().limit = cut;
@@ -431,17 +429,13 @@ void add(Piece& sum, const Piece& piece) {
     sum.fault = piece.fault;
 }
 
-std::string_view text_of(const ByteSource& source) {
-    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
-}
-
 /// line_at, in little memory.
 std::uint64_t line_of(const ByteSource& source, std::size_t offset) {
     constexpr std::size_t stretch = std::size_t{1} << 24;
     std::uint64_t line = 1;
     for (std::size_t at = 0; at < offset; at += stretch) {
         const std::size_t bytes = std::min(stretch, offset - at);
-        line += line_at(text_of(source).substr(at, bytes + 1), bytes) - 1;
+        line += line_at(source.text().substr(at, bytes + 1), bytes) - 1;
         release(source, source.bytes.subspan(at, bytes));
     }
     return line;
@@ -453,7 +447,7 @@ void count_triangles(const ByteSource& source, const Piece& piece, ReadLimits& l
         return;
     }
     Piece taken{.begin = piece.begin, .begins_in_solid = piece.begins_in_solid, .limit = piece.limit};
-    PieceParser(text_of(source), taken, limits.triangles_left()).run();
+    PieceParser(source.text(), taken, limits.triangles_left()).run();
     limits.add_triangles(piece.stored, fmt::format("line {}", line_of(source, taken.end)));
 }
 
@@ -465,7 +459,7 @@ void count_piece(const ByteSource& source, const Piece& piece, ReadLimits& limit
 
 /// What is to be said of the text as a whole.
 MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOptions& options) {
-    const std::string_view text = text_of(source);
+    const std::string_view text = source.text();
     const auto line = [&](std::size_t offset) {
         return line_of(source, offset);
     };
@@ -546,7 +540,7 @@ bool is_stl_ascii(std::string_view text) {
 MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                         const Execution& execution) {
     ReadLimits limits(source.name, options);
-    const std::string_view text = text_of(source);
+    const std::string_view text = source.text();
     Parser parser(text, execution);
     std::vector<Piece> pieces;
     Piece sum;
@@ -565,7 +559,7 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
 MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
                           const Execution& execution) {
     ReadLimits limits(source.name, options);
-    Parser parser(text_of(source), execution);
+    Parser parser(source.text(), execution);
     Piece sum;
     std::uint64_t batches = 0;
     while (!parser.done()) {

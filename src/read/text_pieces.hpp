@@ -19,6 +19,13 @@ namespace lamella {
     return text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
 }
 
+/// What stands after a byte order mark and blanks.
+[[nodiscard]] inline std::string_view after_blanks(std::string_view text) noexcept {
+    text.remove_prefix(after_byte_order_mark(text));
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\v\f"), text.size()));
+    return text;
+}
+
 [[nodiscard]] inline const char* skip_to_line_end(const char* at, const char* end) noexcept {
     while (at != end && !is_line_end(*at))
         ++at;
@@ -39,10 +46,13 @@ namespace lamella {
     return at;
 }
 
+/// What one thread reads at a time: enough that handing it out does not count.
+inline constexpr std::size_t text_piece_bytes = std::size_t{1} << 20;
+
 /// Where pieces of about a megabyte begin, and the end of the last one. Each begins after the end of a line;
 /// one that ends with a backslash goes on in the next line.
 [[nodiscard]] inline std::vector<std::size_t> cut_at_lines(std::string_view text, std::size_t begin,
-                                                           std::size_t piece_bytes = std::size_t{1} << 20) {
+                                                           std::size_t piece_bytes = text_piece_bytes) {
     std::vector<std::size_t> cuts{begin};
     while (text.size() - cuts.back() > piece_bytes) {
         std::size_t at = cuts.back() + piece_bytes;

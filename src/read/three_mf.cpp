@@ -9,6 +9,7 @@
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 #include "read/three_mf_model.hpp"
+#include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +22,6 @@ namespace lamella {
 
 namespace {
 
-constexpr std::string_view model_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 constexpr std::string_view ticket_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/printticket";
 constexpr std::string_view usual_root = "3D/3dmodel.model";
 constexpr std::size_t longest_name = 200;
@@ -88,7 +88,7 @@ class ThreeMfReader {
     std::string find_root() {
         std::vector<std::string> targets;
         for (const OpcRelationship& relationship : relationships_of("")) {
-            if (relationship.type != model_type)
+            if (relationship.type != three_mf::model_type)
                 continue;
             if (relationship.external)
                 fail("the model lies outside of the package, expected a part of it");
@@ -120,7 +120,7 @@ class ThreeMfReader {
         std::size_t tickets = 0;
         for (const OpcRelationship& relationship : found) {
             tickets += relationship.type == ticket_type ? 1 : 0;
-            if (!relationship.external && relationship.type != model_type &&
+            if (!relationship.external && relationship.type != three_mf::model_type &&
                 package_.zip().find(relationship.target) == nullptr)
                 remarks_.add(fmt::format("the package refers to '{}', which is not in it",
                                          printable(relationship.target, longest_name)));

@@ -10,6 +10,7 @@
 #include "read/plain_elements.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_properties.hpp"
+#include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
 
@@ -25,31 +26,18 @@ namespace lamella {
 
 namespace {
 
-constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
-constexpr std::string_view production = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
-constexpr std::string_view slices = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07";
-constexpr std::string_view beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
 constexpr std::string_view xml_space = "http://www.w3.org/XML/1998/namespace";
 
 /// Extensions without which a reader of meshes gets on, also where a file requires them.
 constexpr std::array extensions = {
-    core,
-    production,
-    slices,
-    beams, // beams themselves are refused
-    std::string_view("http://schemas.microsoft.com/3dmanufacturing/material/2015/02"),
+    three_mf::core,
+    three_mf::production,
+    three_mf::slices,
+    three_mf::beams, // beams themselves are refused
+    three_mf::materials,
     std::string_view("http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04"),
     std::string_view("http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07"),
 };
-
-constexpr std::array<std::pair<std::string_view, double>, 6> units = {{
-    {"micron", 0.001},
-    {"millimeter", 1},
-    {"centimeter", 10},
-    {"inch", 25.4},
-    {"foot", 304.8},
-    {"meter", 1000},
-}};
 
 constexpr std::array<std::pair<std::string_view, ThreeMfObjectType>, 5> types = {{
     {"model", ThreeMfObjectType::model},
@@ -60,10 +48,9 @@ constexpr std::array<std::pair<std::string_view, ThreeMfObjectType>, 5> types = 
 }};
 
 constexpr std::uint32_t largest_id = 0x7FFFFFFF;
-constexpr std::size_t longest_name = 200;
-constexpr std::size_t longest_title = 1000;
+constexpr std::size_t longest_object_name = 200;
+constexpr std::size_t longest_model_title = 1000;
 constexpr std::size_t most_remarks = 50;
-constexpr std::uint64_t node_bytes = 80; ///< of a set or map, about
 
 bool is_coordinate(double value) {
     return std::abs(value) <= farthest_coordinate;
@@ -87,7 +74,7 @@ class ModelReader {
             end();
         };
         handlers.text = [this](std::string_view text) {
-            if (!where_.empty() && where_.back() == Where::title && model_.title.size() < longest_title)
+            if (!where_.empty() && where_.back() == Where::title && model_.title.size() < longest_model_title)
                 model_.title += text;
         };
         handlers.declare = [this](std::string_view prefix, std::string_view space) {
@@ -107,7 +94,7 @@ class ModelReader {
             fail("found no <resources>, expected one in <model>");
         if (is_root_ && !has_build_)
             fail("found no <build>, expected one in <model>");
-        model_.title = printable(trimmed(model_.title), longest_title);
+        model_.title = printable(trimmed(model_.title), longest_model_title);
         for (const auto& [prefix, space] : spaces_)
             if (!prefix.empty())
                 model_.prefixes.push_back(prefix);
@@ -134,7 +121,7 @@ class ModelReader {
     }
 
     [[nodiscard]] std::string here() const {
-        return fmt::format("part '{}', line {}", printable(model_.part, longest_name), line_);
+        return fmt::format("part '{}', line {}", printable(model_.part, longest_object_name), line_);
     }
 
     void remark(const std::string& what, bool offence = true) {
@@ -159,12 +146,12 @@ class ModelReader {
                 remark(*wrong);
         if (in == Where::elsewhere || in == Where::title)
             return Where::elsewhere;
-        if (name == XmlName{beams, "beamlattice"} && in == Where::mesh) {
-            if (required_.contains(std::string(beams)))
+        if (name == XmlName{three_mf::beams, "beamlattice"} && in == Where::mesh) {
+            if (required_.contains(std::string(three_mf::beams)))
                 fail("found a beam lattice; those cannot be read, and the file requires it");
             remark("found a beam lattice; its beams were left out");
         }
-        if (name.space != core)
+        if (name.space != three_mf::core)
             return Where::elsewhere;
         const std::string_view element = name.local;
         switch (in) {
@@ -236,17 +223,16 @@ class ModelReader {
     }
 
     Where start_model(XmlName name, const XmlAttributes& attributes) {
-        if (name != XmlName{core, "model"})
+        if (name != XmlName{three_mf::core, "model"})
             fail(fmt::format("found <{}> of namespace '{}', expected <model> of '{}'",
-                             printable(name.local, 40), printable(name.space, 100), core));
+                             printable(name.local, 40), printable(name.space, 100), three_mf::core));
         if (const std::string_view unit = attributes.find("unit"); unit.data() != nullptr) {
-            const auto* const known =
-                std::find_if(units.begin(), units.end(), [&](const auto& row) { return row.first == unit; });
-            if (known == units.end())
+            const std::optional<double> known = three_mf::unit_mm(unit);
+            if (!known)
                 fail(fmt::format("found unit '{}', expected micron, millimeter, centimeter, inch, foot or "
                                  "meter",
                                  printable(unit, 40)));
-            model_.unit_mm = known->second;
+            model_.unit_mm = *known;
         }
         if (attributes.find(XmlName{xml_space, "space"}).data() != nullptr)
             remark("found xml:space, which 3MF files must not use");
@@ -290,7 +276,7 @@ class ModelReader {
 
     /// All resources share one set of ids.
     std::optional<std::uint32_t> take_id(XmlName name, const XmlAttributes& attributes) {
-        const bool is_object = name == XmlName{core, "object"};
+        const bool is_object = name == XmlName{three_mf::core, "object"};
         const std::string_view text = attributes.find("id");
         if (text.data() == nullptr && !is_object)
             return std::nullopt;
@@ -312,7 +298,7 @@ class ModelReader {
         ThreeMfObject object;
         object.id = number(attributes, "id");
         object.line = line_;
-        object.name = printable(trimmed(attributes.find("name")), longest_name);
+        object.name = printable(trimmed(attributes.find("name")), longest_object_name);
         if (const std::string_view type = attributes.find("type"); type.data() != nullptr) {
             const auto* const known =
                 std::find_if(types.begin(), types.end(), [&](const auto& row) { return row.first == type; });
@@ -325,7 +311,7 @@ class ModelReader {
         }
         if (attributes.find("pindex").data() != nullptr && attributes.find("pid").data() == nullptr)
             remark("found pindex without pid");
-        if (attributes.find(XmlName{slices, "meshresolution"}) == "lowres")
+        if (attributes.find(XmlName{three_mf::slices, "meshresolution"}) == "lowres")
             remark(fmt::format("object {} is meant to be taken from its slices; its mesh is only a coarse "
                                "stand-in",
                                object.id));
@@ -402,7 +388,7 @@ class ModelReader {
         use.line = line_;
         use.object = number(attributes, "objectid");
         use.printable = trimmed(attributes.find("printable")) != "0";
-        if (const std::string_view path = attributes.find(XmlName{production, "path"});
+        if (const std::string_view path = attributes.find(XmlName{three_mf::production, "path"});
             path.data() != nullptr) {
             if (!is_root_)
                 fail(fmt::format("found path '{}' in a part that is not the root; only the root may refer to "
@@ -486,7 +472,7 @@ class ModelReader {
     bool has_triangles_ = false;
 };
 
-bool read_vertices(std::string_view run, const MeshText& text, std::span<Point3> vertices) {
+bool read_model_vertices(std::string_view run, const MeshText& text, std::span<Point3> vertices) {
     PlainElements elements(run, text.prefixes);
     for (Point3& vertex : vertices) {
         std::array<double, 3> numbers{};
@@ -504,7 +490,7 @@ bool read_vertices(std::string_view run, const MeshText& text, std::span<Point3>
     return elements.done();
 }
 
-bool read_triangles(std::string_view run, const MeshText& text, std::span<TriangleIndices> triangles) {
+bool read_model_triangles(std::string_view run, const MeshText& text, std::span<TriangleIndices> triangles) {
     PlainElements elements(run, text.prefixes);
     for (TriangleIndices& corners : triangles) {
         const auto read = [&](const char* name, std::size_t length, const char* value) -> PlainValue {
@@ -529,14 +515,15 @@ const ThreeMfObject* ThreeMfModel::find(std::uint32_t id) const noexcept {
 
 ThreeMfModel read_three_mf_model(const ByteSource& source, std::string part, bool is_root, bool skim,
                                  ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
-    const std::string_view document(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+    const std::string_view document = source.text();
     return ModelReader(source, std::move(part), is_root, skim, limits).read(document, progress);
 }
 
 const MeshTextForm& three_mf_text_form() noexcept {
     static const MeshTextForm form{
-        {"<vertex", 1, std::string_view("<vertex x=\"0\" y=\"0\" z=\"0\"/>").size(), read_vertices},
-        {"<triangle", 1, std::string_view("<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>").size(), read_triangles}};
+        {"<vertex", 1, std::string_view("<vertex x=\"0\" y=\"0\" z=\"0\"/>").size(), read_model_vertices},
+        {"<triangle", 1, std::string_view("<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>").size(),
+         read_model_triangles}};
     return form;
 }
 

@@ -3,6 +3,7 @@
 #include "read/three_mf_properties.hpp"
 
 #include "read/decimal_text.hpp"
+#include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
 
@@ -11,9 +12,6 @@
 namespace lamella {
 
 namespace {
-
-constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
-constexpr std::string_view materials = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
 
 bool has(const XmlAttributes& attributes, std::string_view name) {
     return attributes.find(name).data() != nullptr;
@@ -32,13 +30,13 @@ ThreeMfProperties::Kind ThreeMfProperties::kind_of(std::string_view id) const {
 std::optional<std::string> ThreeMfProperties::check(XmlName name, const XmlAttributes& attributes,
                                                     std::optional<std::uint32_t> id) {
     const auto is = [&](std::string_view element) {
-        return name.local == element && name.space == materials;
+        return name.local == element && name.space == three_mf::materials;
     };
     const auto add = [&](Kind kind) {
         if (id)
             kinds_.emplace(*id, kind);
     };
-    if (name == XmlName{core, "basematerials"}) {
+    if (name == XmlName{three_mf::core, "basematerials"}) {
         add(Kind::base);
     } else if (is("color")) {
         if (!has(attributes, "color"))

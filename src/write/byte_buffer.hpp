@@ -16,6 +16,19 @@
 
 namespace lamella {
 
+/// Writes text and returns its end.
+inline char* put_text(char* out, std::string_view text) noexcept {
+    std::memcpy(out, text.data(), text.size());
+    return out + text.size();
+}
+
+/// Writes the bytes of a value as they lie in memory, and returns their end.
+template <class T>
+char* put_value(char* out, T value) noexcept {
+    std::memcpy(out, &value, sizeof value);
+    return out + sizeof value;
+}
+
 /// A byte array that grows. What lies beyond its end is not initialised.
 class ByteBuffer {
   public:

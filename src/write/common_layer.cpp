@@ -4,6 +4,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/common_layer_format.hpp"
+#include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
 #include "write/float_contour.hpp"
 #include "write/grid.hpp"
@@ -15,7 +16,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -117,7 +117,7 @@ void for_each_on_grid(const Grid& grid, const Layer& layer, const Put& put) {
 }
 
 // Heights are not on the grid of coordinates: a layer may be thinner than its unit.
-std::string height_text(double z, double units) {
+std::string position_text(double z, double units) {
     return decimal_text(z / units, 6, 1);
 }
 
@@ -126,13 +126,13 @@ class AsciiWriter final : public SequentialWriter {
     AsciiWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : SequentialWriter(path, info,
                            header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
-                               height_text(info.bottom, options.units_mm) + '\n',
+                               position_text(info.bottom, options.units_mm) + '\n',
                            holds),
           units_(options.units_mm), grid_(options.units_mm) {}
 
   private:
     std::string layer_head(const Place& place) override {
-        return fmt::format("$$LAYER/{}\n", height_text(place.top, units_));
+        return fmt::format("$$LAYER/{}\n", position_text(place.top, units_));
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
@@ -193,12 +193,6 @@ class AsciiWriter final : public SequentialWriter {
     Grid grid_;
 };
 
-template <class T>
-char* put(char* out, T value) {
-    std::memcpy(out, &value, sizeof value);
-    return out + sizeof value;
-}
-
 constexpr std::size_t long_head = 14;
 
 char* put_long_head(char* out, int part, Direction direction, std::size_t points, std::uint64_t layer) {
@@ -206,10 +200,10 @@ char* put_long_head(char* out, int part, Direction direction, std::size_t points
         throw Error(
             ErrorKind::limit,
             fmt::format("layer {} has a contour of {} points; the format ends at 2^31 - 1", layer, points));
-    out = put(out, CommonLayerCommand::polyline_long);
-    out = put(out, std::int32_t{part});
-    out = put(out, std::int32_t{direction});
-    return put(out, static_cast<std::int32_t>(points));
+    out = put_value(out, CommonLayerCommand::polyline_long);
+    out = put_value(out, std::int32_t{part});
+    out = put_value(out, std::int32_t{direction});
+    return put_value(out, static_cast<std::int32_t>(points));
 }
 
 constexpr std::size_t hatches_head = 10;
@@ -218,9 +212,9 @@ char* put_hatches_head(char* out, int part, std::size_t hatches, std::uint64_t l
     if (hatches > std::size_t{std::numeric_limits<std::int32_t>::max()})
         throw Error(ErrorKind::limit,
                     fmt::format("layer {} has {} hatch lines; the format ends at 2^31 - 1", layer, hatches));
-    out = put(out, CommonLayerCommand::hatches_long);
-    out = put(out, std::int32_t{part});
-    return put(out, static_cast<std::int32_t>(hatches));
+    out = put_value(out, CommonLayerCommand::hatches_long);
+    out = put_value(out, std::int32_t{part});
+    return put_value(out, static_cast<std::int32_t>(hatches));
 }
 
 class LongWriter final : public SequentialWriter {
@@ -234,7 +228,8 @@ class LongWriter final : public SequentialWriter {
   private:
     static std::string layer_start(double z, double units) {
         std::array<char, 6> bytes{};
-        put(put(bytes.data(), CommonLayerCommand::layer_long), static_cast<float>(z / units) + 0.0F);
+        put_value(put_value(bytes.data(), CommonLayerCommand::layer_long),
+                  static_cast<float>(z / units) + 0.0F);
         return {bytes.data(), bytes.size()};
     }
 
@@ -340,7 +335,8 @@ class ShortWriter final : public SequentialWriter {
 
     static std::string layer_start(std::int64_t height) {
         std::array<char, 4> bytes{};
-        put(put(bytes.data(), CommonLayerCommand::layer_short), static_cast<std::uint16_t>(height));
+        put_value(put_value(bytes.data(), CommonLayerCommand::layer_short),
+                  static_cast<std::uint16_t>(height));
         return {bytes.data(), bytes.size()};
     }
 
@@ -378,11 +374,11 @@ class ShortWriter final : public SequentialWriter {
     }
 
     static char* put_short(char* at, const GridPoint& p) {
-        return put(put(at, static_cast<std::uint16_t>(p.x)), static_cast<std::uint16_t>(p.y));
+        return put_value(put_value(at, static_cast<std::uint16_t>(p.x)), static_cast<std::uint16_t>(p.y));
     }
 
     static char* put_long(char* at, const GridPoint& p) {
-        return put(put(at, static_cast<float>(p.x)), static_cast<float>(p.y));
+        return put_value(put_value(at, static_cast<float>(p.x)), static_cast<float>(p.y));
     }
 
     void put_hatches(int part, std::span<const GridPoint> points, std::uint64_t layer,
@@ -392,9 +388,9 @@ class ShortWriter final : public SequentialWriter {
         const bool counted =
             points.size() / 2 <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted) {
-            at = put(at, CommonLayerCommand::hatches_short);
-            at = put(at, static_cast<std::uint16_t>(part));
-            at = put(at, static_cast<std::uint16_t>(points.size() / 2));
+            at = put_value(at, CommonLayerCommand::hatches_short);
+            at = put_value(at, static_cast<std::uint16_t>(part));
+            at = put_value(at, static_cast<std::uint16_t>(points.size() / 2));
         } else {
             at = put_hatches_head(at, part, points.size() / 2, layer);
         }
@@ -410,10 +406,10 @@ class ShortWriter final : public SequentialWriter {
         char* at = out.room(long_head + listed * float_point_size);
         const bool counted = listed <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted) {
-            at = put(at, CommonLayerCommand::polyline_short);
-            at = put(at, static_cast<std::uint16_t>(part));
-            at = put(at, std::uint16_t{direction});
-            at = put(at, static_cast<std::uint16_t>(listed));
+            at = put_value(at, CommonLayerCommand::polyline_short);
+            at = put_value(at, static_cast<std::uint16_t>(part));
+            at = put_value(at, std::uint16_t{direction});
+            at = put_value(at, static_cast<std::uint16_t>(listed));
         } else {
             at = put_long_head(at, part, direction, listed, layer);
         }

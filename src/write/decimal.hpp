@@ -95,7 +95,7 @@ inline char* put_real_thousandths(char* out, std::int64_t n) noexcept {
 
 /// `value` rounded to `most` decimals, trailing zeros removed down to `least`; zero without a sign. For
 /// headings, not for points.
-[[nodiscard]] std::string decimal_text(double value, int most, int least);
+[[nodiscard]] std::string decimal_text(double value, int most = 9, int least = 0);
 
 /// The longest text of a double that `put_shortest` writes.
 inline constexpr std::size_t most_double_digits = 24;

@@ -16,7 +16,7 @@ namespace lamella {
 
 namespace {
 
-std::string height_text(double mm) {
+std::string length_text(double mm) {
     return decimal_text(mm, 9, 1);
 }
 
@@ -31,8 +31,8 @@ class DxfWriter final : public SequentialWriter {
     // same and take metres without it.
     static std::string head(const LayerFileInfo& info) {
         const auto corner = [](std::string_view name, const Point3& p) {
-            return fmt::format("  9\n{}\n 10\n{}\n 20\n{}\n 30\n{}\n", name, height_text(p.x),
-                               height_text(p.y), height_text(p.z));
+            return fmt::format("  9\n{}\n 10\n{}\n 20\n{}\n 30\n{}\n", name, length_text(p.x),
+                               length_text(p.y), length_text(p.z));
         };
         return "  0\nSECTION\n  2\nHEADER\n  9\n$ACADVER\n  1\nAC1009\n  9\n$INSUNITS\n 70\n4\n" +
                corner("$EXTMIN", info.box.min) + corner("$EXTMAX", info.box.max) +
@@ -54,7 +54,7 @@ class DxfWriter final : public SequentialWriter {
 
     void format_part(const Layer& layer, std::size_t part, ByteBuffer& out) const {
         const std::string name = layer_name(layer.index, part);
-        const std::string z = height_text(layer.z);
+        const std::string z = length_text(layer.z);
         const std::string end = fmt::format("  0\nSEQEND\n  8\n{}\n", name);
         const std::string vertex = fmt::format("  0\nVERTEX\n  8\n{}\n 10\n", name);
         const std::string vertex_end = fmt::format("\n 30\n{}\n", z);

@@ -14,10 +14,6 @@ namespace lamella {
 
 namespace {
 
-std::string height_text(double mm) {
-    return decimal_text(mm, 9, 0);
-}
-
 // "[[1,2],[3.5,4],[1,2]]"; a ring ends with its first point once more.
 void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& out) {
     constexpr std::size_t per_point = 2 * (most_integer_digits + 6) + 4;
@@ -54,8 +50,8 @@ class GeoJsonWriter final : public SequentialWriter {
         const Box3& box = info.box;
         return fmt::format("{{\"type\":\"FeatureCollection\",\"units\":\"mm\",\"bbox\":[{},{},{},{}],"
                            "\"features\":[",
-                           height_text(box.min.x), height_text(box.min.y), height_text(box.max.x),
-                           height_text(box.max.y));
+                           decimal_text(box.min.x), decimal_text(box.min.y), decimal_text(box.max.x),
+                           decimal_text(box.max.y));
     }
 
     std::string layer_head(const Place& place) override { return place.position == 0 ? "\n" : ",\n"; }
@@ -102,8 +98,8 @@ class GeoJsonWriter final : public SequentialWriter {
         out.append(fmt::format("{{\"type\":\"Feature\",\"properties\":{{\"layer\":{},\"z\":{},\"bottom\":{},"
                                "\"top\":{},\"part\":{},\"label\":{}}},\"geometry\":{{\"type\":\"{}\","
                                "\"coordinates\":[",
-                               layer.index, height_text(layer.z), height_text(layer.bottom),
-                               height_text(layer.top), part + 1, labels_[part], type));
+                               layer.index, decimal_text(layer.z), decimal_text(layer.bottom),
+                               decimal_text(layer.top), part + 1, labels_[part], type));
     }
 
     std::string tail() override { return "\n]}\n"; }

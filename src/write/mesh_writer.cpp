@@ -100,18 +100,7 @@ void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put
     }
 }
 
-template <class T>
-char* put_value(char* out, T value) {
-    std::memcpy(out, &value, sizeof value);
-    return out + sizeof value;
-}
-
-char* put(char* out, std::string_view text) {
-    std::memcpy(out, text.data(), text.size());
-    return out + text.size();
-}
-
-char* put(char* out, const Point3f& p) {
+char* put_point(char* out, const Point3f& p) {
     constexpr std::size_t longest_float = 16;
     for (const float v : {p.x, p.y, p.z}) {
         *out++ = ' ';
@@ -131,7 +120,7 @@ StlWriter::StlWriter(const std::string& path, std::uint64_t triangles) : announc
     file_ = std::make_unique<AtomicFile>(path);
     std::array<char, 84> head{};
     // It must not begin with "solid": readers take such a file for ASCII.
-    put(head.data(), "Binary STL written by Lamella, millimetres");
+    put_text(head.data(), "Binary STL written by Lamella, millimetres");
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(head.data() + 80, &count, sizeof count);
     file_->append({head.data(), head.size()});
@@ -167,11 +156,11 @@ void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const st
     constexpr std::size_t longest_facet = 400;
     append_blocks(file, soup.size(), longest_facet, [&](char* at, std::size_t i) {
         const Facet f = facet(soup, i);
-        at = put(put(at, "facet normal"), f.normal);
-        at = put(at, "  outer loop\n");
+        at = put_point(put_text(at, "facet normal"), f.normal);
+        at = put_text(at, "  outer loop\n");
         for (const Point3f& corner : f.corners)
-            at = put(put(at, "    vertex"), corner);
-        return put(at, "  endloop\nendfacet\n");
+            at = put_point(put_text(at, "    vertex"), corner);
+        return put_text(at, "  endloop\nendfacet\n");
     });
     file.append("endsolid " + title + "\n");
     file.commit();

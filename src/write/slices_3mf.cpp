@@ -20,7 +20,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstring>
 #include <memory>
 #include <mutex>
 #include <string_view>
@@ -50,15 +49,6 @@ constexpr std::string_view model_begin =
     "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
     "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\" requiredextensions=\"s\">\n"
     "<resources>\n";
-
-std::string height_text(double mm) {
-    return decimal_text(mm, 9, 0);
-}
-
-char* put(char* at, std::string_view text) {
-    std::memcpy(at, text.data(), text.size());
-    return at + text.size();
-}
 
 /// Bytes of the model part, compressed.
 struct Piece {
@@ -98,7 +88,7 @@ class Compression {
 
 /// One <s:slice>.
 void put_slice(const Layer& layer, const Grid& grid, ByteBuffer& out) {
-    out.append(fmt::format("<s:slice ztop=\"{}\"", height_text(layer.top)));
+    out.append(fmt::format("<s:slice ztop=\"{}\"", decimal_text(layer.top)));
     constexpr std::string_view x_before = "<s:vertex x=\"";
     constexpr std::string_view y_before = "\" y=\"";
     constexpr std::string_view vertex_end = "\"/>\n";
@@ -116,9 +106,9 @@ void put_slice(const Layer& layer, const Grid& grid, ByteBuffer& out) {
             out.append(">\n<s:vertices>\n");
         char* at = out.room(points.size() * per_vertex);
         for (const GridPoint& p : points) {
-            at = put_thousandths(put(at, x_before), p.x);
-            at = put_thousandths(put(at, y_before), p.y);
-            at = put(at, vertex_end);
+            at = put_thousandths(put_text(at, x_before), p.x);
+            at = put_thousandths(put_text(at, y_before), p.y);
+            at = put_text(at, vertex_end);
         }
         out.end_at(at);
         vertices += points.size();
@@ -136,8 +126,8 @@ void put_slice(const Layer& layer, const Grid& grid, ByteBuffer& out) {
         out.append(fmt::format("<s:polygon startv=\"{}\">\n", begin));
         char* at = out.room((end - begin) * (before.size() + most_integer_digits + after.size()));
         for (std::size_t v = begin + 1; v < end; ++v)
-            at = put(put_integer(put(at, before), std::uint64_t{v}), after);
-        at = put(put_integer(put(at, before), std::uint64_t{begin}), after);
+            at = put_text(put_integer(put_text(at, before), std::uint64_t{v}), after);
+        at = put_text(put_integer(put_text(at, before), std::uint64_t{begin}), after);
         out.end_at(at);
         out.append("</s:polygon>\n");
         begin = end;
@@ -151,8 +141,8 @@ std::string box_mesh(const Box3& box) {
     for (const double z : {box.min.z, box.max.z})
         for (const auto& [x, y] : {Point2{box.min.x, box.min.y}, Point2{box.max.x, box.min.y},
                                    Point2{box.max.x, box.max.y}, Point2{box.min.x, box.max.y}})
-            text += fmt::format("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", height_text(x), height_text(y),
-                                height_text(z));
+            text += fmt::format("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", decimal_text(x), decimal_text(y),
+                                decimal_text(z));
     text += "</vertices>\n<triangles>\n";
     constexpr std::array<std::array<int, 3>, 12> triangles{{{0, 2, 1},
                                                             {0, 3, 2},
@@ -239,7 +229,7 @@ class Slices3mfWriter final : public LayerWriter {
     [[nodiscard]] std::size_t object_id(std::size_t part) const { return info_.parts.size() + part + 1; }
     [[nodiscard]] std::string stack_begin(std::size_t part) const {
         return fmt::format("<s:slicestack id=\"{}\" zbottom=\"{}\">\n", stack_id(part),
-                           height_text(info_.bottom));
+                           decimal_text(info_.bottom));
     }
 
     void append(std::string_view text) { zip_.append(compression_.piece(text).in_zip()); }

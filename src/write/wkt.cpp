@@ -14,10 +14,6 @@ namespace lamella {
 
 namespace {
 
-std::string height_text(double mm) {
-    return decimal_text(mm, 9, 0);
-}
-
 // "(1 2,3.5 4,1 2)"; a ring ends with its first point once more.
 void put_points(std::span<const GridPoint> points, bool closed, ByteBuffer& out) {
     constexpr std::size_t per_point = 2 * (most_integer_digits + 6) + 2;
@@ -57,8 +53,8 @@ class WktWriter final : public SequentialWriter {
     void format_part(const Layer& layer, std::size_t part, ByteBuffer& out) const {
         const Nesting nested = nesting(layer);
         const std::string columns =
-            fmt::format("\",{},{},{},{},{},{}\n", height_text(layer.z), height_text(layer.bottom),
-                        height_text(layer.top), layer.index, part + 1, labels_[part]);
+            fmt::format("\",{},{},{},{},{},{}\n", decimal_text(layer.z), decimal_text(layer.bottom),
+                        decimal_text(layer.top), layer.index, part + 1, labels_[part]);
         std::vector<GridPoint> scratch;
         out.append("\"MULTIPOLYGON ");
         bool any = false;

@@ -2,6 +2,7 @@
 
 // Building meshes from meshes.
 
+#include "lamella/mesh/transform.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
 #include <initializer_list>
@@ -20,6 +21,10 @@ inline std::vector<Triangle3f> triangles_of(const TriangleSoup& soup) {
         out.push_back({single(t[0]), single(t[1]), single(t[2])});
     }
     return out;
+}
+
+inline TriangleSoup moved(const TriangleSoup& soup, double x, double y, double z) {
+    return soup.transformed(translation(x, y, z));
 }
 
 /// All triangles of all parts, placed, in one soup.

@@ -15,10 +15,6 @@
 namespace lamella {
 namespace {
 
-TriangleSoup moved(const TriangleSoup& soup, double x, double y, double z) {
-    return soup.transformed(translation(x, y, z));
-}
-
 Diagnosis diagnosed(const TriangleSoup& soup, const DiagnosisOptions& options = {}) {
     return diagnose(weld(soup), options, {.threads = 2});
 }

@@ -18,10 +18,6 @@ Inspection inspected(const TriangleSoup& soup, unsigned threads = 2) {
     return inspect(weld(soup), {.threads = threads});
 }
 
-TriangleSoup moved(const TriangleSoup& soup, double x, double y, double z) {
-    return soup.transformed(translation(x, y, z));
-}
-
 TriangleSoup cube() {
     return make_box(1, 1, 1);
 }

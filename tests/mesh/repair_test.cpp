@@ -21,10 +21,6 @@ namespace {
 
 using test::Random;
 
-TriangleSoup moved(const TriangleSoup& soup, double x, double y, double z) {
-    return soup.transformed(translation(x, y, z));
-}
-
 /// Triangles as coordinates, in order.
 std::vector<Triangle3> coordinates(const IndexedMesh& mesh) {
     std::vector<Triangle3> out;

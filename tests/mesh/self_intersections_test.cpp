@@ -14,10 +14,6 @@
 namespace lamella {
 namespace {
 
-TriangleSoup moved(const TriangleSoup& soup, double x, double y, double z) {
-    return soup.transformed(translation(x, y, z));
-}
-
 SelfIntersections found_in(const TriangleSoup& soup) {
     return find_self_intersections(weld(soup), {}, {.threads = 2});
 }

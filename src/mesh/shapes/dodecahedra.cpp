@@ -5,6 +5,7 @@
 
 #include "lamella/mesh/shapes.hpp"
 
+#include "mesh/shapes/single_precision.hpp"
 #include "mesh/unit_circle.hpp"
 
 #include <algorithm>
@@ -103,10 +104,6 @@ Face narrowed(Face face, double share) {
         p = {middle.x + share * (p.x - middle.x), middle.y + share * (p.y - middle.y),
              middle.z + share * (p.z - middle.z)};
     return face;
-}
-
-Point3f single(const Point3& p) {
-    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
 /// Joins the edges of two faces by quads that face outwards where `outer` is the wider one.

@@ -12,6 +12,7 @@
 
 #include "mesh/shapes/icosahedron.hpp"
 #include "mesh/shapes/shuffle.hpp"
+#include "mesh/shapes/single_precision.hpp"
 
 #include <algorithm>
 #include <array>
@@ -232,8 +233,7 @@ TriangleSoup make_head() {
     out.reserve(icosahedron_faces.size() * fineness * fineness);
     for (std::size_t face = 0; face < icosahedron_faces.size(); ++face) {
         const auto at = [&](unsigned row, unsigned column) -> Point3f {
-            const Point3& p = corners[face * per_face + in_face(row, column)];
-            return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+            return single(corners[face * per_face + in_face(row, column)]);
         };
         for (unsigned row = 0; row < fineness; ++row)
             for (unsigned column = 0; column <= row; ++column) {

@@ -10,7 +10,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/shapes.hpp"
 
-#include "mesh/shapes/resolution.hpp"
+#include "mesh/shapes/single_precision.hpp"
 #include "mesh/unit_circle.hpp"
 
 #include <fmt/format.h>

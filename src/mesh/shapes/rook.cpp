@@ -11,13 +11,13 @@ namespace lamella {
 
 namespace {
 
-constexpr unsigned columns = 240;
+constexpr unsigned columns_around = 240;
 constexpr unsigned merlons = 6;
 constexpr unsigned merlon_columns = 24; // of the 40 from one merlon to the next
 constexpr unsigned rim_rings = 6;
 constexpr unsigned merlon_rings = 12;
 
-constexpr double height = 53.15;
+constexpr double full_height = 53.15;
 constexpr double base_radius = 31.75 / 2;
 constexpr double crown_radius = 12.4;
 constexpr double bore_radius = 9.6;
@@ -95,7 +95,7 @@ class Lathe {
     /// Closes a ring of the profile with a fan about the axis at height z.
     void fan(ProfilePoint ring, double z, bool up) {
         const Point3f axis{0, 0, static_cast<float>(z)};
-        for (unsigned j = 0; j < columns; ++j) {
+        for (unsigned j = 0; j < columns_around; ++j) {
             const Point3f a = at(j, ring);
             const Point3f b = at(j + 1, ring);
             out.push_back(up ? Triangle3f{a, b, axis} : Triangle3f{b, a, axis});
@@ -120,8 +120,8 @@ class Lathe {
 
   private:
     static Point3f at(unsigned column, ProfilePoint p) {
-        static_assert(columns % 4 == 0, "the box is exact when there are corners on the axes");
-        const CosSin turn = cos_sin_turn(column, columns);
+        static_assert(columns_around % 4 == 0, "the box is exact when there are corners on the axes");
+        const CosSin turn = cos_sin_turn(column, columns_around);
         return {static_cast<float>(p.r * turn.cos), static_cast<float>(p.r * turn.sin),
                 static_cast<float>(p.z)};
     }
@@ -137,22 +137,22 @@ class Lathe {
 TriangleSoup make_rook() {
     const Profile body = body_profile();
     const Profile bore = bore_profile();
-    const Profile rise = straight({crown_radius, slot_floor}, {crown_radius, height}, merlon_rings);
+    const Profile rise = straight({crown_radius, slot_floor}, {crown_radius, full_height}, merlon_rings);
     const Profile slot = straight({crown_radius, slot_floor}, {bore_radius, slot_floor}, rim_rings);
     Profile rim = slot;
     for (ProfilePoint& p : rim)
-        p.z = height;
+        p.z = full_height;
     Profile fall{rise.rbegin(), rise.rend()};
     for (ProfilePoint& p : fall)
         p.r = bore_radius;
 
     Lathe lathe;
     lathe.fan(body.front(), 0, false);
-    lathe.sweep(body, 0, columns);
+    lathe.sweep(body, 0, columns_around);
     for (unsigned m = 0; m < merlons; ++m) {
-        const unsigned begin = m * (columns / merlons);
+        const unsigned begin = m * (columns_around / merlons);
         const unsigned end = begin + merlon_columns;
-        const unsigned next = begin + columns / merlons;
+        const unsigned next = begin + columns_around / merlons;
         lathe.radial_wall(begin, rise, slot, true);
         lathe.sweep(rise, begin, end);
         lathe.sweep(rim, begin, end);
@@ -160,7 +160,7 @@ TriangleSoup make_rook() {
         lathe.radial_wall(end, rise, slot, false);
         lathe.sweep(slot, end, next);
     }
-    lathe.sweep(bore, 0, columns);
+    lathe.sweep(bore, 0, columns_around);
     lathe.fan(bore.back(), bore_floor, true);
     return TriangleSoup(std::move(lathe.out));
 }

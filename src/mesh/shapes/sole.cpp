@@ -26,7 +26,7 @@ namespace lamella {
 namespace {
 
 constexpr Point3 size{324, 125, 54};
-constexpr double plate = 2;            ///< thickness
+constexpr double plate_thickness = 2;  ///< thickness
 constexpr unsigned columns = 133;      ///< heel to toe
 constexpr unsigned rows = 50;          ///< side to side
 constexpr unsigned lean = 5;           ///< columns from the lower end of a strut to its upper end
@@ -148,9 +148,9 @@ class SoleMaker {
         const bool low = face == Face::underside || face == Face::lower_inside;
         double z = ((low ? underside(q) : footbed(q)) - low_.z) * stretch_.z;
         if (face == Face::lower_inside)
-            z += plate;
+            z += plate_thickness;
         if (face == Face::upper_inside)
-            z -= plate;
+            z -= plate_thickness;
         return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(z)};
     }
 

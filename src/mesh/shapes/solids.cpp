@@ -2,7 +2,7 @@
 #include "lamella/mesh/shapes.hpp"
 
 #include "mesh/shapes/icosahedron.hpp"
-#include "mesh/shapes/resolution.hpp"
+#include "mesh/shapes/single_precision.hpp"
 #include "mesh/unit_circle.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +16,6 @@
 namespace lamella {
 
 namespace {
-
-Point3f single(const Point3& p) {
-    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
 
 void require_length(const char* what, double mm) {
     if (!(mm >= 1e-9 && mm <= 1e9))

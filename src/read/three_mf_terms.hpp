@@ -1,0 +1,37 @@
+#pragma once
+
+// What all files of the 3MF Core Specification share: the names that stand for it and its extensions, and its
+// units.
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace lamella::three_mf {
+
+inline constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+inline constexpr std::string_view production =
+    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
+inline constexpr std::string_view slices = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07";
+inline constexpr std::string_view beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
+inline constexpr std::string_view materials = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
+
+/// Of the relationship by which a package names its model.
+inline constexpr std::string_view model_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+
+/// The millimetres of a unit's name, if it is one (section 3.4).
+[[nodiscard]] inline std::optional<double> unit_mm(std::string_view name) noexcept {
+    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"micron", 0.001},
+                                                                        {"millimeter", 1},
+                                                                        {"centimeter", 10},
+                                                                        {"inch", 25.4},
+                                                                        {"foot", 304.8},
+                                                                        {"meter", 1000}}};
+    for (const auto& [known, mm] : units)
+        if (known == name)
+            return mm;
+    return std::nullopt;
+}
+
+} // namespace lamella::three_mf
