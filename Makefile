@@ -3,7 +3,8 @@
 
 PREFIX ?= /usr/local
 JOBS := $(shell nproc)
-CTEST := ctest --output-on-failure --no-tests=error --parallel $(JOBS)
+# One more than there are processors: some tests mostly wait.
+CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
 THREADED := core mesh read slicing pipeline
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace lamella {
+namespace lamella::gzip_cases {
 namespace {
 
 /// A member of a gzip file, as zlib makes it.
@@ -127,4 +127,4 @@ TEST(Gzip, EndsWhenAskedTo) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::gzip_cases

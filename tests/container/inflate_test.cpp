@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lamella {
+namespace lamella::inflate_cases {
 namespace {
 
 std::string packed(std::string_view text) {
@@ -50,4 +50,4 @@ TEST(Inflate, RefusesWhatIsBroken) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::inflate_cases

@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-namespace lamella {
+namespace lamella::xml_cases {
 namespace {
 
 /// Everything that is told of a document, in one text.
@@ -188,4 +188,4 @@ TEST(Xml, ProgressAddsUpToTheDocument) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::xml_cases

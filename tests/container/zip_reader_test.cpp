@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <random>
 
-namespace lamella {
+namespace lamella::zip_reader_cases {
 namespace {
 
 using zip_test::zip_bytes;
@@ -304,4 +304,4 @@ TEST(ZipReader, SurvivesMutations) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::zip_reader_cases

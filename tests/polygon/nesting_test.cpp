@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-namespace lamella {
+namespace lamella::nesting_cases {
 namespace {
 
 using test::Contour;
@@ -510,4 +510,4 @@ TEST(Nesting, OfManyRingsInOnePlaceIsFoundWithoutLookingAtAllPairs) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::nesting_cases

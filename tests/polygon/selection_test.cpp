@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lamella {
+namespace lamella::selection_cases {
 namespace {
 
 using test::Contour;
@@ -52,4 +52,4 @@ TEST(Selection, TakesTheFirstOfEquallyLargeBodies) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::selection_cases

@@ -9,7 +9,7 @@
 #include <memory>
 #include <random>
 
-namespace lamella {
+namespace lamella::layered_svg_cases {
 
 namespace {
 
@@ -143,4 +143,4 @@ TEST(ReadLayeredSvg, APublishedSampleHasItsArea) {
         EXPECT_NEAR(measure(layer).area_mm2, 96, 1e-9);
 }
 
-} // namespace lamella
+} // namespace lamella::layered_svg_cases

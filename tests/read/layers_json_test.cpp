@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lamella {
+namespace lamella::layers_json_cases {
 namespace {
 
 LayerFile read(const std::string& text) {
@@ -65,4 +65,4 @@ TEST(ReadLayersJson, RefusesWhatItDoesNotUnderstand) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::layers_json_cases

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace lamella::mesh_test {
+namespace lamella::mesh_test::off_cases {
 namespace {
 
 const std::string name = "part.off";
@@ -128,4 +128,4 @@ TEST(Off, SurvivesHostility) {
 }
 
 } // namespace
-} // namespace lamella::mesh_test
+} // namespace lamella::mesh_test::off_cases

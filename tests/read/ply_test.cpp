@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace lamella::mesh_test {
+namespace lamella::mesh_test::ply_cases {
 namespace {
 
 const std::string name = "part.ply";
@@ -412,4 +412,4 @@ TEST(Ply, SurvivesHostility) {
 }
 
 } // namespace
-} // namespace lamella::mesh_test
+} // namespace lamella::mesh_test::ply_cases

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <initializer_list>
 
-namespace lamella {
+namespace lamella::slc_cases {
 namespace {
 
 template <class T>
@@ -109,4 +109,4 @@ TEST(ReadSlc, ClaimsAreChecked) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::slc_cases

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-namespace lamella {
+namespace lamella::slices_3mf_cases {
 namespace {
 
 std::string model(const std::string& resources, const std::string& build,
@@ -163,4 +163,4 @@ TEST(ReadSlices3mf, TheConsortiumsSamplesAreRead) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::slices_3mf_cases

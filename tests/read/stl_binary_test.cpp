@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lamella::stl_test {
+namespace lamella::stl_test::stl_binary_cases {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -191,4 +191,4 @@ TEST(StlBinary, HasNoBoxOfCornersThatItDropped) {
 }
 
 } // namespace
-} // namespace lamella::stl_test
+} // namespace lamella::stl_test::stl_binary_cases

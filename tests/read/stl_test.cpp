@@ -11,7 +11,7 @@
 #include <fstream>
 #include <thread>
 
-namespace lamella::stl_test {
+namespace lamella::stl_test::stl_cases {
 namespace {
 
 const Triangles one = some_triangles(1);
@@ -234,4 +234,4 @@ TEST(Stl, StopsWhenAsked) {
 }
 
 } // namespace
-} // namespace lamella::stl_test
+} // namespace lamella::stl_test::stl_cases

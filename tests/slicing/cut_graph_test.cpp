@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-namespace lamella {
+namespace lamella::cut_graph_cases {
 namespace {
 
 using test::Triangles;
@@ -531,4 +531,4 @@ TEST(CutGraph, EndsWhenTheCallerCancels) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::cut_graph_cases

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace lamella {
+namespace lamella::point_kernels_cases {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -324,4 +324,4 @@ TEST(PointKernelSets, BeginWithThoseOfEveryProcessorAndEndWithThoseThatAreUsed) 
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::point_kernels_cases

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace lamella {
+namespace lamella::ranks_cases {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -131,4 +131,4 @@ TEST(Ranks, NeverFallAsHeightsRise) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::ranks_cases

@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-namespace lamella {
+namespace lamella::slice_cases {
 namespace {
 
 using test::even_planes;
@@ -379,4 +379,4 @@ TEST(Slice, KeepsLayersAliveAfterTheMeshIsGone) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::slice_cases

@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-namespace lamella {
+namespace lamella::sweep_cases {
 namespace {
 
 using test::even_planes;
@@ -645,4 +645,4 @@ TEST(Sweep, WritesLargeLayersTogetherAsItWritesThemOneByOne) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::sweep_cases

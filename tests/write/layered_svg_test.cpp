@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-namespace lamella {
+namespace lamella::layered_svg_cases {
 namespace {
 
 namespace fs = std::filesystem;
@@ -132,4 +132,4 @@ TEST(SvgLayers, RefusesTwoLayersOfOneIndexAndStandardOutput) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::layered_svg_cases
