@@ -405,9 +405,9 @@ class ModelReader {
     [[nodiscard]] Transform transform(std::string_view text) const {
         std::array<double, 12> m{};
         std::string_view rest = trimmed(text);
-        for (std::size_t i = 0; i < m.size(); ++i) {
-            const char* const stop = read_decimal(rest.data(), rest.data() + rest.size(), m[i]);
-            if (stop == nullptr || !is_coordinate(m[i]) ||
+        for (double& number : m) {
+            const char* const stop = read_decimal(rest.data(), rest.data() + rest.size(), number);
+            if (stop == nullptr || !is_coordinate(number) ||
                 (stop != rest.data() + rest.size() && trimmed({stop, 1}).size() == 1))
                 fail(fmt::format("found transform '{}', expected 12 numbers with blanks between them",
                                  printable(text, 200)));
