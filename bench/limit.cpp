@@ -109,12 +109,55 @@ Run run_lamella(const Part& part, unsigned threads, bool weld_too) {
     return run;
 }
 
-template <class Get>
-double middle(const std::vector<Measured<Run>>& runs, Get get) {
-    std::vector<double> values;
-    for (const auto& run : runs)
-        values.push_back(get(run.result));
-    return median(values);
+/// What one number of threads takes of a part. What the machine does beside it only ever adds, and sometimes
+/// as much as the program itself takes, so the least of several rounds tells of the program.
+class Timings {
+  public:
+    explicit Timings(unsigned thread_count) : threads(thread_count) {}
+
+    /// One more round; returns whether its layers are right, and those of `hash` where that is not 0.
+    bool measure(const Part& part, std::uint64_t& hash) {
+        runs_.push_back(measure_in_child<Run>([&] { return run_lamella(part, threads, true); }).result);
+        const Run& run = runs_.back();
+        limits_.push_back(
+            measure_in_child<double>([&] { return limit_seconds(part.path, run.points, threads); }).result);
+        if (hash == 0)
+            hash = run.hash;
+        if (run.hash == hash && run.open_chains == 0 && run.worst_area_error < 1e-9)
+            return true;
+        std::cout << fmt::format(
+            "WRONG: {} on {} threads: hash {:016x} against {:016x}, {} open chains, area "
+            "error {:g}\n",
+            part.name, threads, run.hash, hash, run.open_chains, run.worst_area_error);
+        return false;
+    }
+
+    [[nodiscard]] const Run& any() const { return runs_.front(); }
+    [[nodiscard]] double limit() const { return *std::min_element(limits_.begin(), limits_.end()); }
+    [[nodiscard]] double least(double Run::*stage) const {
+        const auto less = [&](const Run& a, const Run& b) {
+            return a.*stage < b.*stage;
+        };
+        return (*std::min_element(runs_.begin(), runs_.end(), less)).*stage;
+    }
+
+    unsigned threads;
+
+  private:
+    std::vector<Run> runs_;
+    std::vector<double> limits_;
+};
+
+/// Of slicing alone, without the checks.
+std::uint64_t peak_of_slicing(const Part& part, unsigned threads) {
+    return measure_in_child<std::uint64_t>([&] {
+               const Execution execution{.threads = threads};
+               const Mesh mesh = read_mesh(part.path, {}, execution).mesh();
+               const Box3 box = bounding_box(mesh, execution);
+               const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
+               return std::uint64_t{slice(mesh, plan, execution).size()};
+           })
+        .peak_bytes;
 }
 
 int report(int argc, char** argv) {
@@ -123,7 +166,7 @@ int report(int argc, char** argv) {
                           "[--rounds 7] [--threads 0]");
     const int rounds = options.rounds();
     const unsigned threads = options.threads();
-    std::cout << machine() << "; medians of " << rounds << " rounds\n\n";
+    std::cout << machine() << "; least of " << rounds << " rounds\n\n";
 
     Table table({"part", "triangles", "points", "threads", "limit s", "total s", "ratio", "read",
                  "ranks+graph", "sweep", "weld", "bytes/point", "peak MB"});
@@ -132,75 +175,44 @@ int report(int argc, char** argv) {
     std::uint64_t sheet_hash = 0;
     double sheet_total = 0;
     for (const Part& part : chosen_parts(options)) {
-        std::vector<double> single(4);
         std::uint64_t hash = 0;
-        std::vector<unsigned> counts{1};
+        std::vector<Timings> timings{Timings(1)};
         if (threads > 1)
-            counts.push_back(threads);
-        for (const unsigned count : counts) {
-            std::vector<Measured<Run>> runs;
-            std::vector<double> limits;
-            for (int round = 0; round < rounds; ++round) {
-                runs.push_back(measure_in_child<Run>([&] { return run_lamella(part, count, true); }));
-                const std::uint64_t points = runs.back().result.points;
-                limits.push_back(
-                    measure_in_child<double>([&] { return limit_seconds(part.path, points, count); }).result);
-                const Run& run = runs.back().result;
-                if (hash == 0)
-                    hash = run.hash;
-                if (run.hash != hash || run.open_chains != 0 || !(run.worst_area_error < 1e-9)) {
-                    std::cout << fmt::format(
-                        "WRONG: {} on {} threads: hash {:016x} against {:016x}, {} open chains, area "
-                        "error {:g}\n",
-                        part.name, count, run.hash, hash, run.open_chains, run.worst_area_error);
-                    right = false;
-                }
-            }
-            const double read = middle(runs, [](const Run& r) { return r.read; });
-            const double link = middle(runs, [](const Run& r) { return r.link; });
-            const double sweep = middle(runs, [](const Run& r) { return r.slice; });
-            const double weld_time = middle(runs, [](const Run& r) { return r.weld; });
-            const double total = middle(runs, [](const Run& r) { return r.total; });
-            // The peak without the checks is that of a run of its own.
-            const std::uint64_t peak =
-                measure_in_child<std::uint64_t>([&] {
-                    const Execution execution{.threads = count};
-                    const Mesh mesh = read_mesh(part.path, {}, execution).mesh();
-                    const Box3 box = bounding_box(mesh, execution);
-                    const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
-                    return std::uint64_t{slice(mesh, plan, execution).size()};
-                }).peak_bytes;
-            const Run& run = runs.front().result;
+            timings.emplace_back(threads);
+        for (int round = 0; round < rounds; ++round)
+            for (Timings& timing : timings)
+                right = timing.measure(part, hash) && right;
+
+        for (const Timings& timing : timings) {
+            const Run& run = timing.any();
+            const std::uint64_t peak = peak_of_slicing(part, timing.threads);
+            const auto seconds = [&](double Run::*stage) {
+                return fmt::format("{:.4f}", timing.least(stage));
+            };
             table.add({part.name, fmt::format("{}", run.triangles), fmt::format("{}", run.points),
-                       fmt::format("{}", count), fmt::format("{:.4f}", median(limits)),
-                       fmt::format("{:.4f}", total), fmt::format("{:.2f}", total / median(limits)),
-                       fmt::format("{:.4f}", read), fmt::format("{:.4f}", link), fmt::format("{:.4f}", sweep),
-                       fmt::format("{:.4f}", weld_time),
+                       fmt::format("{}", timing.threads), fmt::format("{:.4f}", timing.limit()),
+                       seconds(&Run::total),
+                       fmt::format("{:.2f}", timing.least(&Run::total) / timing.limit()), seconds(&Run::read),
+                       seconds(&Run::link), seconds(&Run::slice), seconds(&Run::weld),
                        fmt::format("{:.1f}", static_cast<double>(peak) / static_cast<double>(run.points)),
                        fmt::format("{:.0f}", static_cast<double>(peak) / 1e6)});
-            if (count == 1) {
-                single = {link, sweep, weld_time, total};
-            } else {
-                scaling.add({part.name, fmt::format("{:.2f}", single[0] / link),
-                             fmt::format("{:.2f}", single[1] / sweep),
-                             fmt::format("{:.2f}", single[2] / weld_time),
-                             fmt::format("{:.2f}", single[3] / total)});
-            }
-            if (part.name == "sheet 1225") {
-                sheet_hash = hash;
-                sheet_total = total;
-            }
-            if (part.name == "sheet 1225 shuffled") {
-                if (hash != sheet_hash) {
-                    std::cout << "WRONG: the shuffled sheet gives other layers\n";
-                    right = false;
-                } else if (count == counts.back()) {
-                    std::cout << fmt::format(
-                        "shuffled against in order, {} threads: {:.2f} times the time, the same "
-                        "bytes\n",
-                        count, total / sheet_total);
-                }
-            }
+        }
+        const Timings& last = timings.back();
+        if (threads > 1) {
+            const auto speed_up = [&](double Run::*stage) {
+                return fmt::format("{:.2f}", timings.front().least(stage) / last.least(stage));
+            };
+            scaling.add({part.name, speed_up(&Run::link), speed_up(&Run::slice), speed_up(&Run::weld),
+                         speed_up(&Run::total)});
+        }
+        if (part.name == "sheet 1225") {
+            sheet_hash = hash;
+            sheet_total = last.least(&Run::total);
+        } else if (part.name == "sheet 1225 shuffled" && sheet_hash != 0) {
+            std::cout << fmt::format("shuffled against in order, {} threads: {:.2f} times the time, {}\n",
+                                     last.threads, last.least(&Run::total) / sheet_total,
+                                     hash == sheet_hash ? "the same bytes" : "WRONG: other layers");
+            right = right && hash == sheet_hash;
         }
     }
     std::cout << "\n" << table.text();
