@@ -65,27 +65,32 @@ std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
 ///
 /// Into slabs of about equal work, as a rule. A slab pays for walking once over all that is alive on its
 /// first plane, so there are few of them where planes are few and large, and more where that cost is lost
-/// among the planes, to level out what the estimate of the work misses. Where the bound on points in flight
-/// would make slabs of a few planes only, there is one slab, and all workers share the work on it.
-inline std::vector<Slab> deal_out(const std::vector<std::uint64_t>& points, std::uint64_t most_points,
-                                  unsigned workers, std::uint64_t points_in_flight) {
+/// among the planes, to level out what the estimate of the work misses.
+///
+/// Into one slab, on which all workers share the work, where the bound on points in flight would make slabs
+/// of a few planes only; and where each slab would walk over as much as one worker that walks for all, as on
+/// upright parts: what follows the walk is then shared evenly, whatever the planes are like.
+inline std::vector<Slab> deal_out(const PlaneIndex& index, unsigned workers, std::uint64_t points_in_flight) {
     constexpr std::uint64_t plane_cost = 64; // in points
     constexpr std::uint64_t worth_a_thread = 1U << 15;
     constexpr std::uint64_t worth_a_slab = 32; // planes
-    const auto planes = static_cast<std::uint32_t>(points.size());
+    const auto planes = static_cast<std::uint32_t>(index.points.size());
     std::uint64_t work = 0;
-    for (const std::uint64_t p : points)
+    for (const std::uint64_t p : index.points)
         work += p + plane_cost;
     if (work < workers * worth_a_thread)
         workers = 1;
 
     const std::uint64_t per_slab = points_in_flight / (workers + 1ULL); // one may wait for its turn
-    const std::uint64_t largest_layer = std::max<std::uint64_t>(1, most_points);
-    if (points_in_flight != 0 && per_slab / largest_layer < std::min<std::uint64_t>(planes, worth_a_slab)) {
-        const auto group = std::max<std::uint64_t>(1, points_in_flight / largest_layer);
-        return {
-            {0, planes, {}, static_cast<std::uint32_t>(std::min<std::uint64_t>(group, planes)), workers > 1}};
-    }
+    const std::uint64_t largest_layer = std::max<std::uint64_t>(1, index.most_points);
+    const auto one_for_all = [&] {
+        const std::uint64_t group =
+            points_in_flight == 0 ? planes
+                                  : std::clamp<std::uint64_t>(points_in_flight / largest_layer, 1, planes);
+        return std::vector<Slab>{{0, planes, {}, static_cast<std::uint32_t>(group), workers > 1}};
+    };
+    if (points_in_flight != 0 && per_slab / largest_layer < std::min<std::uint64_t>(planes, worth_a_slab))
+        return one_for_all();
 
     std::vector<Slab> slabs;
     const std::uint64_t wanted =
@@ -94,15 +99,20 @@ inline std::vector<Slab> deal_out(const std::vector<std::uint64_t>& points, std:
     if (points_in_flight != 0)
         target = std::min(target, per_slab);
     std::uint64_t filled = 0;
+    const std::uint64_t nodes = index.offsets.back();
+    std::uint64_t walked = nodes;
     for (std::uint32_t p = 0; p < planes; ++p) {
-        const std::uint64_t cost = points[p] + plane_cost;
+        const std::uint64_t cost = index.points[p] + plane_cost;
         if (slabs.empty() || filled + cost / 2 > target) {
             slabs.push_back({p, p, {}, planes});
             filled = 0;
+            walked += index.points[p] - (index.offsets[p + 1] - index.offsets[p]);
         }
         filled += cost;
         slabs.back().end = p + 1;
     }
+    if (slabs.size() > 1 && workers * nodes <= walked + walked / 16)
+        return one_for_all();
     return slabs;
 }
 
@@ -130,7 +140,7 @@ PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::
         index.offsets[p + 1] = begun;
     }
 
-    slabs = deal_out(index.points, index.most_points, executor.workers(), points_in_flight);
+    slabs = deal_out(index, executor.workers(), points_in_flight);
     // The slab that a plane lies in; the last one where all slabs hold all planes.
     std::vector<std::uint32_t> slab_of(planes);
     for (std::uint32_t s = 0; s < slabs.size(); ++s)

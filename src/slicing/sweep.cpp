@@ -85,6 +85,8 @@ class alignas(128) SlabSweep {
         slab_ = &slab;
         if (benches_.empty()) {
             benches_.resize(slab.shared ? executor_.workers() : 1);
+            if (slab.shared)
+                sequences_.reserve(index_.offsets.back());
             // Edges that stay in the columns stay in one core's cache.
             room_ = slab.shared ? 0 : std::min(most_room, EdgeColumns::padded(8 * index_.all_points));
             columns_ = PageArray<double>(EdgeColumns::columns * room_);
@@ -101,6 +103,8 @@ class alignas(128) SlabSweep {
             if (slab.shared)
                 share_runs(known, plane, slab.end,
                            [&](Run& run, std::uint32_t begin, std::uint32_t end, Bench& bench) {
+                               if (begin == run.begin && end != begin) // one of its pieces
+                                   spare_visits(run);
                                measure(run, begin, end, bench);
                            });
             list_rings(known, plane);
@@ -292,9 +296,6 @@ class alignas(128) SlabSweep {
         Run run{plane,    valid_until,  static_cast<std::uint32_t>(size), closed, sequences_.size(),
                 not_kept, rings_.size()};
         sequences_.insert(sequences_.end(), sequence, sequence + size);
-        if (valid_until > plane + 1)
-            for (std::size_t i = 0; i < size; ++i)
-                visited_until_[sequence[i]] = valid_until;
         ending_[valid_until - slab_->begin] += size;
         if (!closed && valid_until < slab_->end) {
             // Only a closed contour is sure to go on through a node that begins where its run ends.
@@ -304,7 +305,8 @@ class alignas(128) SlabSweep {
         runs_.push_back(run);
         rings_.resize(rings_.size() + (valid_until - plane));
         if (slab_->shared)
-            return; // measured by all when the walk is over
+            return; // served by all when the walk is over
+        spare_visits(run);
         // Now, while its nodes are in the cache.
         const std::size_t stride = EdgeColumns::padded(size);
         if (room_ - columns_used_ >= stride) {
@@ -312,6 +314,13 @@ class alignas(128) SlabSweep {
             columns_used_ += stride;
         }
         measure(runs_.back(), plane, valid_until, benches_.front());
+    }
+
+    /// Later planes need no walk where the run goes.
+    void spare_visits(const Run& run) {
+        if (run.end > run.begin + 1)
+            for (std::size_t i = 0; i < run.size; ++i)
+                visited_until_[sequences_[run.sequence + i]] = run.end;
     }
 
     /// Calls work(run, begin, end, bench) for the runs from `first` on and the planes of each within

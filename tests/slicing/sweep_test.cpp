@@ -469,6 +469,13 @@ TEST(Sweep, GivesTheSameBytesForAnyThreadsOrderAndKindOfMesh) {
              Triangles drum = test::rugged_drum(3000, 42);
              drum.resize(drum.size() - 37);
              return test::soup(drum);
+         }()},
+        // On which all threads share one slab (plane_index.hpp).
+        {"upright pipe", make_cylinder(10, 30, 1000)},
+        {"upright pipe with a slit, and a box that begins further up", [] {
+             Triangles pipe = test::triangles_of(make_cylinder(10, 30, 1000));
+             pipe.erase(pipe.begin() + 500, pipe.begin() + 504);
+             return test::soup(test::joined({pipe, test::box_triangles({20, 20, 11}, {30, 30, 23})}));
          }()}};
     for (const auto& [name, soup] : shapes) {
         SCOPED_TRACE(name);
