@@ -7,7 +7,10 @@
 #include "slicing/cut_graph.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -19,6 +22,8 @@ struct PlaneIndex {
     std::uint64_t all_points = 0;       ///< on all planes
     PageArray<std::uint32_t> starts;    ///< nodes ordered by the plane they begin on
     std::vector<std::uint64_t> offsets; ///< starts of plane p are [offsets[p], offsets[p + 1])
+    PageArray<std::uint32_t>
+        carried; ///< what is alive on the first plane of a slab and began before, slab by slab
 };
 
 /// A stretch of planes that one worker sweeps; or all of them together, where single layers are so large that
@@ -26,9 +31,9 @@ struct PlaneIndex {
 struct Slab {
     std::uint32_t begin;
     std::uint32_t end;
-    std::vector<std::uint32_t> carried; ///< the nodes alive on `begin` that began before
-    std::uint32_t group;                ///< planes that may be in flight together
-    bool shared = false;                ///< all workers share the work on each group
+    std::span<const std::uint32_t> carried; ///< the nodes alive on `begin` that began before
+    std::uint32_t group;                    ///< planes that may be in flight together
+    bool shared = false;                    ///< all workers share the work on each group
 };
 
 /// A worker's fixed share of the nodes, and how many of them begin and end on each plane.
@@ -68,8 +73,8 @@ std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
 /// among the planes, to level out what the estimate of the work misses.
 ///
 /// Into one slab, on which all workers share the work, where the bound on points in flight would make slabs
-/// of a few planes only; and where each slab would walk over as much as one worker that walks for all, as on
-/// upright parts: what follows the walk is then shared evenly, whatever the planes are like.
+/// of a few planes only; and where all layers stay in memory and each slab would walk over as much as one
+/// worker that walks for all, as on upright parts: what follows the walk is then shared evenly.
 inline std::vector<Slab> deal_out(const PlaneIndex& index, unsigned workers, std::uint64_t points_in_flight) {
     constexpr std::uint64_t plane_cost = 64; // in points
     constexpr std::uint64_t worth_a_thread = 1U << 15;
@@ -83,14 +88,12 @@ inline std::vector<Slab> deal_out(const PlaneIndex& index, unsigned workers, std
 
     const std::uint64_t per_slab = points_in_flight / (workers + 1ULL); // one may wait for its turn
     const std::uint64_t largest_layer = std::max<std::uint64_t>(1, index.most_points);
-    const auto one_for_all = [&] {
-        const std::uint64_t group =
-            points_in_flight == 0 ? planes
-                                  : std::clamp<std::uint64_t>(points_in_flight / largest_layer, 1, planes);
-        return std::vector<Slab>{{0, planes, {}, static_cast<std::uint32_t>(group), workers > 1}};
+    const auto one_for_all = [&](std::uint64_t group) {
+        return std::vector<Slab>{
+            {0, planes, {}, static_cast<std::uint32_t>(std::min<std::uint64_t>(group, planes)), workers > 1}};
     };
     if (points_in_flight != 0 && per_slab / largest_layer < std::min<std::uint64_t>(planes, worth_a_slab))
-        return one_for_all();
+        return one_for_all(std::max<std::uint64_t>(1, points_in_flight / largest_layer));
 
     std::vector<Slab> slabs;
     const std::uint64_t wanted =
@@ -111,8 +114,9 @@ inline std::vector<Slab> deal_out(const PlaneIndex& index, unsigned workers, std
         filled += cost;
         slabs.back().end = p + 1;
     }
-    if (slabs.size() > 1 && workers * nodes <= walked + walked / 16)
-        return one_for_all();
+    // Where layers are delivered on the way, slabs of their own let some slice while others deliver.
+    if (points_in_flight == 0 && slabs.size() > 1 && workers * nodes <= walked + walked / 16)
+        return one_for_all(planes);
     return slabs;
 }
 
@@ -146,9 +150,26 @@ PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::
     for (std::uint32_t s = 0; s < slabs.size(); ++s)
         std::fill(slab_of.begin() + slabs[s].begin, slab_of.begin() + slabs[s].end, s);
 
+    // What each share has for each slab, and then where it goes.
+    std::vector<std::vector<std::uint64_t>> carry(shares.size(), std::vector<std::uint64_t>(slabs.size()));
+    for (std::size_t s = 0; s < shares.size(); ++s) {
+        std::uint64_t open = 0; // begun below the plane and not ended there
+        for (std::uint32_t p = 0; p < planes; ++p) {
+            open -= shares[s].ends[p];
+            if (slabs[slab_of[p]].begin == p)
+                carry[s][slab_of[p]] = open;
+            open += shares[s].begins[p];
+        }
+    }
+    std::vector<std::uint64_t> carried(slabs.size() + 1, 0);
+    for (std::size_t b = 0; b < slabs.size(); ++b) {
+        carried[b + 1] = carried[b];
+        for (std::vector<std::uint64_t>& of_share : carry)
+            carried[b + 1] += std::exchange(of_share[b], carried[b + 1]);
+    }
+
     index.starts = PageArray<std::uint32_t>(begun);
-    std::vector<std::vector<std::vector<std::uint32_t>>> carried(
-        shares.size(), std::vector<std::vector<std::uint32_t>>(slabs.size()));
+    index.carried = PageArray<std::uint32_t>(carried.back());
     executor.for_chunks(shares.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
         for (std::uint32_t id = shares[s].begin; id < shares[s].end; ++id) {
             const PlaneSpan span = graph.spans[id];
@@ -157,12 +178,11 @@ PlaneIndex index_planes(const CutGraph<Ends>& graph, std::uint32_t planes, std::
             index.starts[fill[s][span.first]++] = id;
             for (std::uint32_t b = slab_of[span.first] + 1; b < slabs.size() && slabs[b].begin < span.last;
                  ++b)
-                carried[s][b].push_back(id);
+                index.carried[carry[s][b]++] = id;
         }
     });
-    for (const auto& share : carried)
-        for (std::size_t b = 0; b < slabs.size(); ++b)
-            slabs[b].carried.insert(slabs[b].carried.end(), share[b].begin(), share[b].end());
+    for (std::size_t b = 0; b < slabs.size(); ++b)
+        slabs[b].carried = index.carried.span().subspan(carried[b], carried[b + 1] - carried[b]);
     return index;
 }
 

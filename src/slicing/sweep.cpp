@@ -23,7 +23,8 @@
 // The sweep engine
 //
 // Ranks turn heights into integers, the cut graph links every cut edge to its successors (cut_graph.hpp).
-// What is left is to read contours off the graph, slab by slab (plane_index.hpp), each slab by one worker:
+// What is left is to read contours off the graph, slab by slab (plane_index.hpp), each by one
+// worker, or one slab by all of them:
 //
 // Walk. On plane i start from every node that begins there, and follow `next` until the start is reached. A
 // contour without a new node is the continuation of one on the plane before; it is not searched for.
