@@ -20,7 +20,7 @@ inline constexpr std::string_view materials = "http://schemas.microsoft.com/3dma
 /// Of the relationship by which a package names its model.
 inline constexpr std::string_view model_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 
-/// The millimetres of a unit's name, if it is one (section 3.4).
+/// The millimetres of a unit by its name, if it is one.
 [[nodiscard]] inline std::optional<double> unit_mm(std::string_view name) noexcept {
     constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"micron", 0.001},
                                                                         {"millimeter", 1},
