@@ -1,11 +1,13 @@
 #pragma once
 
+// What the reader and the writer of the Common Layer Interface both know of its geometry.
+
 #include <cstdint>
+#include <optional>
 
 namespace lamella {
 
-// What the reader and the writer of the Common Layer Interface both know of its binary geometry. Short
-// commands have 16-bit numbers, long ones 32-bit integers and floats.
+/// Of the binary form. Short commands have 16-bit numbers, long ones 32-bit integers and floats.
 enum class CommonLayerCommand : std::uint16_t {
     layer_long = 127,
     layer_short = 128,
@@ -14,5 +16,18 @@ enum class CommonLayerCommand : std::uint16_t {
     hatches_short = 131,
     hatches_long = 132,
 };
+
+/// Of a polyline, by its numbers in both forms.
+enum class CommonLayerDirection : std::uint8_t { clockwise = 0, counter_clockwise = 1, open = 2 };
+
+[[nodiscard]] constexpr std::optional<CommonLayerDirection> common_layer_direction(std::int64_t number) {
+    if (number < 0 || number > 2)
+        return std::nullopt;
+    return static_cast<CommonLayerDirection>(number);
+}
+
+/// What a number is told that is none of them.
+inline constexpr const char* common_layer_directions =
+    "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)";
 
 } // namespace lamella

@@ -1,3 +1,4 @@
+#include "container/common_layer_format.hpp"
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
@@ -22,10 +23,12 @@ std::int64_t integer(CommonLayerText& text, const char* what) {
     return static_cast<std::int64_t>(value);
 }
 
-void check_direction(const CommonLayerText& text, std::int64_t direction) {
-    if (direction < 0 || direction > 2)
-        text.fail(fmt::format("direction {}", direction),
-                  "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)");
+CommonLayerDirection take_direction(CommonLayerText& text) {
+    const std::int64_t stated = integer(text, "the direction");
+    const auto known = common_layer_direction(stated);
+    if (!known)
+        text.fail(fmt::format("direction {}", stated), common_layer_directions);
+    return *known;
 }
 
 } // namespace
@@ -69,10 +72,9 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
             const std::int64_t part = integer(text, "the part's number");
             text.expect(',', "the next parameter");
             const bool polyline = command == "POLYLINE";
-            std::int64_t direction = 2;
+            CommonLayerDirection direction{};
             if (polyline) {
-                direction = integer(text, "the direction");
-                check_direction(text, direction);
+                direction = take_direction(text);
                 text.expect(',', "the number of points");
             }
             const std::int64_t count =
@@ -107,7 +109,7 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
                 text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 12), 24)),
                           fmt::format("the count of {} says that the coordinates end here", count));
             if (polyline)
-                geometry.end_polyline(part, static_cast<int>(direction), place);
+                geometry.end_polyline(part, direction, place);
             else
                 geometry.end_hatches(part, place);
         } else {

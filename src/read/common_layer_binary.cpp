@@ -152,17 +152,17 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             in_layer();
             const bool is_long = command == CommonLayerCommand::polyline_long;
             const std::int64_t part = parameter(is_long, "a polyline");
-            const std::int64_t direction = parameter(is_long, "a polyline");
-            if (direction < 0 || direction > 2)
-                in.fail(at, fmt::format("a polyline of direction {}", direction),
-                        "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)");
+            const std::int64_t stated = parameter(is_long, "a polyline");
+            const auto direction = common_layer_direction(stated);
+            if (!direction)
+                in.fail(at, fmt::format("a polyline of direction {}", stated), common_layer_directions);
             const std::int64_t count = parameter(is_long, "a polyline");
             const std::size_t size = is_long ? 8 : 4;
             const char* first = in.take_records(count, size, "points");
             geometry.expect_points(static_cast<std::uint64_t>(count), place);
             for (std::int64_t i = 0; i < count; ++i, first += size)
                 take_point(first, is_long, at, [&](double x, double y) { geometry.add_point(x, y); });
-            geometry.end_polyline(part, static_cast<int>(direction), place);
+            geometry.end_polyline(part, *direction, place);
             break;
         }
         case CommonLayerCommand::hatches_short:

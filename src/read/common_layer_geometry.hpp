@@ -7,6 +7,7 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include "container/common_layer_format.hpp"
 #include "read/common_layer_header.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/read_limits.hpp"
@@ -65,12 +66,12 @@ class CommonLayerGeometry {
         layers_.back().end_hatches(part_slot(part, place));
     }
 
-    /// Ends a polyline of the direction given: 0 clockwise, 1 counter-clockwise, 2 open.
+    /// Ends a polyline of the direction given.
     template <class Place>
-    void end_polyline(std::int64_t part, int direction, const Place& place) {
+    void end_polyline(std::int64_t part, CommonLayerDirection direction, const Place& place) {
         RawLayer& layer = layers_.back();
         const std::size_t begin = layer.ends.empty() ? 0 : layer.ends.back().end;
-        const bool closed = direction != 2;
+        const bool closed = direction != CommonLayerDirection::open;
         const bool returns = layer.points.size() > begin && layer.points.back() == layer.points[begin];
         limits_.make_room(layer.ends, 1, place);
         if (!layer.end_clean_contour(begin, closed, part_slot(part, place))) {
@@ -83,7 +84,7 @@ class CommonLayerGeometry {
             unclosed_.note(place);
         // Where the points run the other way, the stated direction holds.
         const double area = twice_area(layer, begin);
-        if (direction == 1 ? area < 0 : area > 0) {
+        if (direction == CommonLayerDirection::counter_clockwise ? area < 0 : area > 0) {
             std::reverse(layer.points.begin() + static_cast<std::ptrdiff_t>(begin), layer.points.end());
             turned_.note(place);
         }

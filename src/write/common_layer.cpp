@@ -25,7 +25,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the binary form is written as memory has it");
 
-enum Direction : std::uint8_t { clockwise = 0, counter_clockwise = 1, open_line = 2 };
+using Direction = CommonLayerDirection;
 
 constexpr double least_units = 1e-9;
 constexpr double most_units = 1e3;
@@ -77,7 +77,7 @@ bool starts_convex(std::span<const Point2> ring) {
 }
 
 Direction direction_of(double ring_area) {
-    return ring_area >= 0 ? counter_clockwise : clockwise;
+    return ring_area >= 0 ? Direction::counter_clockwise : Direction::clockwise;
 }
 
 // Calls write(contour, closed) for outer rings, then holes, then open chains. The order is found by a glance
@@ -112,7 +112,7 @@ void for_each_on_grid(const Grid& grid, const Layer& layer, const Put& put) {
         const double area = closed ? ring_area(contour) : 0;
         const auto points = grid.snap(contour, closed, area, layer.index, scratch);
         if (!points.empty())
-            put(points, closed ? direction_of(area) : open_line);
+            put(points, closed ? direction_of(area) : Direction::open);
     });
 }
 
@@ -149,10 +149,10 @@ class AsciiWriter final : public SequentialWriter {
 
     static void put_polyline(int part, std::span<const GridPoint> points, Direction direction,
                              ByteBuffer& out) {
-        const bool closed = direction != open_line;
+        const bool closed = direction != Direction::open;
         char* at = put_command("$$POLYLINE/", part, points.size() + 1, out);
         *at++ = ',';
-        *at++ = static_cast<char>('0' + direction);
+        *at++ = static_cast<char>('0' + static_cast<int>(direction));
         *at++ = ',';
         at = put_integer(at, std::uint64_t{points.size() + (closed ? 1 : 0)});
         for (const GridPoint& p : points)
@@ -202,7 +202,7 @@ char* put_long_head(char* out, int part, Direction direction, std::size_t points
             fmt::format("layer {} has a contour of {} points; the format ends at 2^31 - 1", layer, points));
     out = put_value(out, CommonLayerCommand::polyline_long);
     out = put_value(out, std::int32_t{part});
-    out = put_value(out, std::int32_t{direction});
+    out = put_value(out, static_cast<std::int32_t>(direction));
     return put_value(out, static_cast<std::int32_t>(points));
 }
 
@@ -262,7 +262,8 @@ class LongWriter final : public SequentialWriter {
         const FloatContour listed = floats_.put(contour, closed, layer, head + long_head);
         if (listed.points == 0)
             return;
-        put_long_head(head, part, closed ? direction_of(listed.area_mm2) : open_line, listed.points, layer);
+        put_long_head(head, part, closed ? direction_of(listed.area_mm2) : Direction::open, listed.points,
+                      layer);
         out.end_at(head + long_head + listed.points * float_point_size);
     }
 
@@ -402,13 +403,13 @@ class ShortWriter final : public SequentialWriter {
     void put_polyline(int part, std::span<const GridPoint> points, Direction direction, std::uint64_t layer,
                       ByteBuffer& out) const {
         check_short(points, layer);
-        const std::size_t listed = points.size() + (direction != open_line ? 1 : 0);
+        const std::size_t listed = points.size() + (direction != Direction::open ? 1 : 0);
         char* at = out.room(long_head + listed * float_point_size);
         const bool counted = listed <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted) {
             at = put_value(at, CommonLayerCommand::polyline_short);
             at = put_value(at, static_cast<std::uint16_t>(part));
-            at = put_value(at, std::uint16_t{direction});
+            at = put_value(at, static_cast<std::uint16_t>(direction));
             at = put_value(at, static_cast<std::uint16_t>(listed));
         } else {
             at = put_long_head(at, part, direction, listed, layer);
