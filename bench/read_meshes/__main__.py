@@ -40,8 +40,9 @@ def parse(arguments):
     parser.add_argument("--programs", default="build-bench/bench/read_meshes",
                         help="folder of the built readers (default: %(default)s)")
     parser.add_argument("--out", default="out/read_meshes", help="folder of the report (default: %(default)s)")
-    parser.add_argument("--body", nargs="+", default=["sheet", "--holes", "484"], metavar="WORD",
-                        help="what `lamella make` makes (default: a sheet of a million triangles)")
+    parser.add_argument("--body", nargs=argparse.REMAINDER, default=["sheet", "--holes", "484"], metavar="...",
+                        help="what `lamella make` makes, with its options; the last one here (default: a sheet of a million "
+                             "triangles)")
     parser.add_argument("--formats", nargs="+", choices=[one.name for one in files.FORMATS], help="default: all")
     parser.add_argument("--rounds", type=int, default=5, help="readings by each (default: %(default)s)")
     parser.add_argument("--timeout", type=float, default=120, help="seconds for one reading (default: %(default)s)")
