@@ -130,12 +130,6 @@ class KeyPartitions {
         begins_ = PageArray<std::uint16_t>(blocks * partitions());
     }
 
-    /// Has all workers fetch the memory of the blocks, for where all of them will be put, and full: of two
-    /// threads that put blocks into one large page at a time, both would clear it, one of them in vain.
-    void make_ready(Executor& executor) const {
-        make_pages_ready(executor, records_.data(), records_.size() * sizeof(Record));
-    }
-
     /// Puts block number `block`, each once, from any thread; those that are never put are empty. hash(i):
     /// 64 bits; record(i): key and id. Ids ascend within a block, and from block to block.
     template <class Hash, class MakeRecord>
@@ -219,7 +213,6 @@ void join_equal_keys(Executor& executor, std::span<const std::span<const Key>> p
             id += static_cast<std::uint32_t>(size);
         }
     partitions.reserve(blocks.size(), partitions.block_size());
-    partitions.make_ready(executor);
     executor.for_chunks(blocks.size(), 1, [&](std::size_t b, std::size_t, unsigned) {
         const Block& block = blocks[b];
         partitions.put(
