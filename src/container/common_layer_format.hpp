@@ -3,7 +3,6 @@
 // What the reader and the writer of the Common Layer Interface both know of its geometry.
 
 #include <cstdint>
-#include <optional>
 
 namespace lamella {
 
@@ -19,15 +18,5 @@ enum class CommonLayerCommand : std::uint16_t {
 
 /// Of a polyline, by its numbers in both forms.
 enum class CommonLayerDirection : std::uint8_t { clockwise = 0, counter_clockwise = 1, open = 2 };
-
-[[nodiscard]] constexpr std::optional<CommonLayerDirection> common_layer_direction(std::int64_t number) {
-    if (number < 0 || number > 2)
-        return std::nullopt;
-    return static_cast<CommonLayerDirection>(number);
-}
-
-/// What a number is told that is none of them.
-inline constexpr const char* common_layer_directions =
-    "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)";
 
 } // namespace lamella

@@ -1,4 +1,3 @@
-#include "container/common_layer_format.hpp"
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"

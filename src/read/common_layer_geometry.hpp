@@ -19,12 +19,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace lamella {
+
+/// The direction that a file states; none where no direction has that number.
+[[nodiscard]] constexpr std::optional<CommonLayerDirection> common_layer_direction(std::int64_t number) {
+    if (number < 0 || number > 2)
+        return std::nullopt;
+    return static_cast<CommonLayerDirection>(number);
+}
+
+/// What is expected, for the error about such a number.
+inline constexpr const char* common_layer_directions =
+    "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)";
 
 /// Collects what the geometry section says, however it is coded.
 class CommonLayerGeometry {
