@@ -16,10 +16,9 @@ namespace lamella {
 
 /// Where an edge crosses the centres of a row.
 struct CentreCrossing {
-    [[nodiscard]] static RowRange rows(double y, std::uint32_t height) noexcept {
-        const std::uint32_t centre = least_whole(y - 0.5, height); // the first one below
-        return {centre, centre};
-    }
+    static constexpr double line = 0.5;
+    static constexpr bool only_on_lines = true;
+    [[nodiscard]] static std::uint32_t first(double /*y*/, std::uint32_t below) noexcept { return below; }
     CentreCrossing(const PictureEdge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }
     bool operator<(const CentreCrossing& other) const noexcept { return column < other.column; }

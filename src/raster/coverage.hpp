@@ -17,9 +17,10 @@ namespace lamella {
 
 /// The piece of an edge that lies in a row, from `top` to `bottom`.
 struct RowPiece {
-    [[nodiscard]] static RowRange rows(double y, std::uint32_t height) noexcept {
-        const double within = std::clamp(y, 0.0, static_cast<double>(height));
-        return {static_cast<std::uint32_t>(within), least_whole(y, height)};
+    static constexpr double line = 0;
+    static constexpr bool only_on_lines = false;
+    [[nodiscard]] static std::uint32_t first(double y, std::uint32_t below) noexcept {
+        return below > 0 && y < below ? below - 1 : below;
     }
     RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept;
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept;

@@ -8,14 +8,19 @@ namespace lamella {
 
 LAMELLA_VECTOR_CLONES void place_in_picture(std::span<const Point2> points, const PixelGrid& grid,
                                             Point2* to) {
-    constexpr double far = 0x1p40;
-    const auto near = [](double c) __attribute__((always_inline)) { // a number also for what overflowed
-        return c < far ? (c > -far ? c : -far) : far;
-    };
+    for (std::size_t i = 0; i < points.size(); ++i)
+        to[i] = place_in_picture(points[i], grid);
+}
+
+LAMELLA_VECTOR_CLONES void find_rows_below(std::span<const Point2> points, const PixelGrid& grid, double line,
+                                           std::int32_t* to) {
+    const double most = grid.height;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Point2 p = points[i];
-        to[i] = {near(grid.ux * p.x + grid.uy * p.y + grid.u0),
-                 near(grid.vx * p.x + grid.vy * p.y + grid.v0)};
+        const double v = (grid.vx * p.x + grid.vy * p.y + grid.v0) - line;
+        const double within = v < most ? (v > 0 ? v : 0) : most;
+        const auto whole = static_cast<std::int32_t>(within);
+        to[i] = whole + (whole < within ? 1 : 0);
     }
 }
 

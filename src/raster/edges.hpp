@@ -52,9 +52,23 @@ struct PictureEdge {
     [[nodiscard]] bool level() const noexcept { return upper.y == lower.y; }
 };
 
-/// Writes to `to`, which has room for them, where points are in a picture. A coordinate beyond 2^40 pixels is
-/// taken for that many: far outside, and still a number to count with.
+/// Where a point is in a picture. A coordinate beyond 2^40 pixels is taken for that many: far outside, and
+/// still a number to count with.
+[[nodiscard]] __attribute__((always_inline)) inline Point2 place_in_picture(const Point2& p,
+                                                                            const PixelGrid& grid) noexcept {
+    constexpr double far = 0x1p40;
+    const auto near = [](double c) __attribute__((always_inline)) { // a number also for what overflowed
+        return c < far ? (c > -far ? c : -far) : far;
+    };
+    return {near(grid.ux * p.x + grid.uy * p.y + grid.u0), near(grid.vx * p.x + grid.vy * p.y + grid.v0)};
+}
+
+/// The same for many; `to` has room for them.
 void place_in_picture(std::span<const Point2> points, const PixelGrid& grid, Point2* to);
+
+/// Writes to `to` the first of the rows 0 to height - 1 whose line, so far below the row's upper border, is
+/// not above the point; `height` if there is none.
+void find_rows_below(std::span<const Point2> points, const PixelGrid& grid, double line, std::int32_t* to);
 
 /// Writes to `to` in which bands of a picture points lie: from 0 to count - 1, -1 for those above and `count`
 /// for those below. A point half a rounding above a border may be taken for one below.

@@ -23,9 +23,11 @@ struct RowRange {
 };
 
 /// Keeps what the edges of one row are to an algorithm, its `Item`s, in order from row to row. An Item has
-///     static RowRange rows(double y, std::uint32_t height);   the first row that an edge with its upper end
-///     at
-///                                y has to do with, and the end of those of one with its lower end there
+///     static constexpr double line;        how far below its upper border a row's line is: edges that end
+///                                          above it do not meet the row
+///     static constexpr bool only_on_lines; an edge meets a row only if it crosses its line
+///     static std::uint32_t first(double y, std::uint32_t below);   the first row that an edge with its upper
+///                                          end at y meets, if `below` is the first line not above y
 ///     Item(const PictureEdge&, std::uint32_t row);                       in the first of them
 ///     void move_to(const PictureEdge&, std::uint32_t row);               from one to the next, or further
 ///     bool operator<(const Item&) const;                          a strict weak order along the row
@@ -81,59 +83,73 @@ class RowSweep {
         return a < b || (!(b < a) && a.edge < b.edge);
     }
 
+    /// An edge of a ring, as it lies in the picture.
+    struct RingEdge {
+        Point2 from;
+        Point2 to;
+        RowRange rows;
+    };
+
     /// Keeps the edges that some row meets, in the order of their first rows.
     void collect(std::span<const Layer> parts, const PixelGrid& grid) {
         std::size_t points = 0;
         for (const Layer& layer : parts)
             points += layer.points.size();
         // Only as much of this memory as is touched is ever there.
-        const PageArray<PictureEdge> edges(points);
-        const PageArray<RowRange> rows(points);
+        const PageArray<RingEdge> met(points);
         std::size_t used = 0;
-        std::vector<std::size_t> ends(std::size_t{height_} + 2);
-        for_each_edge(parts, grid, [&](const Point2& from, const Point2& to, const RowRange& met) {
-            edges[used] = PictureEdge(from, to);
-            rows[used++] = met;
-            ++ends[met.first + 1];
-        });
-        for (std::size_t i = 1; i < ends.size(); ++i)
-            ends[i] += ends[i - 1];
+        std::vector<std::size_t> next(std::size_t{height_} + 1);
+        std::vector<std::int32_t> below;
+        for (const Layer& layer : parts)
+            for (std::size_t i = 0; i < layer.rings; ++i)
+                find_met(layer.contour(i), grid, below, [&](const RingEdge& edge) {
+                    met[used++] = edge;
+                    ++next[edge.rows.first + 1];
+                });
+
+        for (std::size_t i = 1; i < next.size(); ++i)
+            next[i] += next[i - 1];
         edges_ = PageArray<PictureEdge>(used);
         rows_ = PageArray<RowRange>(used);
-        for (std::size_t i = 0; i < used; ++i) {
-            const std::size_t place = ends[rows[i].first]++;
-            edges_[place] = edges[i];
-            rows_[place] = rows[i];
+        for (const RingEdge& edge : met.span().first(used)) {
+            const std::size_t place = next[edge.rows.first]++;
+            edges_[place] = PictureEdge(edge.from, edge.to);
+            rows_[place] = edge.rows;
         }
     }
 
-    /// Calls found(from, to, rows) for the edges of all rings that some row meets and that are not to the
-    /// right of the picture, nor level and to the left of it.
+    /// Calls found(edge) for those of a ring that some row meets and that are not to the right of the
+    /// picture, nor level and to the left of it. `below`: memory to work in, of any content.
     template <class Found>
-    void for_each_edge(std::span<const Layer> parts, const PixelGrid& grid, const Found& found) const {
-        std::vector<Point2> places; // of a ring's points
-        std::vector<RowRange> rows; // of edges that begin and end at the point
-        for (const Layer& layer : parts) {
-            for (std::size_t i = 0; i < layer.rings; ++i) {
-                const std::span<const Point2> ring = layer.contour(i);
-                const std::size_t n = ring.size();
-                places.resize(std::max(n, places.size()));
-                rows.resize(places.size());
-                place_in_picture(ring, grid, places.data());
-                for (std::size_t k = 0; k < n; ++k)
-                    rows[k] = Item::rows(places[k].y, height_);
-                for (std::size_t k = 0, before = n - 1; k < n; before = k++) {
-                    const RowRange met{std::min(rows[before].first, rows[k].first),
-                                       std::max(rows[before].end, rows[k].end)};
-                    const Point2& from = places[before];
-                    const Point2& to = places[k];
-                    if (met.first >= met.end || std::min(from.x, to.x) >= grid.width)
-                        continue;
-                    if (from.y == to.y && std::max(from.x, to.x) <= 0)
-                        continue;
-                    found(from, to, met);
-                }
+    void find_met(std::span<const Point2> ring, const PixelGrid& grid, std::vector<std::int32_t>& below,
+                  const Found& found) const {
+        const std::size_t n = ring.size();
+        if (n == 0)
+            return;
+        below.resize(std::max(n, below.size()));
+        find_rows_below(ring, grid, Item::line, below.data());
+        std::size_t before = n - 1;
+        std::int32_t row_before = below[before];
+        bool placed = false; // whether `to` is the point before
+        Point2 to;
+        for (std::size_t k = 0; k < n; before = k++) {
+            const std::int32_t row = below[k];
+            if (Item::only_on_lines && row == row_before) {
+                placed = false;
+                continue;
             }
+            const Point2 from = placed ? to : place_in_picture(ring[before], grid);
+            to = place_in_picture(ring[k], grid);
+            placed = true;
+            const auto first = static_cast<std::uint32_t>(std::min(row, row_before));
+            const auto end = static_cast<std::uint32_t>(std::max(row, row_before));
+            row_before = row;
+            const RowRange rows{Item::first(std::min(from.y, to.y), first), end};
+            if (rows.first >= rows.end || std::min(from.x, to.x) >= grid.width)
+                continue;
+            if (from.y == to.y && std::max(from.x, to.x) <= 0)
+                continue;
+            found({from, to, rows});
         }
     }
 
