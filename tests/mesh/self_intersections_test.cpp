@@ -3,6 +3,7 @@
 #include "lamella/mesh/shapes.hpp"
 
 #include "fixtures/random.hpp"
+#include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "mesh/assemble.hpp"
 #include "mesh/triangle_contact.hpp"
@@ -103,7 +104,7 @@ TEST(SelfIntersections, AVertexOnAnothersEdgeTouches) {
 
 TEST(SelfIntersections, AgreeWithAllPairsOnRandomMeshesForAnyNumberOfThreads) {
     test::Random random(21);
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < (test::sanitized ? 12 : 60); ++round) {
         IndexedMesh mesh;
         const int vertices = 10 + round * 2;
         const bool grid = round % 2 == 0;

@@ -27,6 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What is sliced. With a sanitizer it is a part with fewer triangles.
+TriangleSoup part() {
+    return test::sanitized ? make_torus(30, 10, 120, 60) : make_rook();
+}
+
 /// What the threads share.
 struct Meeting {
     explicit Meeting(std::size_t ranks)
@@ -187,13 +192,13 @@ class RankSlicing : public testing::Test {
 };
 
 TEST_F(RankSlicing, WritesTheBytesOfOneProcessWithAnyNumberOfRanks) {
-    write_stl(path("rook.stl"), make_rook());
+    write_stl(path("part.stl"), part());
     const auto ranks_of_a_job =
         test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{1, 2, 3, 5, 50};
     for (const LayerFormat& format : layer_formats()) {
         if (format.directory)
             continue;
-        FileJob job = job_of({{.path = path("rook.stl")}}, 1.5);
+        FileJob job = job_of({{.path = path("part.stl")}}, 1.5);
         job.format = format.name;
         job.write.page.viewer = "<!--lamella-data-->"; // what the library asks of a viewer
         job.output = path("one");
@@ -210,28 +215,28 @@ TEST_F(RankSlicing, WritesTheBytesOfOneProcessWithAnyNumberOfRanks) {
 }
 
 TEST_F(RankSlicing, TakesPlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
-    write_stl(path("rook.stl"), make_rook());
+    write_stl(path("part.stl"), part());
     // Every seventh triangle is missing: chains everywhere.
-    const TriangleSoup whole = make_rook();
+    const TriangleSoup whole = part();
     std::vector<Triangle3f> some;
     for (std::size_t i = 0; i < whole.size(); ++i)
         if (i % 7 != 0)
             some.push_back(whole.stored(i));
     write_stl(path("broken.stl"), TriangleSoup(some));
-    write_stl_ascii(path("ascii.stl"), whole, "rook");
+    write_stl_ascii(path("ascii.stl"), whole, "part");
 
     FileJob plain = job_of({}, 2);
     plain.output = path("out.cli");
     std::vector<FileJob> jobs(6, plain);
-    jobs[0].inputs = {{.path = path("rook.stl"), .copies = 3}, {.path = path("broken.stl")}};
+    jobs[0].inputs = {{.path = path("part.stl"), .copies = 3}, {.path = path("broken.stl")}};
     jobs[1].inputs = {{.path = path("broken.stl")}};
     jobs[1].repair.close_gaps_mm = 0.5;
     jobs[2].inputs = {{.path = path("ascii.stl")}};
-    jobs[3].inputs = {{.path = path("rook.stl")}};
+    jobs[3].inputs = {{.path = path("part.stl")}};
     jobs[3].engine = "eecc";
-    jobs[4].inputs = {{.path = path("rook.stl"), .placement = rotation('x', 40)}};
+    jobs[4].inputs = {{.path = path("part.stl"), .placement = rotation('x', 40)}};
     jobs[4].adaptive = AdaptiveLayers{.min_height = 0.5, .max_height = 2};
-    jobs[5].inputs = {{.path = path("rook.stl"), .unit_mm = 25.4, .placement = rotation('y', 30)}};
+    jobs[5].inputs = {{.path = path("part.stl"), .unit_mm = 25.4, .placement = rotation('y', 30)}};
     jobs[5].steps.offset_mm = -0.1;
     const auto ranks_of_a_job =
         test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{2, 5};
@@ -248,8 +253,8 @@ TEST_F(RankSlicing, TakesPlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
 }
 
 TEST_F(RankSlicing, FailsOnAllRanksWithTheSameWords) {
-    write_stl(path("rook.stl"), make_rook());
-    FileJob plain = job_of({{.path = path("rook.stl")}}, 0.1);
+    write_stl(path("part.stl"), part());
+    FileJob plain = job_of({{.path = path("part.stl")}}, 0.1);
     plain.output = path("out.cli");
     const auto expect_failure = [&](const FileJob& job, const std::string& words) {
         for (const std::size_t ranks : {1, 3}) {
@@ -262,7 +267,7 @@ TEST_F(RankSlicing, FailsOnAllRanksWithTheSameWords) {
             std::vector<std::string> left;
             for (const auto& entry : fs::directory_iterator(folder_))
                 left.push_back(entry.path().filename().string());
-            EXPECT_EQ(left, std::vector<std::string>{"rook.stl"});
+            EXPECT_EQ(left, std::vector<std::string>{"part.stl"});
         }
     };
     FileJob job = plain;

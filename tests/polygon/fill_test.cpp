@@ -5,6 +5,7 @@
 #include "lamella/polygon/nesting.hpp"
 
 #include "fixtures/layers.hpp"
+#include "fixtures/rounds.hpp"
 #include "polygon/winding_areas.hpp"
 
 #include <gtest/gtest.h>
@@ -181,7 +182,7 @@ void expect_filled(const Layer& layer, FillRule rule, double extent) {
 
 TEST(Fill, GivesTheAreaOfItsRuleForRandomRings) {
     Random random(31);
-    for (int round = 0; round < 1500; ++round) {
+    for (int round = 0; round < test::rounds_within_reason(1500); ++round) {
         const bool integers = round % 2 == 0; // touches and common edges, or crossings in general position
         const double size = integers ? 8 : round % 3 == 0 ? 60 : 25;
         const Layer layer =

@@ -6,6 +6,7 @@
 #include "even_planes.hpp"
 #include "expect_layers.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "naive_section.hpp"
 #include "slicing/sweep.hpp"
@@ -242,7 +243,7 @@ TEST(Sweep, StartsARingThatTouchesItselfAtItsSmallestSequence) {
 // rings
 
 TEST(Sweep, FollowsABodyThatChangesOnEveryPlane) {
-    for (const std::size_t n : {3U, 4U, 17U, 400U}) {
+    for (const std::size_t n : {3U, 4U, 17U, test::sanitized ? 60U : 400U}) {
         const Triangles drum = test::rugged_drum(n, n);
         for (const SliceAt at : both_rules) {
             expect_sections(slice(test::soup(drum), even_planes(-11, 11, 60, at)), drum,
@@ -344,7 +345,7 @@ TEST(Sweep, KeepsOpenChainsWholeAndMarksThemOnceOnEveryPlane) {
 
 TEST(Sweep, FollowsChainsThroughEveryChangeOfTheMesh) {
     test::Random random(30);
-    for (int trial = 0; trial < 60; ++trial) {
+    for (int trial = 0; trial < test::rounds_within_reason(60); ++trial) {
         Triangles drum = test::rugged_drum(static_cast<std::size_t>(random.integer(3, 60)), random.bits());
         for (std::int64_t holes = random.integer(1, 8); holes > 0; --holes)
             drum.erase(drum.begin() + random.integer(0, static_cast<std::int64_t>(drum.size()) - 1));
@@ -364,10 +365,10 @@ TEST(Sweep, FollowsChainsThroughEveryChangeOfTheMesh) {
 }
 
 TEST(Sweep, ReadsTheSectionsOfAnyTriangles) {
-    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    for (int seed = 0; seed < test::rounds_within_reason(400); ++seed) {
         SCOPED_TRACE(seed);
         const auto count = static_cast<std::size_t>(1 + seed % 70);
-        const Triangles triangles = test::random_triangles(count, 1 + static_cast<int>(seed % 4), seed);
+        const Triangles triangles = test::random_triangles(count, 1 + seed % 4, seed);
         for (const SliceAt at : both_rules) {
             const Plan plan = plan_listed({-1, 0, 0.25, 0.5, 1, 1.5, 2, 2.25, 3, 3.5, 4}, at);
             const LayerStack stack = slice(test::soup(triangles), plan);
@@ -437,7 +438,7 @@ TEST(Sweep, FindsOnManyPlanesWhatItFindsOnFew) {
         z.push_back(random.real(0, 1));
     std::sort(z.begin(), z.end());
     std::set<std::size_t> counts;
-    for (int round = 0; round < 3000; ++round) {
+    for (int round = 0; round < test::rounds_within_reason(3000); ++round) {
         const IndexedMesh wall = nearly_degenerate_wall(random);
         for (const SliceAt at : both_rules) {
             const Plan plan = plan_listed(z, at);
@@ -480,7 +481,7 @@ TEST(Sweep, GivesTheSameBytesForAnyThreadsOrderAndKindOfMesh) {
     for (const auto& [name, soup] : shapes) {
         SCOPED_TRACE(name);
         const Box3 box = bounding_box(soup);
-        const Plan plan = even_planes(box.min.z, box.max.z, 200);
+        const Plan plan = even_planes(box.min.z, box.max.z, test::sanitized ? 50 : 200);
         const LayerStack stack = slice(soup, plan, {.threads = 1});
         for (const unsigned threads : {2U, 7U})
             expect_same(slice(soup, plan, {.threads = threads}), stack);
@@ -607,7 +608,7 @@ TEST(Sweep, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
          {make_sheet({.holes = 36, .segments = 32}), make_sphere(10, 5), make_lattice({.cells_x = 2}),
           TriangleSoup(test::box_without_a_side())}) {
         const Box3 box = bounding_box(mesh);
-        const Plan plan = even_planes(box.min.z, box.max.z, 90);
+        const Plan plan = even_planes(box.min.z, box.max.z, test::sanitized ? 30 : 90);
         const LayerStack expected = slice(mesh, plan, {.threads = 1});
         for (const unsigned threads : {1U, 2U, 7U}) {
             for (const std::uint64_t points : {1U, 1000U, 30'000U, 300'000U}) {
