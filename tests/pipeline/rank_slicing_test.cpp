@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 /// What is sliced. With a sanitizer it is a part with fewer triangles.
 TriangleSoup part() {
-    return test::sanitized ? make_torus(30, 10, 120, 60) : make_rook();
+    return test::sanitized ? make_torus(20, 10, 120, 60) : make_rook();
 }
 
 /// What the threads share.
