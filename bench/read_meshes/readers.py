@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Callable, Optional
 
 from bench.rivals.library import answer
+from bench.rivals.program import version
 
 PLAIN = ("stl", "stl-ascii", "ply", "ply-ascii", "obj", "off")
 ALL = (*PLAIN, "3mf", "amf")
@@ -40,21 +41,18 @@ def python_reader(library, formats):
     return Reader(library, library, formats, command, lambda: answer([*command, "--version"]), told_by_us)
 
 
-def admesh_version():
-    text = answer(["admesh", "--version"])
-    return None if text is None else (re.search(r"[\d.]+\d", text) or [None])[0]
-
-
 def readers(folder, lamella):
     """`folder` is where the build has put the programs, `lamella` the program itself."""
     folder = Path(folder)
     return [
-        Reader("lamella", "Lamella", ALL, (folder / "lamella_reader",), lambda: answer([lamella, "--version"]), told_by_us),
+        Reader("lamella", "Lamella", ALL, (folder / "lamella_reader",),
+               lambda: version([lamella, "--version"], r"(\d[\w.]*)"), told_by_us),
         Reader("assimp", "assimp", ALL, (folder / "assimp_reader",),
                lambda: answer([folder / "assimp_reader", "--version"]), told_by_us),
         Reader("lib3mf", "lib3mf", ("3mf",), (folder / "lib3mf_reader",),
                lambda: answer([folder / "lib3mf_reader", "--version"]), told_by_us),
-        Reader("admesh", "ADMesh", ("stl", "stl-ascii"), ("admesh", "--no-check"), admesh_version, told_by_admesh),
+        Reader("admesh", "ADMesh", ("stl", "stl-ascii"), ("admesh", "--no-check"),
+               lambda: version(["admesh", "--version"], r"(\d[\d.]*\d)"), told_by_admesh),
         python_reader("numpy-stl", ("stl", "stl-ascii")),
         python_reader("meshio", PLAIN),
         python_reader("vtk", ("stl", "stl-ascii", "ply", "ply-ascii", "obj")),
