@@ -122,16 +122,14 @@ class Thinned {
             return;
         }
         // A ring is cut at its first point, the smallest in normal form, and at the one farthest from it.
-        std::uint64_t last = end - 1;
         if (closed) {
-            last = end;
             const std::uint64_t opposite = farthest_between(contour, begin, end).first;
             kept_[opposite] = true;
             thin(contour, begin, opposite);
             thin(contour, opposite, end);
         } else {
-            kept_[last] = true;
-            thin(contour, begin, last);
+            kept_[end - 1] = true;
+            thin(contour, begin, end - 1);
         }
         kept_[begin] = true;
     }

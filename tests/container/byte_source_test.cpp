@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/byte_source.hpp"
+#include "temporary_folder.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -20,17 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test.
 class ByteSourceTest : public testing::Test {
   protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "lamella-bytes-XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
 
     /// Returns the path.
     std::string write(const std::string& name, const std::string& text) const {
@@ -39,7 +32,7 @@ class ByteSourceTest : public testing::Test {
     }
 
   private:
-    fs::path folder_;
+    TemporaryFolder folder_;
 };
 
 std::string text_of(const ByteSource& source) {

@@ -224,6 +224,7 @@ int unlink(const char* path) noexcept {
 void* mmap(void* at, std::size_t bytes, int protection, int flags, int descriptor, off_t place) noexcept {
     ORIGINAL(mmap);
     if (descriptor < 0 || real == nullptr)
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system tells it
         return reinterpret_cast<void*>(syscall(SYS_mmap, at, bytes, protection, flags, descriptor, place));
     const bool struck = strikes("mmap", descriptor);
     void* const memory = made<void*>(struck, MAP_FAILED,

@@ -5,17 +5,15 @@
 #include "lamella/write/mesh_writer.hpp"
 
 #include "fixtures/rounds.hpp"
+#include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <barrier>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -24,8 +22,6 @@
 
 namespace lamella {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// What is sliced. With a sanitizer it is a part with fewer triangles.
 TriangleSoup part() {
@@ -120,15 +116,9 @@ class ThreadRanks final : public Communicator {
 
 class RankSlicing : public testing::Test {
   protected:
-    RankSlicing() { fs::create_directories(folder_); }
-    ~RankSlicing() override { fs::remove_all(folder_); }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
 
-    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-    [[nodiscard]] std::string content(const std::string& name) const {
-        std::ifstream file(path(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
+    [[nodiscard]] std::string content(const std::string& name) const { return file_bytes(path(name)); }
 
     static FileJob job_of(std::vector<PlateInput> inputs, double layer_height) {
         FileJob job;
@@ -188,7 +178,7 @@ class RankSlicing : public testing::Test {
             EXPECT_EQ(one.parts[i].points, many.parts[i].points);
     }
 
-    fs::path folder_ = fs::temp_directory_path() / ("lamella-ranks-" + std::to_string(getpid()));
+    TemporaryFolder folder_;
 };
 
 TEST_F(RankSlicing, WritesTheBytesOfOneProcessWithAnyNumberOfRanks) {
@@ -264,10 +254,7 @@ TEST_F(RankSlicing, FailsOnAllRanksWithTheSameWords) {
                 EXPECT_NE(error.find(words), std::string::npos) << error;
                 EXPECT_EQ(error, errors.front());
             }
-            std::vector<std::string> left;
-            for (const auto& entry : fs::directory_iterator(folder_))
-                left.push_back(entry.path().filename().string());
-            EXPECT_EQ(left, std::vector<std::string>{"part.stl"});
+            EXPECT_EQ(folder_.entries(), std::vector<std::string>{"part.stl"});
         }
     };
     FileJob job = plain;
