@@ -76,9 +76,10 @@ class Slopes {
         const std::size_t first = step_at(low);
         const std::size_t last = step_at(high);
         // Two stretches of 2^k steps that cover all; spread() hands them down.
-        const auto k = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
-        raise(levels_[k][first], steepness);
-        raise(levels_[k][last + 1 - (std::size_t{1} << k)], steepness);
+        const std::size_t stretch = std::bit_floor(last - first + 1);
+        std::vector<float>& level = levels_[static_cast<std::size_t>(std::countr_zero(stretch))];
+        raise(level[first], steepness);
+        raise(level[last + 1 - stretch], steepness);
     }
 
     void spread() noexcept {
