@@ -346,13 +346,15 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
                                 "--max-memory allows more",
                                 source_.name, shown, entry.size, max_unpacked_));
 
-    const std::string_view packed = view(source_.bytes).substr(entry.place, entry.packed_size);
+    const std::span<const std::byte> packed = source_.bytes.subspan(entry.place, entry.packed_size);
     ByteSource content{fmt::format("{}, part '{}'", source_.name, shown), {}, source_.owner};
     if (entry.method == stored) {
-        content.bytes = source_.bytes.subspan(entry.place, entry.packed_size);
+        content.bytes = packed;
     } else {
         const auto room = std::make_shared<PageArray<std::byte>>(entry.size);
-        switch (inflate(packed, room->span())) {
+        const Inflated inflated = inflate(view(packed), room->span());
+        release(source_, packed);
+        switch (inflated) {
         case Inflated::whole:
             break;
         case Inflated::too_short:

@@ -305,6 +305,7 @@ class RowsReader {
                 if (ranges_[i].first_row < rows_.rows)
                     read_piece(text_, ranges_[i], rows_, layout_, pieces_[i]);
                 count_piece(pieces_[i], limits_);
+                release(source_, source_.bytes.subspan(cuts[i], cuts[i + 1] - cuts[i]));
                 progress_.add(cuts[i + 1] - cuts[i]);
             }
         });
@@ -342,6 +343,7 @@ class RowsReader {
             }
             range.last_row = row;
             count_piece(piece, limits_);
+            release(source_, source_.bytes.subspan(range.begin, words.offset() - range.begin));
         }
         words.move_to(skip_blanks(text_.data() + words.offset(), end));
         if (words.offset() != text_.size())

@@ -237,6 +237,7 @@ MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, cons
             pieces[i].end = cuts[i + 1];
             PieceReader(text, pieces[i]).run();
             count_piece(pieces[i].faces, limits);
+            release(source, source.bytes.subspan(cuts[i], cuts[i + 1] - cuts[i]));
             progress.add(cuts[i + 1] - cuts[i]);
         }
     });

@@ -1,0 +1,98 @@
+// A file that is read from front to back does not stay in the memory of the program.
+
+#include "container/byte_source.hpp"
+#include "read/obj.hpp"
+#include "read/off.hpp"
+#include "read/ply.hpp"
+#include "temporary_folder.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+namespace {
+
+constexpr std::size_t rows = 200'000;
+
+/// Of a strip of triangles.
+std::string vertices(std::string_view before) {
+    std::string text;
+    for (std::size_t i = 0; i < rows; ++i)
+        fmt::format_to(std::back_inserter(text), "{}{} {} 0.5\n", before, i / 2, i % 2);
+    return text;
+}
+
+std::string faces(std::string_view before, std::size_t first) {
+    std::string text;
+    for (std::size_t i = first; i + 2 < rows + first; ++i)
+        fmt::format_to(std::back_inserter(text), "{} {} {} {}\n", before, i, i + 1, i + 2);
+    return text;
+}
+
+/// Bytes of the mapping that begins here that are in memory.
+std::size_t resident_bytes(const void* mapping) {
+    std::ifstream maps("/proc/self/smaps");
+    const std::string begin = fmt::format("{:x}-", reinterpret_cast<std::uintptr_t>(mapping));
+    std::string line;
+    while (std::getline(maps, line) && !line.starts_with(begin)) {
+    }
+    while (std::getline(maps, line)) {
+        std::istringstream words(line);
+        std::string name;
+        std::size_t kilobytes = 0;
+        if (words >> name >> kilobytes && name == "Rss:")
+            return kilobytes * 1024;
+    }
+    ADD_FAILURE() << "nothing is mapped there";
+    return 0;
+}
+
+template <class Read>
+void expect_released(const std::string& text, const Read& read) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("part");
+    std::ofstream(path, std::ios::binary) << text;
+    const ByteSource source = open_bytes(path);
+    for (std::size_t i = 0; i < text.size(); i += 1024) // so that all of it is there
+        ASSERT_EQ(source.text()[i], text[i]);
+    ASSERT_GE(resident_bytes(source.bytes.data()), text.size() / 2);
+    EXPECT_EQ(read(source).stored_triangles, rows - 2);
+    EXPECT_LT(resident_bytes(source.bytes.data()), text.size() / 8);
+}
+
+TEST(MappedText, ObjIsLetGoOf) {
+    expect_released(vertices("v ") + faces("f", 1),
+                    [](const ByteSource& source) { return read_obj(source, {}, {}); });
+}
+
+TEST(MappedText, PlyIsLetGoOf) {
+    const auto read = [](const ByteSource& source) {
+        return read_ply(source, {}, {});
+    };
+    const std::string head = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\n"
+                                         "property float y\nproperty float z\nelement face {}\n"
+                                         "property list uchar int vertex_indices\nend_header\n",
+                                         rows, rows - 2);
+    const std::string body = vertices("") + faces("3", 0);
+    expect_released(head + body, read);
+    // All words in a line, which are read by themselves.
+    std::string words = body;
+    std::ranges::replace(words, '\n', ' ');
+    expect_released(head + words, read);
+}
+
+TEST(MappedText, OffIsLetGoOf) {
+    expect_released(fmt::format("OFF\n{} {} 0\n", rows, rows - 2) + vertices("") + faces("3", 0),
+                    [](const ByteSource& source) { return read_off(source, {}, {}); });
+}
+
+} // namespace
+} // namespace lamella
