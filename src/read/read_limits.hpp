@@ -69,8 +69,6 @@ class ReadLimits {
         bytes_.fetch_sub(bytes);
     }
 
-    /// Whether somebody asked for a limit.
-    [[nodiscard]] bool limited() const noexcept { return max_triangles_ != 0 || asked_; }
     /// How many more may come.
     [[nodiscard]] std::uint64_t triangles_left() const noexcept {
         return max_triangles_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_triangles_ - triangles_;

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t nowhere = std::string_view::npos;
 
-/// What is parsed before triangles are counted again.
+/// What is parsed at a time, before triangles are counted again and the memory of the text is let go of.
 constexpr std::size_t stretch_bytes = 32 * text_piece_bytes;
 
 /// `keyword` is in lower case.
@@ -340,18 +340,21 @@ std::vector<Piece> cut_in_pieces(std::string_view text, std::size_t begin, std::
     return pieces;
 }
 
-/// Parses a text stretch by stretch, with no more than a stretch parsed ahead.
+/// Parses a text stretch by stretch, with no more than a stretch parsed ahead, and lets go of what it has
+/// parsed.
 class Parser {
   public:
-    Parser(std::string_view text, const Execution& execution)
-        : text_(text), executor_(execution), progress_(execution, Stage::read, text.size()),
-          at_(after_byte_order_mark(text)) {}
+    Parser(const ByteSource& source, const Execution& execution)
+        : source_(source), text_(source.text()), executor_(execution),
+          progress_(execution, Stage::read, text_.size()), at_(after_byte_order_mark(text_)) {}
 
-    /// What follows, up to about `bytes` further. The pieces of all results follow one another without a gap
-    /// from the begin of the text to its end or to the first fault, exactly as if it had been parsed from
-    /// front to back: a piece that was parsed ahead counts only when the one before it ended where it begins.
-    std::vector<Piece> next(std::size_t bytes) {
-        const std::size_t limit = bytes < text_.size() - at_ ? at_ + bytes : text_.size();
+    /// What follows, a stretch further or up to the end. The pieces of all results follow one another without
+    /// a gap from the begin of the text to its end or to the first fault, exactly as if it had been parsed
+    /// from front to back: a piece that was parsed ahead counts only when the one before it ended where it
+    /// begins.
+    std::vector<Piece> next() {
+        const std::size_t from = at_;
+        const std::size_t limit = stretch_bytes < text_.size() - at_ ? at_ + stretch_bytes : text_.size();
         std::vector<Piece> ahead = cut_in_pieces(text_, at_, limit, in_solid_);
         executor_.for_chunks(ahead.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
             for (std::uint64_t i = begin; i < end; ++i) {
@@ -382,16 +385,17 @@ class Parser {
             in_solid_ = pieces.back().ends_in_solid;
             done_ = at_ >= text_.size() || pieces.back().fault;
         } while (at_ < limit && !done_);
+        release(source_, source_.bytes.subspan(from, at_ - from));
         if (done_)
             progress_.finish();
         return pieces;
     }
 
     [[nodiscard]] bool done() const { return done_; }
-    [[nodiscard]] std::size_t at() const { return at_; }
     [[nodiscard]] Executor& executor() { return executor_; }
 
   private:
+    const ByteSource& source_;
     std::string_view text_;
     Executor executor_;
     ProgressMeter progress_;
@@ -540,12 +544,11 @@ bool is_stl_ascii(std::string_view text) {
 MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                         const Execution& execution) {
     ReadLimits limits(source.name, options);
-    const std::string_view text = source.text();
-    Parser parser(text, execution);
+    Parser parser(source, execution);
     std::vector<Piece> pieces;
     Piece sum;
     while (!parser.done()) {
-        for (Piece& piece : parser.next(limits.limited() ? stretch_bytes : text.size())) {
+        for (Piece& piece : parser.next()) {
             count_piece(source, piece, limits);
             add(sum, piece);
             pieces.push_back(std::move(piece));
@@ -559,12 +562,11 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
 MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
                           const Execution& execution) {
     ReadLimits limits(source.name, options);
-    Parser parser(source.text(), execution);
+    Parser parser(source, execution);
     Piece sum;
     std::uint64_t batches = 0;
     while (!parser.done()) {
-        const std::size_t begin = parser.at();
-        std::vector<Piece> pieces = parser.next(stretch_bytes);
+        std::vector<Piece> pieces = parser.next();
         for (const Piece& piece : pieces) {
             add(sum, piece);
             count_triangles(source, piece, limits);
@@ -574,7 +576,6 @@ MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, co
                 sink(TriangleSoup(std::move(pieces[i].triangles)), batches + i);
         });
         batches += pieces.size();
-        release(source, source.bytes.subspan(begin, parser.at() - begin));
     }
     return describe(source, sum, options);
 }

@@ -4,6 +4,7 @@
 #include "read/obj.hpp"
 #include "read/off.hpp"
 #include "read/ply.hpp"
+#include "read/stl_ascii.hpp"
 #include "temporary_folder.hpp"
 
 #include <fmt/format.h>
@@ -71,6 +72,17 @@ void expect_released(const std::string& text, const Read& read) {
 TEST(MappedText, ObjIsLetGoOf) {
     expect_released(vertices("v ") + faces("f", 1),
                     [](const ByteSource& source) { return read_obj(source, {}, {}); });
+}
+
+TEST(MappedText, StlIsLetGoOf) {
+    std::string text = "solid\n";
+    for (std::size_t i = 0; i + 2 < rows; ++i)
+        fmt::format_to(std::back_inserter(text),
+                       "facet normal 0 0 1\nouter loop\nvertex {0} 0 0\nvertex {0} 1 0\nvertex {0} 0 1\n"
+                       "endloop\nendfacet\n",
+                       i);
+    expect_released(text + "endsolid\n",
+                    [](const ByteSource& source) { return read_stl_ascii(source, {}, {}); });
 }
 
 TEST(MappedText, PlyIsLetGoOf) {
