@@ -47,12 +47,35 @@ std::pair<Number, Number> read_range(std::string_view text, std::pair<Number, Nu
     return range;
 }
 
+constexpr std::string_view a_number = "a number such as 0.1";
+
+bool read_finite(std::string_view text, double& value) {
+    return read(text, value) && std::isfinite(value);
+}
+
+/// "1,2,3" or "1 2 3"; `refuse_word` throws for a word that is no number.
+template <class RefuseWord>
+std::vector<double> read_numbers(std::string_view text, const RefuseWord& refuse_word) {
+    std::vector<double> numbers;
+    std::string_view rest = trimmed(text);
+    const std::string_view gaps = rest.find(',') == std::string_view::npos ? " \t" : ",";
+    while (true) {
+        const auto gap = rest.find_first_of(gaps);
+        const std::string_view word = rest.substr(0, gap);
+        if (!read_finite(word, numbers.emplace_back()))
+            refuse_word(word);
+        if (gap == std::string_view::npos)
+            return numbers;
+        rest = trimmed(rest.substr(gap + 1));
+    }
+}
+
 } // namespace
 
 double parse_number(std::string_view text) {
     double value = 0;
-    if (!read(text, value) || !std::isfinite(value))
-        refuse(text, "a number such as 0.1");
+    if (!read_finite(text, value))
+        refuse(text, a_number);
     return value;
 }
 
@@ -108,22 +131,15 @@ std::uint64_t parse_byte_size(std::string_view text) {
 }
 
 std::vector<double> parse_numbers(std::string_view text) {
-    std::vector<double> numbers;
-    std::string_view rest = trimmed(text);
-    const std::string_view gaps = rest.find(',') == std::string_view::npos ? " \t" : ",";
-    while (true) {
-        const auto gap = rest.find_first_of(gaps);
-        numbers.push_back(parse_number(rest.substr(0, gap)));
-        if (gap == std::string_view::npos)
-            return numbers;
-        rest = trimmed(rest.substr(gap + 1));
-    }
+    return read_numbers(text, [](std::string_view word) { refuse(word, a_number); });
 }
 
 std::array<double, 3> parse_triple(std::string_view text) {
-    const std::vector<double> numbers = parse_numbers(text);
+    constexpr std::string_view expected = "three numbers such as 1,0,0.5";
+    const std::vector<double> numbers =
+        read_numbers(text, [&](std::string_view /*word*/) { refuse(text, expected); });
     if (numbers.size() != 3)
-        refuse(text, "three numbers such as 1,0,0.5");
+        refuse(text, expected);
     return {numbers[0], numbers[1], numbers[2]};
 }
 
