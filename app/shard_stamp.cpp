@@ -45,7 +45,7 @@ Json input_json(const PlateInput& input, const Execution& execution) {
 
 Json read_stamp(const std::string& output) {
     const std::string path = stamp_path(output);
-    const Json stamp = Json::parse(read_text_file(path), nullptr, false);
+    Json stamp = Json::parse(read_text_file(path), nullptr, false);
     if (!stamp.is_object() || !stamp.contains("origin") || !stamp.contains("output"))
         throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard", path));
     return stamp;

@@ -42,6 +42,7 @@ py::object text_of(const Error& error) {
 } // namespace
 
 void register_errors() {
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 asks for a function of this very type
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown)

@@ -76,7 +76,8 @@ LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsign
     });
 }
 
-LayerStream::~LayerStream() {
+// To join a worker that nobody else has does not fail.
+LayerStream::~LayerStream() { // NOLINT(bugprone-exception-escape)
     close();
 }
 

@@ -48,7 +48,7 @@ class LayerStream {
     LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads, pybind11::object listener);
     LayerStream(const LayerStream&) = delete;
     LayerStream& operator=(const LayerStream&) = delete;
-    ~LayerStream();
+    ~LayerStream(); // NOLINT(bugprone-exception-escape): see there
 
     /// Throws pybind11::stop_iteration after the last one and once the stream is closed.
     LayerPointer next();
