@@ -109,6 +109,9 @@ read-meshes: build packages-rivals  ## compare with other readers of meshes: out
 	cmake --build build-bench --target bench/read_meshes/all
 	python3 -B -m bench.read_meshes $(OPTIONS)
 
+resin: build packages-rivals  ## compare pictures for resin printers with PrusaSlicer's: out/resin/ (bench/README.md)
+	python3 -B -m bench.resin $(OPTIONS)
+
 out-of-core: build  ## slice a lattice of 5 GB with 1 GB of memory: out/out_of_core/ (bench/README.md)
 	@tools/install_packages.sh tools/packages-bench.txt
 	cmake --preset bench
@@ -154,5 +157,5 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
-        test-shared fuzz bench scaling soak docs packages-rivals rivals broken read-meshes out-of-core python-bench \
+        test-shared fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core python-bench \
         page-bench paper format format-check lint install clean

@@ -1,0 +1,1 @@
+"""Jobs of pictures for resin printers beside those of PrusaSlicer."""

@@ -1,0 +1,146 @@
+"""Compares printers' jobs of pictures with PrusaSlicer's; writes resin.md, resin.html and report.json.
+
+    python3 -m bench.resin [options]            (from the root of the source tree; `make resin` does it)
+"""
+
+import argparse
+import dataclasses
+import json
+import statistics
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
+
+from bench.harness import machine, parts, process
+from bench.harness.page import Page, Table, brief
+from bench.resin import pictures, slicers
+
+PARTS = parts.named(["rook", "head", "sole", "lattice", "sheet-100"], parts.ALL_PARTS)
+
+
+@dataclass
+class Cell:
+    part: str
+    slicer: str
+    ended: str
+    seconds: Optional[float] = None  # the medians of the runs
+    processor_seconds: Optional[float] = None
+    peak_rss_bytes: Optional[int] = None
+    file_bytes: Optional[int] = None
+    agreement: Optional[pictures.Agreement] = None  # of jobs of pictures but ours, with it
+
+    @property
+    def counts(self):
+        return self.seconds is not None and (self.agreement is None or self.agreement.good)
+
+
+def main(arguments):
+    options = parse(arguments)
+    chosen = parts.named(options.parts, [*parts.TINY_PARTS, *parts.ALL_PARTS]) if options.parts else PARTS
+    folder = Path(options.out)
+    folder.mkdir(parents=True, exist_ok=True)
+    asked = [slicers.lamella(options.lamella, True), slicers.lamella(options.lamella, False), slicers.prusa_slicer()]
+    present = [(slicer, slicer.version()) for slicer in asked]
+    present = [(slicer, version) for slicer, version in present if version is not None]
+    here = machine.describe(options.lamella)
+    cells = []
+    for part in chosen:
+        cells += measure(part, [slicer for slicer, _ in present], folder, options)
+        # After each part, so that a long run that is stopped has left what it found.
+        done = [one for one in chosen if any(cell.part == one.name for cell in cells)]
+        build_page(cells, done, present, here, options).write(folder, "resin")
+        told = {"machine": here, "versions": {slicer.title: version for slicer, version in present},
+                "cells": [dataclasses.asdict(cell) for cell in cells]}
+        (folder / "report.json").write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+    print(f"The report is in {folder}/resin.html")
+    if len(present) < len(asked):
+        print("PrusaSlicer is not installed (tools/packages-rivals.txt): there was nothing to compare with")
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="python3 -m bench.resin", description=__doc__.splitlines()[0])
+    parser.add_argument("--lamella", default="build/lamella", help="the program (default: %(default)s)")
+    parser.add_argument("--out", default="out/resin", help="folder of the report (default: %(default)s)")
+    parser.add_argument("--parts", nargs="+", metavar="PART", help="which parts (default: some of all kinds)")
+    parser.add_argument("--rounds", type=int, default=3, help="runs of each (default: %(default)s)")
+    parser.add_argument("--timeout", type=float, default=300, help="seconds for one run (default: %(default)s)")
+    return parser.parse_args(arguments)
+
+
+def measure(part, present, folder, options):
+    """All in turn, several times; one that fails is not tried again."""
+    mesh = parts.make(part, options.lamella, folder)
+    told = subprocess.run([options.lamella, "info", mesh, "--json"], capture_output=True, text=True, check=True).stdout
+    job = slicers.Job(mesh, part.layer_height, slicers.pixel_mm(json.loads(told)["bbox"]))
+    runs = {slicer.name: [] for slicer in present}
+    for _ in range(options.rounds):
+        for slicer in present:
+            outputs = runs[slicer.name]
+            if all(run.ok for run in outputs):
+                output = output_of(slicer, folder, part)
+                output.unlink(missing_ok=True)
+                outputs.append(process.run(slicer.command(job, output), options.timeout, folder / f"{slicer.name}.log"))
+    cells = [cell_of(part, slicer, runs[slicer.name], output_of(slicer, folder, part)) for slicer in present]
+    ours = output_of(present[0], folder, part)
+    for slicer, cell in zip(present, cells):
+        theirs = output_of(slicer, folder, part)
+        if slicer.pictures and theirs != ours and cell.ended == cells[0].ended == "ok":
+            cell.agreement = pictures.compare(ours, theirs)
+        theirs.unlink(missing_ok=True) if theirs != ours else None
+        print(f"{part.name}: {slicer.title}: {cell.ended}" + ("" if cell.seconds is None else f", {cell.seconds:.3f} s")
+              + ("" if cell.agreement is None else f", {cell.agreement.text()}"), flush=True)
+    ours.unlink(missing_ok=True)
+    return cells
+
+
+def output_of(slicer, folder, part):
+    return folder / f"{part.name}-{slicer.name}{slicer.suffix}"
+
+
+def cell_of(part, slicer, runs, output):
+    cell = Cell(part.name, slicer.name, runs[-1].ended)
+    if runs[-1].ok:
+        cell.seconds = statistics.median(run.seconds for run in runs)
+        cell.processor_seconds = statistics.median(run.user + run.system for run in runs)
+        cell.peak_rss_bytes = max(run.peak_rss_bytes for run in runs)
+        cell.file_bytes = output.stat().st_size
+    return cell
+
+
+def build_page(cells, done, present, here, options):
+    page = Page("Pictures for resin printers beside PrusaSlicer's")
+    page.say(f"From an STL file to a job of {slicers.COLUMNS} x {slicers.ROWS} pixels with anti-aliasing, which the part fills "
+             "but for a tenth; layers of 0.1 mm, no supports, no pad, nothing made smaller or larger on purpose. Whole "
+             f"processes in turn, medians of {options.rounds} runs; limit for one run: {options.timeout:g} s. The second row "
+             "is the same part as a slice file without pictures: what pictures cost lies between the two.",
+             f"{here['processor']}, {here['threads']} threads, {here['memory']}; {here['system']}; {here['date']}; "
+             + ", ".join(f"{slicer.title} {version}" for slicer, version in present if slicer.pictures) + ".",
+             f"{pictures.LOOKED_AT} pictures of each job are compared, pixel by pixel; a time counts when there are as many "
+             f"pictures, or one fewer, and differences add up to less than {pictures.MOST_APART:g} of the covered area, and "
+             "stands in brackets otherwise. The last layer is not looked at: where the part ends within it, programs cut it "
+             "elsewhere.")
+    for part in done:
+        page.heading(part.title)
+        table = Table(["", "seconds", "to Lamella's", "processor s", "peak MB", "file MB", "pictures"])
+        rows = {cell.slicer: cell for cell in cells if cell.part == part.name}
+        for slicer, _ in present:
+            table.add(slicer.title, *row(rows[slicer.name], rows["lamella"]))
+        page.show(table)
+    return page
+
+
+def row(cell, ours):
+    if cell.seconds is None:
+        return cell.ended, "", "", "", "", ""
+    ratio = brief(cell.seconds / ours.seconds) if ours.seconds else ""
+    values = [f"{cell.seconds:.3f}", ratio]
+    if not cell.counts:
+        values = [f"({value})" for value in values]
+    return (*values, f"{cell.processor_seconds:.2f}", f"{cell.peak_rss_bytes / 1e6:.0f}", f"{cell.file_bytes / 1e6:.1f}",
+            cell.agreement.text() if cell.agreement else "")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

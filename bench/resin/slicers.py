@@ -1,0 +1,62 @@
+"""Who makes a printer's job of a part, and what it is asked for: the same layers in the middle of the same display."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable, Optional
+
+from bench.rivals.program import version
+
+COLUMNS, ROWS = 2560, 1620  # of an Original Prusa SL1S
+
+
+@dataclass(frozen=True)
+class Job:
+    mesh: Path
+    layer_height: float
+    pixel_mm: float
+
+    @property
+    def display(self):
+        return f"{COLUMNS * self.pixel_mm:.6g}", f"{ROWS * self.pixel_mm:.6g}"
+
+
+@dataclass(frozen=True)
+class Slicer:
+    name: str
+    title: str
+    suffix: str  # of what it writes
+    pictures: bool  # whether that is a job of pictures
+    command: Callable[[Job, Path], list]
+    version: Callable[[], Optional[str]]  # None: not there
+
+
+def pixel_mm(box):
+    """As small as lets a part with this box fill the display, but for a tenth; a number of few digits."""
+    (left, front, _), (right, back, _) = box
+    return float(f"{1.1 * max((right - left) / COLUMNS, (back - front) / ROWS):.3g}")
+
+
+def lamella(program, pictures):
+    def command(job, output):
+        return [program, "slice", job.mesh, "-o", output, "--layer-height", f"{job.layer_height:g}", "--progress", "none",
+                *(["--display-size", ",".join(job.display), "--resolution", f"{COLUMNS}x{ROWS}",
+                   "--orientation", "landscape", "--mirror", "none"] if pictures else [])]
+
+    return Slicer("lamella" if pictures else "layers", "Lamella" if pictures else "Lamella, layers as CLI",
+                  ".sl1s" if pictures else ".cli", pictures, command, lambda: version([program, "--version"], r"(\d[\w.]*)"))
+
+
+def prusa_slicer():
+    def command(job, output):
+        width, height = job.display
+        return ["prusa-slicer", "--export-sla", "--loglevel", "1", "--supports-enable=0", "--pad-enable=0",
+                # No pixel is moved or left out on purpose.
+                "--slice-closing-radius", "0", "--elefant-foot-compensation", "0",
+                "--layer-height", f"{job.layer_height:g}", "--initial-layer-height", f"{job.layer_height:g}",
+                "--bed-shape", f"0x0,{width}x0,{width}x{height},0x{height}", "--max-print-height", "1000",
+                "--display-width", width, "--display-height", height, "--display-pixels-x", COLUMNS,
+                "--display-pixels-y", ROWS, "--display-orientation", "landscape", "--no-display-mirror-x", "--no-display-mirror-y",
+                "--center", f"{float(width) / 2:.9g},{float(height) / 2:.9g}", "--output", output, job.mesh]
+
+    return Slicer("prusa-slicer", "PrusaSlicer", ".sl1", True, command,
+                  lambda: version(["prusa-slicer", "--help"], r"PrusaSlicer-(\d[\w.]*)"))
