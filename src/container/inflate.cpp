@@ -14,6 +14,11 @@ std::uint32_t crc32_of(std::string_view bytes) noexcept {
     return libdeflate_crc32(0, bytes.data(), bytes.size());
 }
 
+std::uint32_t adler32_of(std::string_view bytes) noexcept {
+    constexpr std::uint32_t of_nothing = 1;
+    return libdeflate_adler32(of_nothing, bytes.data(), bytes.size());
+}
+
 std::uint64_t usual_most_unpacked(std::uint64_t packed_bytes) {
     constexpr std::uint64_t least = std::uint64_t{4} << 30;
     constexpr std::uint64_t ratio = 64;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Unpacking Deflate, and the checksum of zip and PNG files.
+// Unpacking Deflate, and the checksums of zip and PNG files.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,9 @@ namespace lamella {
 
 /// CRC-32 as zip and PNG files have it. O(n).
 [[nodiscard]] std::uint32_t crc32_of(std::string_view bytes) noexcept;
+
+/// Adler-32, which ends the pixels of a PNG file. O(n).
+[[nodiscard]] std::uint32_t adler32_of(std::string_view bytes) noexcept;
 
 enum class Inflated {
     whole,     ///< exactly as many bytes as there was room for, and the packed bytes ended with them

@@ -1,5 +1,8 @@
 #include "raster/relief.hpp"
 
+#include "core/vector_clones.hpp"
+#include "raster/edges.hpp"
+
 #include <algorithm>
 #include <initializer_list>
 #include <limits>
@@ -73,16 +76,17 @@ PixelBox visible(const ColourPicture& picture) {
 std::array<std::uint8_t, 4> mean(const ColourPicture& picture, double left, double top, double right,
                                  double bottom) {
     std::array<double, 4> sum{};
-    const auto end = [](double border, std::uint32_t most) {
-        return std::min<std::size_t>(static_cast<std::size_t>(std::ceil(border)), most);
-    };
-    for (auto row = static_cast<std::size_t>(top); row < end(bottom, picture.height); ++row) {
+    const std::size_t last_row = least_whole(bottom, picture.height);
+    const std::size_t last_column = least_whole(right, picture.width);
+    for (auto row = static_cast<std::size_t>(top); row < last_row; ++row) {
         const auto r = static_cast<double>(row);
         const double tall = std::min(r + 1, bottom) - std::max(r, top);
-        for (auto column = static_cast<std::size_t>(left); column < end(right, picture.width); ++column) {
+        for (auto column = static_cast<std::size_t>(left); column < last_column; ++column) {
             const auto c = static_cast<double>(column);
             const double weight = tall * (std::min(c + 1, right) - std::max(c, left));
             const std::uint8_t* const pixel = &picture.values[4 * (row * picture.width + column)];
+            if (pixel[3] == 0)
+                continue;
             for (std::size_t k = 0; k < 3; ++k)
                 sum[k] += weight * pixel[3] * pixel[k];
             sum[3] += weight * pixel[3];
@@ -95,6 +99,17 @@ std::array<std::uint8_t, 4> mean(const ColourPicture& picture, double left, doub
         return static_cast<std::uint8_t>(std::clamp(v + 0.5, 0.0, 255.0));
     };
     return {byte(sum[0] / sum[3]), byte(sum[1] / sum[3]), byte(sum[2] / sum[3]), byte(alpha)};
+}
+
+/// Adds to each of `count` sums the light there, where that is about as high as here.
+LAMELLA_VECTOR_CLONES
+void add_near(const float* heights, const float* heights_there, const float* lights_there, float most_higher,
+              std::size_t count, float* sums, float* counts) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool near = std::abs(heights_there[i] - heights[i]) <= most_higher; // both are numbers
+        sums[i] += near ? lights_there[i] : 0.0F;
+        counts[i] += near ? 1.0F : 0.0F;
+    }
 }
 
 } // namespace
@@ -243,23 +258,22 @@ std::vector<float> Relief::smooth_light() const {
             if (covered(row, column))
                 sharp[row * width_ + column] = static_cast<float>(light(row, column));
     std::vector<float> smooth(sharp.size());
+    std::vector<float> counts(width_);
     const auto most_higher = static_cast<float>(most_apart / scale_);
     for (std::size_t row = 0; row < height_; ++row) {
-        for (std::size_t column = 0; column < width_; ++column) {
-            const std::size_t here = row * width_ + column;
-            float sum = 0;
-            float count = 0;
-            for (std::size_t r = row - std::min(row, blur); r <= row + blur && r < height_; ++r) {
-                for (std::size_t c = column - std::min(column, blur); c <= column + blur && c < width_; ++c) {
-                    const std::size_t there = r * width_ + c;
-                    if (std::abs(heights_[there] - heights_[here]) <= most_higher) { // both are numbers
-                        sum += sharp[there];
-                        ++count;
-                    }
-                }
+        const std::size_t here = row * width_;
+        std::ranges::fill(counts, 0.0F);
+        for (std::size_t r = row - std::min(row, blur); r <= row + blur && r < height_; ++r)
+            for (std::size_t shift = 0; shift <= 2 * blur; ++shift) { // to the left at first
+                const std::size_t left = blur - std::min(shift, blur);
+                const std::size_t right = shift - std::min(shift, blur);
+                if (left + right < width_)
+                    add_near(&heights_[here + left], &heights_[r * width_ + right],
+                             &sharp[r * width_ + right], most_higher, width_ - left - right,
+                             &smooth[here + left], &counts[left]);
             }
-            smooth[here] = count > 0 ? sum / count : 0;
-        }
+        for (std::size_t column = 0; column < width_; ++column)
+            smooth[here + column] = counts[column] > 0 ? smooth[here + column] / counts[column] : 0;
     }
     return smooth;
 }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lamella {
 
@@ -48,17 +49,6 @@ void append_head(std::uint32_t width, std::uint32_t height, std::uint8_t colours
     head[8] = 8;                          // bits
     head[9] = static_cast<char>(colours); // the rest is 0: Deflate, the usual filters, not interlaced
     append_chunk("IHDR", {head.data(), head.size()}, out);
-}
-
-std::uint32_t adler32_of(std::string_view bytes) {
-    constexpr std::uint32_t prime = 65521;
-    std::uint32_t sum = 1;
-    std::uint32_t sum_of_sums = 0;
-    for (const char byte : bytes) {
-        sum = (sum + static_cast<unsigned char>(byte)) % prime;
-        sum_of_sums = (sum_of_sums + sum) % prime;
-    }
-    return sum_of_sums << 16 | sum;
 }
 
 } // namespace
@@ -115,13 +105,16 @@ void PngEncoder::finish(ByteBuffer& out) {
 
 void append_png(const ColourPicture& picture, ByteBuffer& out) {
     const std::size_t row_size = std::size_t{4} * picture.width;
-    std::string rows;
-    rows.reserve((row_size + 1) * picture.height);
+    std::string rows((row_size + 1) * picture.height, '\0');
+    const std::vector<std::uint8_t> none(row_size);
+    const std::uint8_t* above = none.data();
     for (std::size_t row = 0; row < picture.height; ++row) {
-        rows += static_cast<char>(row == 0 ? as_it_is : more_than_above);
         const std::uint8_t* const here = picture.values.data() + row * row_size;
+        char* const to = rows.data() + row * (row_size + 1);
+        to[0] = static_cast<char>(more_than_above);
         for (std::size_t i = 0; i < row_size; ++i)
-            rows += static_cast<char>(row == 0 ? here[i] : here[i] - *(here + i - row_size));
+            to[i + 1] = static_cast<char>(here[i] - above[i]);
+        above = here;
     }
     std::string stream("\x78\x01", 2); // Deflate, window of 32 KB, the fastest kind
     Deflater().append_piece(rows, stream);

@@ -63,6 +63,11 @@ TEST(Deflate, AUsedDeflaterMakesTheSamePieceAsAFreshOne) {
     EXPECT_EQ(second, fresh);
 }
 
+TEST(Deflate, SumsAsPngFilesDo) {
+    EXPECT_EQ(adler32_of("123456789"), 0x091E01DEU);
+    EXPECT_EQ(adler32_of(""), 1U);
+}
+
 TEST(Deflate, JoinsCrcs) {
     EXPECT_EQ(crc32_of("123456789"), 0xCBF43926U); // the check value of the catalogues
     EXPECT_EQ(crc32_of(""), 0U);
