@@ -52,7 +52,7 @@ SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo&
 }
 
 void SequentialWriter::append_bytes(std::string_view bytes) {
-    if (file_) {
+    if (piece_ == nullptr) {
         file_->append(bytes);
         return;
     }
