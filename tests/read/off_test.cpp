@@ -78,7 +78,7 @@ TEST(Off, NamesLineAndWordOfAnError) {
     const auto expect = [](const std::string& text, const std::string& error) {
         EXPECT_EQ(error_of(text, name), name + ": " + error);
     };
-    expect("OFF BINARY\n\x00\x00",
+    expect(std::string("OFF BINARY\n") + std::string(2, '\0'),
            "line 1: found 'BINARY', expected a text (binary OFF is not read; save it as ASCII OFF or PLY)");
     expect("OFF\nx 1 0\n", "line 2: found 'x', expected the numbers of vertices, faces and edges");
     expect("OFF\n3\n", "line 3: found the end of the file, expected the number of faces");

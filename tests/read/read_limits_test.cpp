@@ -85,7 +85,7 @@ constexpr std::size_t megabyte = 1'000'000;
 class LimitsOfReading : public ::testing::Test {
   protected:
     std::string file(const std::string& name, const std::string& bytes) {
-        const std::string path = folder_.file(name);
+        std::string path = folder_.file(name);
         std::ofstream(path, std::ios::binary) << bytes;
         return path;
     }

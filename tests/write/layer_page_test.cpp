@@ -142,8 +142,8 @@ TEST(LayerPage, HoldsEveryContourWithinHalfAStep) {
     LayerFileInfo info = info_of(parts[0]);
     info.box.add(info_of(parts[1]).box);
     info.parts = {{"one", {}}, {"two", {}}};
-    for (std::size_t i = 0; i < parts[1].size(); ++i)
-        parts[1][i].hatches = PointArray(std::vector<Point2>{{1, 2}, {3.25, 4}, {-7, 8}, {9, 10}});
+    for (Layer& layer : parts[1])
+        layer.hatches = PointArray(std::vector<Point2>{{1, 2}, {3.25, 4}, {-7, 8}, {9, 10}});
     const WrittenPage written = write_page(parts, info, options_with());
     EXPECT_TRUE(written.warnings.empty());
     const double step = member(written.page.json.at("head"), "step_mm");
@@ -295,8 +295,7 @@ TEST(LayerPage, KeepsHostileTextInItsPlace) {
     const std::size_t scripts = write_page(layers).page.scripts;
     for (const std::string& text :
          {std::string("</script><script>alert(1)</script>"), std::string("<!--<script>"),
-          std::string("\"}\\]"), std::string("\xff\xfe\n\0\x1b[31m", 10),
-          std::string("\xe2\x80\xa8]]>-->")}) {
+          std::string("\"}\\]"), std::string("\xff\xfe\n\0\x1b[31m", 9), std::string("\xe2\x80\xa8]]>-->")}) {
         LayerFileInfo info = info_of(layers);
         info.parts = {{text, {}}};
         PageOptions options = options_with();
