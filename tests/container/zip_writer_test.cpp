@@ -17,8 +17,6 @@
 namespace lamella {
 namespace {
 
-namespace fs = std::filesystem;
-
 // What a Python program prints to whom the path is given. Python's zip reader is another than ours.
 std::string python(const std::string& program, const std::string& path) {
     const std::string command = "python3 -c '" + program + "' '" + path + "' 2>&1";

@@ -29,12 +29,11 @@ TEST(Obj, SkipsWhatIsNoVertexAndNoFace) {
 
 TEST(Obj, TakesAnyLineEndsAndLinesThatGoOn) {
     for (const std::string end : {"\r\n", "\r", "\n\n \n"})
-        expect_mesh("v 0 0 0" + end + "v 1 0 0" + end + "v 0 1.5 -0.2" + end + "f 1 2 3" + end, name, corners,
+        expect_mesh(fmt::format("v 0 0 0{0}v 1 0 0{0}v 0 1.5 -0.2{0}f 1 2 3{0}", end), name, corners,
                     {{0, 1, 2}});
     for (const std::string end : {"\r\n", "\r", "\n"})
-        expect_mesh("v 0 \\" + end + "0 0" + end + "v 1 0 0" + end + "v 0 1.5 -0.2" + end + "f 1 \\" + end +
-                        " 2\\" + end + " 3",
-                    name, corners, {{0, 1, 2}});
+        expect_mesh(fmt::format("v 0 \\{0}0 0{0}v 1 0 0{0}v 0 1.5 -0.2{0}f 1 \\{0} 2\\{0} 3", end), name,
+                    corners, {{0, 1, 2}});
 }
 
 TEST(Obj, CountsBackFromTheLastVertex) {
