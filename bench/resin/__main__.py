@@ -77,21 +77,20 @@ def measure(part, present, folder, options):
     runs = {slicer.name: [] for slicer in present}
     for _ in range(options.rounds):
         for slicer in present:
-            outputs = runs[slicer.name]
-            if all(run.ok for run in outputs):
+            if all(run.ok for run in runs[slicer.name]):
                 output = output_of(slicer, folder, part)
                 output.unlink(missing_ok=True)
-                outputs.append(process.run(slicer.command(job, output), options.timeout, folder / f"{slicer.name}.log"))
+                log = folder / f"{slicer.name}.log"
+                runs[slicer.name].append(process.run(slicer.command(job, output), options.timeout, log))
     cells = [cell_of(part, slicer, runs[slicer.name], output_of(slicer, folder, part)) for slicer in present]
-    ours = output_of(present[0], folder, part)
+    ours = present[0]
     for slicer, cell in zip(present, cells):
-        theirs = output_of(slicer, folder, part)
-        if slicer.pictures and theirs != ours and cell.ended == cells[0].ended == "ok":
-            cell.agreement = pictures.compare(ours, theirs)
-        theirs.unlink(missing_ok=True) if theirs != ours else None
+        if slicer.pictures and slicer is not ours and cell.ended == cells[0].ended == "ok":
+            cell.agreement = pictures.compare(output_of(ours, folder, part), output_of(slicer, folder, part))
         print(f"{part.name}: {slicer.title}: {cell.ended}" + ("" if cell.seconds is None else f", {cell.seconds:.3f} s")
               + ("" if cell.agreement is None else f", {cell.agreement.text()}"), flush=True)
-    ours.unlink(missing_ok=True)
+    for slicer in present:
+        output_of(slicer, folder, part).unlink(missing_ok=True)
     return cells
 
 
