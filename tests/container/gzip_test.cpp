@@ -86,7 +86,7 @@ TEST(Gzip, StopsAtTheLimit) {
     EXPECT_LT(bomb.size(), 80'000U);
     EXPECT_EQ(error_of(bomb, 1'000'000, ErrorKind::limit),
               "part.gz: unpacks to more than the 1000000 bytes of --max-memory");
-    EXPECT_EQ(unpacked(bomb, 50'000'000).size(), 50'000'000U);
+    EXPECT_EQ(unpacked(bomb, 8'000'000).size(), 8'000'000U);
 }
 
 TEST(Gzip, NamesTheByteOfADefect) {
