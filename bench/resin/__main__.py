@@ -29,11 +29,12 @@ class Cell:
     processor_seconds: Optional[float] = None
     peak_rss_bytes: Optional[int] = None
     file_bytes: Optional[int] = None
-    agreement: Optional[pictures.Agreement] = None  # of jobs of pictures but ours, with it
+    agreement: Optional[pictures.Agreement] = None  # of a rival's job with ours, where both ended
 
     @property
     def counts(self):
-        return self.seconds is not None and (self.agreement is None or self.agreement.good)
+        """A rival's time only with pictures that are ours."""
+        return self.slicer in slicers.OURS or (self.agreement is not None and self.agreement.good)
 
 
 def main(arguments):
@@ -85,7 +86,7 @@ def measure(part, present, folder, options):
     cells = [cell_of(part, slicer, runs[slicer.name], output_of(slicer, folder, part)) for slicer in present]
     ours = present[0]
     for slicer, cell in zip(present, cells):
-        if slicer.pictures and slicer is not ours and cell.ended == cells[0].ended == "ok":
+        if slicer.name not in slicers.OURS and cell.ended == cells[0].ended == "ok":
             cell.agreement = pictures.compare(output_of(ours, folder, part), output_of(slicer, folder, part))
         print(f"{part.name}: {slicer.title}: {cell.ended}" + ("" if cell.seconds is None else f", {cell.seconds:.3f} s")
               + ("" if cell.agreement is None else f", {cell.agreement.text()}"), flush=True)
@@ -136,7 +137,7 @@ def row(cell, ours):
     ratio = brief(cell.seconds / ours.seconds) if ours.seconds else ""
     values = [f"{cell.seconds:.3f}", ratio]
     if not cell.counts:
-        values = [f"({value})" for value in values]
+        values = [f"({value})" if value else "" for value in values]
     return (*values, f"{cell.processor_seconds:.2f}", f"{cell.peak_rss_bytes / 1e6:.0f}", f"{cell.file_bytes / 1e6:.1f}",
             cell.agreement.text() if cell.agreement else "")
 

@@ -7,6 +7,7 @@ from typing import Callable, Optional
 from bench.rivals.program import version
 
 COLUMNS, ROWS = 2560, 1620  # of an Original Prusa SL1S
+OURS = ("lamella", "layers")
 
 
 @dataclass(frozen=True)

@@ -72,6 +72,12 @@ class Report(unittest.TestCase):
         other.agreement = pictures.Agreement(5, 5, 1, 1e-5)
         self.assertEqual(program.row(other, ours)[:2], ("3.000", "3.00"))
 
+    def test_nor_does_one_with_nothing_to_compare_with(self):
+        ours = program.Cell("box", "lamella", "exit code 1")
+        other = program.Cell("box", "prusa-slicer", "ok", 3, 3, 10**6, 10**6)
+        self.assertEqual(program.row(other, ours)[:2], ("(3.000)", ""))
+        self.assertEqual(program.row(ours, ours)[0], "exit code 1")
+
 
 if __name__ == "__main__":
     unittest.main()
