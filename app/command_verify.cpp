@@ -107,8 +107,6 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         for (const std::string& warning : plate.files.front().warnings)
             context.messages.warn(warning);
         mesh = joined(plate, execution);
-        if (mesh.indexed() != nullptr)
-            mesh = Mesh(weld(*mesh.indexed(), execution));
         options.mesh = mesh;
     }
     const Verification found = verify(file.merged(), options, execution);

@@ -5,7 +5,7 @@
 #include "commands.hpp"
 #include "crash.hpp"
 #include "interrupt.hpp"
-#include "mpi_ranks.hpp"
+#include "mpi_processes.hpp"
 #include "program.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,34 +15,36 @@
 #include <vector>
 
 using namespace lamella::app;
-using lamella::RankFigures;
+using lamella::ProcessFigures;
 
 namespace {
 
-nlohmann::ordered_json ranks_json(const std::vector<RankFigures>& figures) {
-    nlohmann::ordered_json ranks = nlohmann::ordered_json::array();
-    for (const RankFigures& rank : figures)
-        ranks.push_back({{"triangles_read", rank.triangles_read},
-                         {"triangles_sliced", rank.triangles_sliced},
-                         {"bytes_sent", rank.bytes_sent},
-                         {"planes", rank.planes},
-                         {"points", rank.points},
-                         {"seconds",
-                          {{"read", rank.read_seconds},
-                           {"exchange", rank.exchange_seconds},
-                           {"slice", rank.slice_seconds},
-                           {"write", rank.write_seconds}}}});
-    return ranks;
+nlohmann::ordered_json processes_json(const std::vector<ProcessFigures>& figures) {
+    nlohmann::ordered_json processes = nlohmann::ordered_json::array();
+    for (const ProcessFigures& one : figures)
+        processes.push_back({{"triangles_read", one.triangles_read},
+                             {"triangles_sliced", one.triangles_sliced},
+                             {"bytes_sent", one.bytes_sent},
+                             {"planes", one.planes},
+                             {"points", one.points},
+                             {"seconds",
+                              {{"read", one.read_seconds},
+                               {"exchange", one.exchange_seconds},
+                               {"slice", one.slice_seconds},
+                               {"write", one.write_seconds}}}});
+    return processes;
 }
 
-Slicing by_all(MpiRanks& ranks, std::vector<RankFigures>& figures) {
+Slicing by_all(MpiProcesses& processes, std::vector<ProcessFigures>& figures) {
     Slicing together;
     together.slice = [&](const lamella::FileJob& job, const lamella::Execution& execution) {
-        return slice_file(job, ranks, execution, &figures);
+        lamella::FileResult result = slice_file(job, execution, processes);
+        figures = result.processes;
+        return result;
     };
-    together.tells = ranks.rank() == 0;
+    together.tells = processes.process() == 0;
     together.add_to_stats = [&](nlohmann::ordered_json& stats) {
-        stats["ranks"] = ranks_json(figures);
+        stats["processes"] = processes_json(figures);
     };
     together.many_files = false;
     return together;
@@ -53,14 +55,14 @@ Slicing by_all(MpiRanks& ranks, std::vector<RankFigures>& figures) {
 int main(int argc, char** argv) {
     prepare_for_crashes();
     block_interrupts(); // before MPI has threads of its own
-    MpiRanks ranks;
-    std::vector<RankFigures> figures;
-    const int code = run_program({slice_command(by_all(ranks, figures))},
-                                 std::vector<std::string>(argv + 1, argv + argc), ranks.rank() == 0);
+    MpiProcesses processes;
+    std::vector<ProcessFigures> figures;
+    const int code = run_program({slice_command(by_all(processes, figures))},
+                                 std::vector<std::string>(argv + 1, argv + argc), processes.process() == 0);
     // All fail together, but for what nobody foresaw: then the others wait for this one in vain.
     constexpr std::chrono::seconds patience{10};
     constexpr std::chrono::hours for_ever{24 * 365};
-    if (!ranks.meet(code == 0 ? for_ever : patience))
-        MpiRanks::abort(code);
+    if (!processes.meet(code == 0 ? for_ever : patience))
+        MpiProcesses::abort(code);
     return code;
 }

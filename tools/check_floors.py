@@ -45,7 +45,7 @@ THIRD_PARTY = {
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}
 # Of the programs.
-THIRD_PARTY_OF_CONSUMERS = {"mpi.h": "app/mpi_ranks.cpp"}
+THIRD_PARTY_OF_CONSUMERS = {"mpi.h": "app/mpi_processes.cpp"}
 
 # One file pair per engine in src/slicing. Only the table of engines knows them.
 ENGINES = ["sweep", "conventional", "ecc", "ecc_edge_match", "eecc"]

@@ -40,7 +40,7 @@ def run(wishes, folder, part, ranks):
 
 def figures(stats):
     """Of a run: what the model is about."""
-    ranks = stats["ranks"]
+    ranks = stats["processes"]
     triangles = sum(r["triangles_read"] for r in ranks)
     sliced = [r["triangles_sliced"] for r in ranks]
     points = [r["points"] for r in ranks]

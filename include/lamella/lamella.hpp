@@ -36,7 +36,7 @@
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/ranks.hpp"
+#include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"

@@ -150,7 +150,7 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
         VerifyOptions options{.mesh = {}, .quantum_mm = stack.resolution_mm / 2};
         Mesh sliced;
         if (mesh) {
-            sliced = mesh->to_slice(execution);
+            sliced = mesh->mesh();
             options.mesh = sliced;
         }
         LayerStack layers = plain(stack);

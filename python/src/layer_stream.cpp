@@ -68,7 +68,7 @@ LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsign
                     queue_.put(std::move(kept), stop);
                 };
             };
-            slice_to(sink, mesh_->to_slice(execution), plan_, execution, nullptr, with);
+            slice_to(sink, mesh_->mesh(), plan_, execution, nullptr, with);
         } catch (...) {
             failure = std::current_exception();
         }

@@ -71,7 +71,7 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const Plan& plan, co
     const Engine& chosen = engine(with);
     auto stack = std::make_shared<Stack>();
     run(threads, progress, [&](const Execution& execution) {
-        stack->layers = shared(slice(mesh->to_slice(execution), plan, execution, nullptr, chosen));
+        stack->layers = shared(slice(mesh->mesh(), plan, execution, nullptr, chosen));
     });
     stack->label = mesh->origin().label;
     stack->box = mesh->box();

@@ -144,15 +144,10 @@ SourceMesh::SourceMesh(Mesh mesh, MeshOrigin origin, const Execution& execution)
     : mesh_(std::move(mesh)), origin_(std::move(origin)), box_(bounding_box(mesh_, execution)) {}
 
 const IndexedMesh& SourceMesh::welded(const Execution& execution) const {
-    std::call_once(welded_once_, [&] { welded_ = Mesh(weld(mesh_, execution)); });
+    std::call_once(welded_once_, [&] {
+        welded_ = mesh_.indexed() != nullptr ? mesh_.with_joined_vertices(execution) : weld(mesh_, execution);
+    });
     return *welded_.indexed();
-}
-
-Mesh SourceMesh::to_slice(const Execution& execution) const {
-    if (mesh_.soup() != nullptr)
-        return mesh_;
-    static_cast<void>(welded(execution));
-    return welded_;
 }
 
 Plate SourceMesh::plate() const {

@@ -43,10 +43,6 @@ class SourceMesh {
     /// Equal vertices joined; done when somebody asks first. To be asked without the interpreter lock.
     [[nodiscard]] const IndexedMesh& welded(const Execution& execution) const;
 
-    /// What is sliced: a soup as it is, an indexed mesh welded, since its file or its arrays need not share
-    /// the vertices that are equal.
-    [[nodiscard]] Mesh to_slice(const Execution& execution) const;
-
     /// A plate on which it stands alone.
     [[nodiscard]] Plate plate() const;
 

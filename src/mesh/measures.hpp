@@ -9,11 +9,6 @@
 
 namespace lamella {
 
-[[nodiscard]] inline Triangle3 corners(const IndexedMesh& mesh, std::size_t i) noexcept {
-    const auto& t = mesh.triangles[i];
-    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 [[nodiscard]] inline double area(const Triangle3& t) noexcept {
     const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
     const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};

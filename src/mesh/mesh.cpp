@@ -2,17 +2,47 @@
 
 #include "lamella/core/error.hpp"
 
+#include "mesh/joined_vertices.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdint>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 namespace lamella {
 
 Mesh::Mesh(TriangleSoup soup) : soup_(std::move(soup)) {}
 
-Mesh::Mesh(IndexedMesh mesh) : indexed_(std::make_shared<const IndexedMesh>(std::move(mesh))) {}
+/// What is known of an indexed mesh's repeated vertices.
+struct Mesh::Joined {
+    std::mutex mutex;
+    bool known = false;
+    std::shared_ptr<const IndexedMesh> mesh; ///< null where there are none
+};
+
+Mesh::Mesh(IndexedMesh mesh)
+    : indexed_(std::make_shared<const IndexedMesh>(std::move(mesh))), joined_(std::make_shared<Joined>()) {}
+
+Mesh Mesh::with_joined_vertices(const Execution& execution) const {
+    if (!indexed_)
+        return *this;
+    const std::lock_guard lock(joined_->mutex);
+    if (!joined_->known) {
+        if (std::optional<IndexedMesh> joined = joined_vertices(*indexed_, execution))
+            joined_->mesh = std::make_shared<const IndexedMesh>(*std::move(joined));
+        joined_->known = true;
+    }
+    if (!joined_->mesh)
+        return *this;
+    Mesh mesh;
+    mesh.indexed_ = joined_->mesh;
+    mesh.joined_ = std::make_shared<Joined>();
+    mesh.joined_->known = true;
+    return mesh;
+}
 
 Mesh Mesh::transformed(const Transform& map) const {
     if (map == Transform{})
@@ -21,16 +51,15 @@ Mesh Mesh::transformed(const Transform& map) const {
 }
 
 Box3 bounding_box(const Mesh& mesh, const Execution& execution) {
-    return mesh.indexed() != nullptr ? bounding_box(*mesh.indexed(), execution)
-                                     : bounding_box(*mesh.soup(), execution);
+    return mesh.visit([&](const auto& kind) { return bounding_box(kind, execution); });
 }
 
 double volume(const Mesh& mesh, const Execution& execution) {
-    return mesh.indexed() != nullptr ? volume(*mesh.indexed(), execution) : volume(*mesh.soup(), execution);
+    return mesh.visit([&](const auto& kind) { return volume(kind, execution); });
 }
 
 IndexedMesh weld(const Mesh& mesh, const Execution& execution) {
-    return mesh.indexed() != nullptr ? weld(*mesh.indexed(), execution) : weld(*mesh.soup(), execution);
+    return mesh.visit([&](const auto& kind) { return weld(kind, execution); });
 }
 
 Mesh joined(std::span<const Mesh> meshes, const Execution& execution) {

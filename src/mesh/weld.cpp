@@ -15,12 +15,14 @@
 #include "core/executor.hpp"
 #include "core/key_groups.hpp"
 #include "core/pages.hpp"
+#include "mesh/joined_vertices.hpp"
 
 #include <fmt/format.h>
 
 #include <atomic>
 #include <bit>
 #include <compare>
+#include <optional>
 
 namespace lamella {
 
@@ -223,6 +225,11 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
 } // namespace
 
 IndexedMesh weld(IndexedMesh mesh, const Execution& execution) {
+    std::optional<IndexedMesh> joined = joined_vertices(mesh, execution);
+    return joined ? *std::move(joined) : std::move(mesh);
+}
+
+std::optional<IndexedMesh> joined_vertices(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
     const std::size_t vertices = mesh.vertices.size();
     const auto key_of = [](const Point3& p) {
@@ -249,23 +256,26 @@ IndexedMesh weld(IndexedMesh mesh, const Execution& execution) {
         });
     executor.check_cancelled();
     if (!any.load(std::memory_order_relaxed))
-        return mesh;
+        return std::nullopt;
 
     const PageArray<std::uint32_t> number(vertices);
     const std::uint32_t kinds = number_firsts(executor, first.span(), number.span());
-    std::vector<Point3> kept(kinds);
+    IndexedMesh joined;
+    joined.vertices.resize(kinds);
     executor.for_chunks(vertices, block, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i)
             if (first[i] == 0)
-                kept[number[i]] = mesh.vertices[i];
+                joined.vertices[number[i]] = mesh.vertices[i];
     });
-    mesh.vertices = std::move(kept);
+    joined.triangles.resize(mesh.triangles.size());
     executor.for_chunks(mesh.triangles.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i)
-            for (std::uint32_t& corner : mesh.triangles[i])
-                corner = number[first[corner] != 0 ? first[corner] - 1 : corner];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t corner = mesh.triangles[i][k];
+                joined.triangles[i][k] = number[first[corner] != 0 ? first[corner] - 1 : corner];
+            }
     });
-    return mesh;
+    return joined;
 }
 
 IndexedMesh weld(const TriangleSoup& soup, const Execution& execution) {

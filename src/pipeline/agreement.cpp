@@ -18,7 +18,7 @@ std::string outcome_of(const std::function<void()>& step) {
     } catch (const Error& error) {
         return failed(error.kind(), error.what());
     } catch (const std::bad_alloc&) {
-        return failed(ErrorKind::limit, "memory ran out on one of the ranks; use more of them");
+        return failed(ErrorKind::limit, "memory ran out on one of the processes; use more of them");
     } catch (const std::exception& error) {
         return failed(ErrorKind::internal, error.what());
     }
@@ -30,8 +30,10 @@ ErrorKind kind_of(const std::string& outcome) {
 
 } // namespace
 
-void in_agreement(Communicator& ranks, const std::function<void()>& step) {
-    const std::vector<std::string> outcomes = ranks.gather(outcome_of(step));
+void in_agreement(Communicator& processes, const std::function<void()>& step) {
+    if (processes.size() == 1)
+        return step();
+    const std::vector<std::string> outcomes = processes.gather(outcome_of(step));
     const std::string* worst = nullptr;
     for (const std::string& outcome : outcomes)
         if (!outcome.empty() && (worst == nullptr || (kind_of(*worst) == ErrorKind::cancelled &&

@@ -1,17 +1,18 @@
 #pragma once
 
-// Steps that fail on all ranks when they fail on one.
+// Steps that fail on all processes when they fail on one.
 
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/ranks.hpp"
+#include "lamella/pipeline/processes.hpp"
 
 #include <exception>
 #include <functional>
 
 namespace lamella {
 
-/// Runs a step in which ranks do not talk to each other, and waits for all of them. Where it threw on any of
-/// them, all throw what the first of these threw (rather not, that it was cancelled), as Error.
-void in_agreement(Communicator& ranks, const std::function<void()>& step);
+/// Runs a step in which processes do not talk to each other, and waits for all of them. Where it threw on any
+/// of them, all throw what the first of these threw (rather not, that it was cancelled), as Error. What is
+/// thrown on a process alone passes unchanged.
+void in_agreement(Communicator& processes, const std::function<void()>& step);
 
 } // namespace lamella

@@ -43,6 +43,21 @@ std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes) noexce
     return program + thread * threads + plane * planes;
 }
 
+std::uint64_t JobMemory::of_messages(std::size_t processes) const noexcept {
+    return processes > 1 ? limit / 4 : 0;
+}
+
+std::uint64_t JobMemory::triangles_in_a_round(std::size_t processes) const noexcept {
+    constexpr std::uint64_t fewest = 1 << 12;
+    constexpr std::uint64_t most = 1 << 20; // more makes messages no faster
+    // They are there twice: outgoing and incoming.
+    return std::clamp(limit / 8 / (2 * sizeof(Triangle3f)) / processes, fewest, most);
+}
+
+std::uint64_t JobMemory::of_output() const noexcept {
+    return limit / 8;
+}
+
 std::uint64_t JobMemory::of_input(unsigned threads) const noexcept {
     const std::uint64_t times = (binary_record + triangle_bytes(true, threads)) / binary_record + 1;
     return limit / times;

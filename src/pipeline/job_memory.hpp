@@ -24,7 +24,15 @@ struct JobMemory {
     /// What the program, its threads and its notes about each plane take.
     [[nodiscard]] static std::uint64_t overhead(unsigned threads, std::uint64_t planes) noexcept;
 
-    /// Of standard input, what of it may be kept in memory because all of it would be sliced there.
+    /// What goes from process to process, and what a process of several keeps of its output until all write.
+    [[nodiscard]] std::uint64_t of_messages(std::size_t processes) const noexcept;
+    /// How many triangles each of several processes reads before they exchange them: so many that those on
+    /// their way take no more than half of `of_messages`, also where all go to one process.
+    [[nodiscard]] std::uint64_t triangles_in_a_round(std::size_t processes) const noexcept;
+    /// Bytes of the output that a process of several keeps in memory: half of `of_messages`.
+    [[nodiscard]] std::uint64_t of_output() const noexcept;
+
+    /// How many bytes of standard input to keep in memory: no more than could be sliced there.
     [[nodiscard]] std::uint64_t of_input(unsigned threads) const noexcept;
 
     /// What slicing a mesh in memory takes at most, all else included.

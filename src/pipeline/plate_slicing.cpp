@@ -49,31 +49,6 @@ class JointProgress {
     std::uint64_t planes_ = 0;
 };
 
-void add(MatchingCounts::Cases& to, const MatchingCounts::Cases& cases) {
-    to.new_list += cases.new_list;
-    to.front += cases.front;
-    to.back += cases.back;
-    to.link += cases.link;
-    to.close += cases.close;
-}
-
-/// Times and work; what the layers hold is counted part by part.
-void add(SliceReport& to, const SliceReport& report) {
-    to.weld_seconds += report.weld_seconds;
-    to.link_seconds += report.link_seconds;
-    to.slice_seconds += report.slice_seconds;
-    if (!report.matching)
-        return;
-    if (!to.matching)
-        to.matching.emplace();
-    to.matching->searches += report.matching->searches;
-    to.matching->comparisons += report.matching->comparisons;
-    add(to.matching->inserted, report.matching->inserted);
-    add(to.matching->by_edge_link, report.matching->by_edge_link);
-    to.matching->node_bytes = report.matching->node_bytes;
-    to.matching->bytes = std::max(to.matching->bytes, report.matching->bytes);
-}
-
 Layer moved(const Layer& layer, double dx, double dy) {
     if (dx == 0 && dy == 0)
         return layer;
@@ -115,7 +90,7 @@ std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint6
 }
 
 /// The layers of all parts on a run of planes, formatted in parallel, written in order. Empties the stacks.
-void hand_on(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>& stacks, Executor& executor) {
+void emit(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>& stacks, Executor& executor) {
     const std::size_t planes = stacks.front().size();
     const std::size_t at_once = std::size_t{4} * executor.workers(); // so that all workers have some
     std::vector<std::function<void()>> actions(at_once);
@@ -137,14 +112,13 @@ void hand_on(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>&
     }
 }
 
-void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
-                 SliceReport& report, const Engine& with, std::uint64_t points_in_flight) {
-    report = {};
-    report.layers = plan.layers.size();
+SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan,
+                        const Execution& execution, const Engine& engine, std::uint64_t points_in_flight) {
+    SliceReport report;
     // Each window takes a look at all triangles: they are few, and large. Engines that weld would do so anew.
     constexpr std::uint64_t share = 2;
     const auto all = static_cast<std::uint32_t>(plan.layers.size());
-    const std::vector<PlaneRange> runs = with.welds || points_in_flight == 0
+    const std::vector<PlaneRange> runs = engine.welds || points_in_flight == 0
                                              ? std::vector<PlaneRange>{{0, all}}
                                              : windows(plate, plan, share * points_in_flight, execution);
     JointProgress progress(plate, plan, runs.size());
@@ -153,25 +127,26 @@ void slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan, co
         std::vector<LayerStack> stacks;
         for (const PlateShape& shape : plate.shapes) {
             SliceReport ours;
-            stacks.push_back(slice(shape.mesh, part_of(plan, run), progress.next(execution), &ours, with));
-            add(report, ours);
+            stacks.push_back(slice(shape.mesh, part_of(plan, run), progress.next(execution), &ours, engine));
+            report += ours;
         }
-        hand_on(sink, plate, stacks, executor);
+        emit(sink, plate, stacks, executor);
     }
+    return report;
 }
 
 } // namespace
 
-void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
-                    SliceReport& report, const Engine& with, std::uint64_t points_in_flight) {
-    if (plate.parts.size() > 1) {
-        slice_parts(sink, plate, plan, execution, report, with, points_in_flight);
-        return;
-    }
+SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
+                           const Execution& execution, const Engine& engine, std::uint64_t points_in_flight) {
+    if (plate.parts.size() > 1)
+        return slice_parts(sink, plate, plan, execution, engine, points_in_flight);
     const LayerSink single = [&](Layer&& layer) {
         return sink(std::span<const Layer>(&layer, 1));
     };
-    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, with, points_in_flight);
+    SliceReport report;
+    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, engine, points_in_flight);
+    return report;
 }
 
 } // namespace lamella

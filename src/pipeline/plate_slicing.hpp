@@ -20,8 +20,10 @@ using PlateSink = std::function<std::function<void()>(std::span<const Layer> par
 
 /// A plate with one part is sliced while its layers go to the sink. Others are sliced window by window: a run
 /// of planes on which all shapes together have twice `points_in_flight` (as slice_to takes it; 0: all
-/// planes at once). Contours and points are for the sink to count: parts may share a shape.
-void slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
-                    SliceReport& report, const Engine& with, std::uint64_t points_in_flight = 0);
+/// planes at once). Of the report, only times and MatchingCounts say something: what the layers hold is for
+/// the sink to count, as parts may share a shape.
+[[nodiscard]] SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
+                                         const Execution& execution, const Engine& engine,
+                                         std::uint64_t points_in_flight);
 
 } // namespace lamella

@@ -1,18 +1,22 @@
 #include "lamella/pipeline/slice_file.hpp"
 
-#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/inspect.hpp"
 
 #include "core/executor.hpp"
+#include "core/stopwatch.hpp"
+#include "pipeline/agreement.hpp"
+#include "pipeline/feed.hpp"
 #include "pipeline/job_memory.hpp"
-#include "pipeline/layer_source.hpp"
-#include "pipeline/plate_source.hpp"
-#include "pipeline/slicing_steps.hpp"
-#include "pipeline/stopwatch.hpp"
+#include "pipeline/job_output.hpp"
+#include "pipeline/layer_totals.hpp"
+#include "pipeline/packed.hpp"
+#include "pipeline/plate_slicing.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <functional>
@@ -20,7 +24,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -104,13 +111,15 @@ Plan uniform_plan(const FileJob& job, const Box3& box) {
     return plan_uniform(box.min.z, box.max.z, job.layers);
 }
 
-/// `adaptive` makes the plan of layers of varying height.
-Plan plan_within(const Box3& box, const FileJob& job, Plan listed,
-                 const std::function<Plan(const AdaptiveLayers&)>& adaptive) {
+} // namespace
+
+Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
+    check_heights(plate);
+    const Box3& box = plate.box;
     if (!job.z.empty())
-        return selected(job, std::move(listed), box);
+        return selected(job, plan_listed(job.z, job.layers.slice_at), box);
     if (job.adaptive)
-        return selected(job, adaptive(*job.adaptive), box);
+        return selected(job, plan_adaptive(joined(plate, execution), *job.adaptive, execution), box);
     if (!job.heights.empty())
         return selected(
             job,
@@ -119,126 +128,7 @@ Plan plan_within(const Box3& box, const FileJob& job, Plan listed,
     return uniform_plan(job, box);
 }
 
-} // namespace
-
-Plan plan_of(const FileJob& job, LayerSource& source, Plan listed, const Execution& execution) {
-    return plan_within(source.plate().box, job, std::move(listed),
-                       [&](const AdaptiveLayers& layers) { return source.adaptive_plan(layers, execution); });
-}
-
-Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
-    check_heights(plate);
-    Plan listed;
-    if (!job.z.empty())
-        listed = plan_listed(job.z, job.layers.slice_at);
-    return plan_within(plate.box, job, std::move(listed), [&](const AdaptiveLayers& layers) {
-        return plan_adaptive(joined(plate, execution), layers, execution);
-    });
-}
-
 namespace {
-
-/// What is gathered about the layers while they pass, in any order and from any thread.
-class Gatherer {
-  public:
-    Gatherer(const Plan& plan, std::size_t parts, const FileJob& job)
-        : first_(plan.layers.front().index), open_(plan.layers.size()), inside_out_(plan.layers.size()),
-          gaps_(job.repair.close_gaps_mm ? plan.layers.size() : 0),
-          layers_(job.layer_statistics ? plan.layers.size() : 0), changes_(plan.layers.size()),
-          parts_(parts) {}
-
-    /// `joins`: of the gaps that were closed in it.
-    void add(std::span<const Layer> parts, std::vector<GapJoin> joins) {
-        const Layer& first = parts.front();
-        const auto place = static_cast<std::size_t>(first.index - first_);
-        for (const GapJoin& join : joins) {
-            FileResult::Gaps& gaps = gaps_[place];
-            ++gaps.closed;
-            gaps.longest_mm = std::max(gaps.longest_mm, join.length_mm);
-            gaps.total_mm += join.length_mm;
-        }
-        LayerMeasure together;
-        OpenGaps& open = open_[place];
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            const Layer& layer = parts[i];
-            // In normal form the first ring has the smallest point of all, so nothing lies around it.
-            open += open_gaps(layer);
-            inside_out_[place] |= layer.rings > 0 && ring_area(layer.contour(0)) < 0;
-            parts_[i].contours.fetch_add(layer.contours(), std::memory_order_relaxed);
-            parts_[i].open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
-            parts_[i].points.fetch_add(layer.points.size(), std::memory_order_relaxed);
-            if (!layers_.empty())
-                together.add(measure(layer));
-        }
-        if (!layers_.empty())
-            layers_[place] = {.index = first.index,
-                              .z = first.z,
-                              .thickness = first.thickness(),
-                              .measure = together,
-                              .open_gaps = open,
-                              .joins = std::move(joins),
-                              .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
-                              .changes = changes_[place]};
-    }
-
-    /// Before the layers are added.
-    void add(const Layer& layer, const LayerChanges& changes, double seconds) {
-        changes_[static_cast<std::size_t>(layer.index - first_)] += changes;
-        step_seconds_.fetch_add(seconds, std::memory_order_relaxed);
-    }
-
-    void finish(const Plan& plan, FileResult& result) {
-        const auto count = [](bool affected, double z, FileResult::Affected& into) {
-            if (affected && into.layers++ == 0)
-                into.first_z = z;
-        };
-        for (std::size_t i = 0; i < open_.size(); ++i) {
-            count(open_[i].count > 0, plan.layers[i].z, result.open);
-            result.open_gaps += open_[i];
-            count(inside_out_[i] != 0, plan.layers[i].z, result.inside_out);
-        }
-        for (std::size_t i = 0; i < gaps_.size(); ++i) {
-            if (gaps_[i].closed == 0)
-                continue;
-            FileResult::Gaps& all = result.gaps;
-            if (all.layers++ == 0)
-                all.first_z = plan.layers[i].z;
-            all.closed += gaps_[i].closed;
-            all.longest_mm = std::max(all.longest_mm, gaps_[i].longest_mm);
-            all.total_mm += gaps_[i].total_mm;
-        }
-        SliceReport& report = result.report;
-        report.contours = report.open_chains = report.points = 0;
-        for (std::size_t i = 0; i < parts_.size(); ++i) {
-            PartResult& part = result.parts[i];
-            report.contours += part.contours = parts_[i].contours;
-            report.open_chains += part.open_chains = parts_[i].open_chains;
-            report.points += part.points = parts_[i].points;
-        }
-        for (const LayerStatistics& layer : layers_)
-            result.volume_mm3 += layer.measure.area_mm2 * layer.thickness;
-        result.layers = std::move(layers_);
-        if (result.changes)
-            for (const LayerChanges& changes : changes_)
-                *result.changes += changes;
-        result.seconds.polygon = step_seconds_;
-    }
-
-  private:
-    struct Counts {
-        std::atomic<std::uint64_t> contours{0};
-        std::atomic<std::uint64_t> open_chains{0};
-        std::atomic<std::uint64_t> points{0};
-    };
-    std::uint64_t first_;
-    std::vector<OpenGaps> open_;
-    std::vector<unsigned char> inside_out_; ///< not bits: threads write to neighbours
-    std::vector<FileResult::Gaps> gaps_;    ///< of each layer, where gaps are closed
-    std::vector<LayerStatistics> layers_;
-    std::vector<LayerChanges> changes_; // of all parts
-    std::atomic<double> step_seconds_{0};
-    std::vector<Counts> parts_;
-};
 
 /// The layers of all parts with their gaps closed.
 std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, std::vector<GapJoin>& joins) {
@@ -251,15 +141,7 @@ std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, 
     return closed;
 }
 
-PlaneRange planes_of(const Shard& shard, LayerSource& source, const Plan& plan, const Execution& execution) {
-    if (shard.number < 1 || shard.number > shard.count)
-        throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
-                                                  shard.number, shard.count));
-    return divide_evenly(SlabSurvey(source.counts(plan, execution)), shard.count)[shard.number - 1];
-}
-
-} // namespace
-
+/// What the head of the slice file says.
 LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     LayerFileInfo info{
         .box = plate.box, .layers = plan.layers.size(), .bottom = plan.layers.front().bottom, .parts = {}};
@@ -268,151 +150,339 @@ LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
     return info;
 }
 
-void describe_parts(const FileJob& job, const LayerSource& source, FileResult& result) {
-    const Plate& plate = source.plate();
-    check_heights(plate);
-    if (job.build_volume)
-        check_build_volume(plate, *job.build_volume);
-    result.files = plate.files;
-    result.box = plate.box;
-    for (const PlatePart& part : plate.parts) {
-        result.parts.push_back(
-            {.label = part.label, .triangles = source.triangles(part.shape), .box = part.box});
-        result.triangles += result.parts.back().triangles;
-    }
+/// "2 boundary edges, 1 inverted shell".
+std::string describe_defects(const Inspection& found) {
+    struct Count {
+        std::uint64_t n;
+        std::string_view one;
+        std::string_view many;
+    };
+    const std::array<Count, 6> counts{{
+        {found.boundary_edges, "boundary edge", "boundary edges"},
+        {found.nonmanifold_edges, "edge with more than two triangles", "edges with more than two triangles"},
+        {found.orientation_conflicts, "orientation conflict", "orientation conflicts"},
+        {found.duplicate_triangles, "duplicate triangle", "duplicate triangles"},
+        {found.degenerate_triangles, "degenerate triangle", "degenerate triangles"},
+        {found.inverted_shells, "inverted shell", "inverted shells"},
+    }};
+    std::string text;
+    for (const Count& count : counts)
+        if (count.n != 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.n,
+                                count.n == 1 ? count.one : count.many);
+    return text;
 }
 
-void slice_layers(const FileJob& job, LayerSource& source, const Plan& plan,
-                  std::span<LayerWriter* const> writers, FileResult& result, const Engine& with,
-                  const Execution& execution) {
-    Gatherer gatherer(plan, source.plate().parts.size(), job);
-    if (job.steps.any())
-        result.changes.emplace();
-    const PlateSink sink = [&](std::span<const Layer> sliced) -> std::function<void()> {
-        std::span<const Layer> parts = sliced;
+/// The counts of all parts, each of which is a solid of its own.
+Inspection together(const Plate& plate, const std::vector<Inspection>& shapes) {
+    Inspection all;
+    for (const PlatePart& part : plate.parts) {
+        const Inspection& one = shapes[part.shape];
+        all.box.add(part.box);
+        all.volume_mm3 += one.volume_mm3;
+        all.area_mm2 += one.area_mm2;
+        all.triangles += one.triangles;
+        all.vertices += one.vertices;
+        all.boundary_edges += one.boundary_edges;
+        all.nonmanifold_edges += one.nonmanifold_edges;
+        all.orientation_conflicts += one.orientation_conflicts;
+        all.duplicate_triangles += one.duplicate_triangles;
+        all.degenerate_triangles += one.degenerate_triangles;
+        all.shells += one.shells;
+        all.cavities += one.cavities;
+        all.inverted_shells += one.inverted_shells;
+    }
+    return all;
+}
+
+/// Inspects every shape, and leaves it welded for an engine that would weld it once more.
+Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Execution& execution) {
+    std::vector<Inspection> found;
+    for (PlateShape& shape : plate.shapes) {
+        IndexedMesh welded = weld(shape.mesh, execution);
+        found.push_back(inspect(welded, execution));
+        if (strict && !found.back().sound())
+            throw Error(ErrorKind::defect,
+                        fmt::format("{}: the mesh has defects: {}", plate.files[shape.input].path,
+                                    describe_defects(found.back())));
+        if (keep_welded)
+            shape.mesh = Mesh(std::move(welded));
+    }
+    return together(plate, found);
+}
+
+/// What was found in the meshes and done to them before they were sliced.
+struct Prepared {
+    std::optional<Inspection> inspection;
+    std::vector<FileResult::MeshRepair> repairs;
+    double volume_mm3 = 0;
+    double seconds = 0; ///< but for the volume
+};
+
+Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const Execution& execution) {
+    Prepared done;
+    const Stopwatch welding;
+    const bool inspected = job.inspect || job.strict;
+    const bool indexed = std::ranges::any_of(
+        plate.shapes, [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
+    // As slicing would do, but so that the mesh as read is let go of.
+    for (PlateShape& shape : plate.shapes)
+        shape.mesh = shape.mesh.with_joined_vertices(execution);
+    if (inspected)
+        done.inspection = inspect_plate(plate, engine.welds, job.strict, execution);
+    if (indexed || inspected)
+        done.seconds = welding.seconds();
+    if (job.layer_statistics)
+        for (const PlatePart& part : plate.parts)
+            done.volume_mm3 += volume(plate.shapes[part.shape].mesh, execution);
+    if (job.repair.change_the_mesh()) {
+        const Stopwatch repairing;
+        for (PlateShape& shape : plate.shapes) {
+            FileResult::MeshRepair& repair = done.repairs.emplace_back();
+            repair.file = shape.input;
+            shape.mesh = repaired(shape.mesh, job.repair, repair.repairs, execution);
+            if (shape.mesh.empty())
+                throw Error(ErrorKind::input, fmt::format("{}: nothing of the mesh is left after its repair",
+                                                          plate.files[shape.input].path));
+        }
+        done.seconds += repairing.seconds();
+    }
+    return done;
+}
+
+/// Of equal work: the planes of each process, empty ones at the end where there are fewer planes; or those of
+/// a shard.
+std::vector<PlaneRange> divide(const FileJob& job, const Plan& plan, Feed& feed, Communicator& processes,
+                               const Execution& execution) {
+    const auto planes = static_cast<std::uint32_t>(plan.layers.size());
+    if (job.shard && (job.shard->number < 1 || job.shard->number > job.shard->count))
+        throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
+                                                  job.shard->number, job.shard->count));
+    if (!job.shard && processes.size() == 1 && feed.meshes() != nullptr)
+        return {{0, planes}};
+    const SlabSurvey survey(feed.count(plan, execution));
+    if (job.shard)
+        return {divide_evenly(survey, job.shard->count)[job.shard->number - 1]};
+    std::vector<PlaneRange> division =
+        divide_evenly(survey, static_cast<std::uint32_t>(std::min<std::size_t>(processes.size(), planes)));
+    division.resize(processes.size(), {planes, planes});
+    return division;
+}
+
+/// What is made of the layers of one plane on their way from the engine to the output.
+class LayerWay {
+  public:
+    LayerWay(const FileJob& job, LayerTotals& totals, JobOutput& output)
+        : job_(job), totals_(totals), output_(output) {}
+
+    /// As PlateSink.
+    [[nodiscard]] std::function<void()> operator()(std::span<const Layer> parts) {
         std::vector<Layer> closed;
         std::vector<GapJoin> joins;
-        if (job.repair.close_gaps_mm && std::ranges::any_of(parts, &Layer::open_chains)) {
-            closed = without_gaps(parts, *job.repair.close_gaps_mm, joins);
+        if (job_.repair.close_gaps_mm && std::ranges::any_of(parts, &Layer::open_chains)) {
+            closed = without_gaps(parts, *job_.repair.close_gaps_mm, joins);
             parts = closed;
         }
         std::vector<Layer> made;
-        if (job.steps.any()) {
+        LayerChanges changes;
+        if (job_.steps.any()) {
+            const Stopwatch stepping;
             for (const Layer& layer : parts) {
-                const Stopwatch stepping;
-                LayerChanges changes;
-                made.push_back(take_steps(job.steps, layer, changes));
-                gatherer.add(layer, changes, stepping.seconds());
+                LayerChanges one;
+                made.push_back(take_steps(job_.steps, layer, one));
+                changes += one;
             }
+            step_seconds_.fetch_add(stepping.seconds(), std::memory_order_relaxed);
             parts = made;
         }
-        gatherer.add(parts, std::move(joins));
-        std::vector<std::function<void()>> writes;
-        for (LayerWriter* const writer : writers)
-            writes.push_back(writer->prepare(parts));
-        if (writes.empty())
+        totals_.add(parts, std::move(joins), changes);
+        std::function<void()> write = output_.prepare(parts);
+        if (!write)
             return {};
-        return [&result, writes = std::move(writes)] {
+        return [this, write = std::move(write)] {
             const Stopwatch writing;
-            for (const std::function<void()>& write : writes)
-                write();
-            result.seconds.write += writing.seconds();
+            write();
+            write_seconds_ += writing.seconds();
         };
-    };
-    source.slice_to(sink, plan, execution, result, with);
-    gatherer.finish(plan, result);
+    }
+
+    [[nodiscard]] double step_seconds() const noexcept { return step_seconds_; }   ///< of all threads
+    [[nodiscard]] double write_seconds() const noexcept { return write_seconds_; } ///< in order
+
+  private:
+    const FileJob& job_;
+    LayerTotals& totals_;
+    JobOutput& output_;
+    std::atomic<double> step_seconds_{0};
+    double write_seconds_ = 0;
+};
+
+/// Progress in planes of the whole; only that: stages do not come back.
+Execution in_share(PlaneRange share, PlaneRange mine, const Execution& execution) {
+    Execution run = execution;
+    if (execution.progress)
+        run.progress = [&execution, share, mine](const Progress& progress) {
+            if (progress.stage == Stage::slice && progress.total != 0)
+                execution.progress({Stage::slice,
+                                    share.begin - mine.begin + progress.done * share.size() / progress.total,
+                                    mine.size()});
+        };
+    return run;
 }
 
-void check_closed(const FileJob& job, const FileResult& result) {
-    if (job.strict && result.report.open_chains > 0)
-        throw Error(ErrorKind::defect,
-                    fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
-                                job.inputs.front().path, result.report.open_chains, result.open.first_z));
+/// Times are the longest of all processes, since they work at the same time; counts are added up.
+void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& report) {
+    if (processes.size() == 1)
+        return;
+    const std::string mine = Packer()
+                                 .put(seconds)
+                                 .put(report.weld_seconds)
+                                 .put(report.link_seconds)
+                                 .put(report.slice_seconds)
+                                 .put(report.matching.value_or(MatchingCounts{}))
+                                 .take();
+    if (report.matching)
+        report.matching.emplace();
+    for (const std::string& message : processes.gather(mine)) {
+        Unpacker from(message);
+        const auto other = from.get<FileResult::Seconds>();
+        for (double FileResult::Seconds::*stage :
+             {&FileResult::Seconds::read, &FileResult::Seconds::weld, &FileResult::Seconds::polygon,
+              &FileResult::Seconds::write})
+            seconds.*stage = std::max(seconds.*stage, other.*stage);
+        for (double SliceReport::*time :
+             {&SliceReport::weld_seconds, &SliceReport::link_seconds, &SliceReport::slice_seconds})
+            report.*time = std::max(report.*time, from.get<double>());
+        if (const auto matching = from.get<MatchingCounts>(); report.matching)
+            *report.matching += matching;
+    }
 }
 
-namespace {
-
-void finish(LayerWriter& writer, FileResult& result) {
-    const Stopwatch writing;
-    writer.finish();
-    result.seconds.write += writing.seconds();
-    result.bytes = writer.bytes();
-    result.warnings = writer.warnings();
-}
-
-void finish(LayerPageWriter& page, const FileReport& report, FileResult& result) {
-    if (report.notes)
-        page.tell(report.notes(result));
-    page.finish();
-    result.report_warnings = page.warnings();
-}
-
-/// `open` gives the source of the layers, once the wishes are known to be possible.
-FileResult slice_source(const FileJob& job, const Execution& execution,
-                        const std::function<std::unique_ptr<LayerSource>(const Engine& with)>& open) {
+/// `feed_of` gives the triangles, once the wishes are known to be possible.
+FileResult slice_job(const FileJob& job, Communicator& processes, const Execution& execution,
+                     const std::function<Feed(const Engine& engine)>& feed_of) {
     const Stopwatch total;
     FileResult result;
 
     // What can be wrong with the wishes shows before a large file is read.
-    const Engine& with = job.engine.empty() ? engines().front() : engine(job.engine);
-    const LayerFormat* format = job.output.empty() ? nullptr : &layer_format(job.format, job.output);
-    Plan plan;
+    if (processes.size() > 1 && job.shard)
+        throw Error(ErrorKind::usage,
+                    "processes share out all layers among themselves, not those of a shard");
+    if (processes.size() > 1 && !job.report.path.empty())
+        throw Error(ErrorKind::usage,
+                    "no process has all layers for a page of the run; write a slice file, and "
+                    "let lamella view make a page of it");
+    const Engine& engine = job.engine.empty() ? engines().front() : lamella::engine(job.engine);
+    if (!job.output.empty())
+        static_cast<void>(layer_format(job.format, job.output));
     if (!job.z.empty())
-        plan = plan_listed(job.z, job.layers.slice_at);
-    result.engine = with.name;
+        static_cast<void>(plan_listed(job.z, job.layers.slice_at));
+    result.engine = engine.name;
     result.threads = thread_count(execution);
 
     const Stopwatch reading;
-    const std::unique_ptr<LayerSource> source = open(with);
+    Feed feed = feed_of(engine);
     result.seconds.read = reading.seconds();
-    describe_parts(job, *source, result);
-    plan = plan_of(job, *source, std::move(plan), execution);
-    result.planned_layers = plan.layers.size();
-    result.shard = {0, static_cast<std::uint32_t>(plan.layers.size())};
-    if (job.shard) {
-        result.shard = planes_of(*job.shard, *source, plan, execution);
-        plan = part_of(plan, result.shard);
-    }
-    result.bottom = plan.layers.front().bottom;
-    result.top = plan.layers.back().top;
-    source->prepare(job, with, result, execution);
+    const Plate& plate = feed.plate();
 
-    std::vector<LayerWriter*> writers;
-    std::unique_ptr<LayerWriter> writer;
-    if (format != nullptr) {
-        writer = open_layer_writer(job.output, *format, file_info(source->plate(), plan), job.write);
-        writers.push_back(writer.get());
-        result.format = format->name;
+    Plan plan;
+    Prepared prepared;
+    in_agreement(processes, [&] {
+        check_heights(plate);
+        if (job.build_volume)
+            check_build_volume(plate, *job.build_volume);
+        plan = plan_of(job, plate, execution);
+        if (Plate* const meshes = feed.meshes())
+            prepared = prepare(*meshes, job, engine, execution);
+    });
+    const std::vector<PlaneRange> division = divide(job, plan, feed, processes, execution);
+    const PlaneRange mine = division[processes.process()];
+    const PlaneRange all{division.front().begin, division.back().end};
+    const Plan written = part_of(plan, all);
+
+    JobOutput output(job, file_info(plate, written), mine, processes, feed.memory().of_output());
+    LayerTotals totals(job, part_of(plan, mine).layers, plate.parts.size());
+    LayerWay way(job, totals, output);
+    double slice_seconds = 0; // without waiting for others
+    std::uint64_t shares_of_all = 0;
+    {
+        const std::vector<PlaneRange> shares = feed.bring(plan, division, execution);
+        shares_of_all = shares.size();
+        in_agreement(processes, [&] {
+            const Stopwatch slicing;
+            for (std::size_t s = 0; s < shares.size(); ++s)
+                result.report += slice_plate_to(
+                    std::ref(way), feed.take(s, execution), part_of(plan, shares[s]),
+                    shares.size() > 1 || feed.meshes() == nullptr ? in_share(shares[s], mine, execution)
+                                                                  : execution,
+                    engine, feed.memory().points_in_flight(result.threads));
+            slice_seconds = slicing.seconds();
+        });
     }
-    std::unique_ptr<LayerPageWriter> report;
-    if (!job.report.path.empty()) {
-        report = open_layer_page(job.report.path, file_info(source->plate(), plan), job.report.page);
-        writers.push_back(report.get());
+    // What was read and found.
+    result.files = plate.files;
+    result.box = plate.box;
+    for (const PlatePart& part : plate.parts) {
+        result.parts.push_back(
+            {.label = part.label, .triangles = feed.triangles(part.shape), .box = part.box});
+        result.triangles += result.parts.back().triangles;
     }
-    slice_layers(job, *source, plan, writers, result, with, execution);
-    check_closed(job, result);
-    if (writer != nullptr)
-        finish(*writer, result);
+    result.mesh_volume_mm3 = feed.meshes() != nullptr ? prepared.volume_mm3 : feed.volume_mm3();
+    result.inspection = prepared.inspection;
+    result.repairs = std::move(prepared.repairs);
+    result.planned_layers = plan.layers.size();
+    result.shard = all;
+    result.bottom = written.layers.front().bottom;
+    result.top = written.layers.back().top;
+    processes.sum(std::span(&shares_of_all, 1));
+    result.slabs = feed.in_pieces() ? shares_of_all : 0;
+    if (feed.meshes() == nullptr)
+        result.seconds.read = feed.figures().read_seconds;
+    result.seconds.weld = prepared.seconds;
+    result.seconds.polygon = way.step_seconds();
+    result.seconds.write = way.write_seconds();
+
+    ProcessFigures figures = feed.figures();
+    figures.planes = mine.size();
+    figures.points = totals.points();
+    figures.slice_seconds = slice_seconds;
+    gather(processes, result.seconds, result.report);
+    totals.gather(processes);
+    totals.tell(result);
+    if (job.strict && result.report.open_chains > 0)
+        throw Error(ErrorKind::defect,
+                    fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
+                                job.inputs.front().path, result.report.open_chains, result.open.first_z));
+
+    const Stopwatch writing;
+    JobOutput::Written file = output.finish_file();
+    result.format = std::move(file.format);
+    result.bytes = file.bytes;
+    result.warnings = std::move(file.warnings);
+    figures.write_seconds = writing.seconds();
+    result.seconds.write += figures.write_seconds;
     result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;
     result.seconds.slice = result.report.slice_seconds;
-    if (report != nullptr)
-        finish(*report, job.report, result);
+    for (const std::string& message : processes.gather(Packer().put(figures).take()))
+        result.processes.push_back(Unpacker(message).get<ProcessFigures>());
+    if (output.has_page())
+        result.report_warnings =
+            output.finish_page(job.report.notes ? job.report.notes(result) : PageNotes{});
     result.seconds.total = total.seconds();
     return result;
 }
 
 } // namespace
 
-FileResult slice_file(const FileJob& job, const Execution& execution) {
-    return slice_source(job, execution,
-                        [&](const Engine& with) { return open_layer_source(job, with, execution); });
+FileResult slice_file(const FileJob& job, const Execution& execution, Communicator& processes) {
+    return slice_job(job, processes, execution,
+                     [&](const Engine& engine) { return Feed(job, engine, processes, execution); });
 }
 
 FileResult slice_file(const FileJob& job, Plate plate, const Execution& execution) {
-    return slice_source(job, execution, [&](const Engine&) {
-        return plate_source(std::move(plate), JobMemory(job), execution);
-    });
+    return slice_job(job, alone(), execution,
+                     [&](const Engine&) { return Feed(job, std::move(plate), alone()); });
 }
 
 } // namespace lamella

@@ -178,8 +178,7 @@ double area_tolerance(const Layer& layer, const LayerMeasure& measure, double qu
 void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> checks,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
     const std::vector<SectionArea> sections = areas_of_sections(layers, options, execution);
-    const Box3 box = options.mesh->soup() != nullptr ? bounding_box(*options.mesh->soup(), execution)
-                                                     : bounding_box(*options.mesh->mesh(), execution);
+    const Box3 box = bounding_box(*options.mesh, execution);
     const double extent = box.empty() ? 0 : std::max(box.max.x - box.min.x, box.max.y - box.min.y);
     double largest_error = 0;
     std::uint64_t differing = 0;

@@ -14,17 +14,11 @@ namespace lamella {
 namespace {
 
 /// Sums twice the area swept from an origin by the directed cut segments of the triangles [begin, end).
-void add_sections(const MeshRef& mesh, const Ranks& ranks, const Point3& origin, std::uint64_t begin,
+void add_sections(const Mesh& mesh, const Ranks& ranks, const Point3& origin, std::uint64_t begin,
                   std::uint64_t end, std::vector<double>& twice) {
     const bool above = ranks.rule() == PlaneRule::section_above;
     for (std::uint64_t i = begin; i < end; ++i) {
-        Triangle3 corner;
-        if (mesh.soup() != nullptr) {
-            corner = mesh.soup()->placed(i);
-        } else {
-            for (std::size_t k = 0; k < 3; ++k)
-                corner[k] = mesh.mesh()->vertices[mesh.mesh()->triangles[i][k]];
-        }
+        const Triangle3 corner = mesh.triangle(i);
         std::array<std::uint32_t, 3> rank;
         for (std::size_t k = 0; k < 3; ++k)
             rank[k] = ranks(corner[k].z);
@@ -53,11 +47,10 @@ void add_sections(const MeshRef& mesh, const Ranks& ranks, const Point3& origin,
 
 } // namespace
 
-std::vector<double> section_areas(const MeshRef& mesh, const Plan& plan, const Execution& execution) {
+std::vector<double> section_areas(const Mesh& mesh, const Plan& plan, const Execution& execution) {
     const Ranks ranks(plan);
     Executor executor(execution);
-    const Box3 box = mesh.soup() != nullptr ? bounding_box(*mesh.soup(), execution)
-                                            : bounding_box(*mesh.mesh(), execution);
+    const Box3 box = bounding_box(mesh, execution);
     std::vector<double> areas(ranks.count(), 0.0);
     if (box.empty())
         return areas;
@@ -67,7 +60,7 @@ std::vector<double> section_areas(const MeshRef& mesh, const Plan& plan, const E
     // A fixed number of pieces, added up in their order: the same bits for any number of threads.
     const std::uint64_t pieces =
         std::clamp<std::uint64_t>((std::uint64_t{1} << 22) / (areas.size() + 1), 1, 64);
-    const std::uint64_t n = mesh.triangles();
+    const std::uint64_t n = mesh.size();
     const std::uint64_t piece = n / pieces + 1;
     std::vector<std::vector<double>> parts(pieces);
     executor.for_chunks(pieces, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
@@ -95,9 +88,9 @@ SectionSum::SectionSum(const Plan& plan, const Point3& middle)
     : state_(std::make_unique<State>(plan, middle)) {}
 SectionSum::~SectionSum() = default;
 
-void SectionSum::add(const MeshRef& batch) {
+void SectionSum::add(const Mesh& batch) {
     state_->twice.add([&](std::vector<double>& twice) {
-        add_sections(batch, state_->ranks, state_->origin, 0, batch.triangles(), twice);
+        add_sections(batch, state_->ranks, state_->origin, 0, batch.size(), twice);
     });
 }
 

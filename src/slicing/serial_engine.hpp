@@ -50,9 +50,9 @@ class SerialEngine {
     /// Welds the mesh where it is a soup (that time is reported by itself), and ranks its vertices.
     explicit SerialEngine(const SliceJob& job) : job_(job), executor_(job.execution), ranks_(job.plan) {
         executor_.check_cancelled();
-        if (job.mesh.soup() != nullptr) {
+        if (job.mesh.indexed() == nullptr) {
             const auto start = Clock::now();
-            welded_ = weld(*job.mesh.soup(), job.execution);
+            welded_ = weld(job.mesh, job.execution);
             job.report.weld_seconds = seconds_since(start);
         }
         linking_ = Clock::now();
@@ -62,7 +62,7 @@ class SerialEngine {
     }
 
     [[nodiscard]] const IndexedMesh& mesh() const noexcept {
-        return job_.mesh.mesh() != nullptr ? *job_.mesh.mesh() : welded_;
+        return job_.mesh.indexed() != nullptr ? *job_.mesh.indexed() : welded_;
     }
     [[nodiscard]] std::uint32_t planes() const noexcept { return ranks_.count(); }
     [[nodiscard]] double z(std::uint32_t plane) const noexcept { return ranks_.z(plane); }

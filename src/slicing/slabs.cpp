@@ -21,20 +21,13 @@ namespace {
 
 /// Calls body(i, ranks) for triangles [begin, end), with the ranks of its corners.
 template <class Body>
-void for_ranks(const MeshRef& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
+void for_ranks(const Mesh& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
                const Body& body) {
     const TriangleSoup* const soup = mesh.soup();
     std::array<std::uint32_t, 3> rank;
-    if (soup == nullptr) {
-        const IndexedMesh& indexed = *mesh.mesh();
+    if (soup == nullptr || soup->has_placement()) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            for (std::size_t k = 0; k < 3; ++k)
-                rank[k] = ranks(indexed.vertices[indexed.triangles[i][k]].z);
-            body(i, rank);
-        }
-    } else if (soup->has_placement()) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            const Triangle3 corners = soup->placed(i);
+            const Triangle3 corners = mesh.triangle(i);
             for (std::size_t k = 0; k < 3; ++k)
                 rank[k] = ranks(corners[k].z);
             body(i, rank);
@@ -50,7 +43,7 @@ void for_ranks(const MeshRef& mesh, const Ranks& ranks, std::uint64_t begin, std
     }
 }
 
-void count(const MeshRef& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
+void count(const Mesh& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
            PlaneCounts& counts) {
     for_ranks(mesh, ranks, begin, end, [&](std::uint64_t, const std::array<std::uint32_t, 3>& rank) {
         const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
@@ -73,6 +66,27 @@ void PlaneCounts::add(const PlaneCounts& other) noexcept {
         counts_[i] += other.counts_[i];
 }
 
+PlaneCounts part_of(const PlaneCounts& counts, PlaneRange slab) {
+    PlaneCounts part(slab.size());
+    std::uint64_t* const begins = part.counts_.data();
+    std::uint64_t* const ends = begins + slab.size() + 1;
+    std::uint64_t* const turns = ends + slab.size() + 1;
+    // On the first plane begins what is cut by it, on the last one ends what is.
+    std::uint64_t cut = 0;
+    for (std::uint32_t p = 0; p < slab.end; ++p) {
+        cut += counts.begins(p) - counts.ends(p);
+        if (p <= slab.begin) {
+            begins[0] = cut;
+            continue;
+        }
+        begins[p - slab.begin] = counts.begins(p);
+        ends[p - slab.begin] = counts.ends(p);
+        turns[p - slab.begin] = counts.turns(p);
+    }
+    ends[slab.size()] = cut;
+    return part;
+}
+
 // ----------------------------------------------------------------------------------------------- count
 
 struct PlaneCounter::State {
@@ -85,8 +99,8 @@ struct PlaneCounter::State {
 PlaneCounter::PlaneCounter(const Plan& plan) : state_(std::make_unique<State>(plan)) {}
 PlaneCounter::~PlaneCounter() = default;
 
-void PlaneCounter::add(const MeshRef& mesh) {
-    state_->counts.add([&](PlaneCounts& counts) { count(mesh, state_->ranks, 0, mesh.triangles(), counts); });
+void PlaneCounter::add(const Mesh& mesh) {
+    state_->counts.add([&](PlaneCounts& counts) { count(mesh, state_->ranks, 0, mesh.size(), counts); });
 }
 
 PlaneCounts PlaneCounter::total() const {
@@ -96,17 +110,16 @@ PlaneCounts PlaneCounter::total() const {
     return sum;
 }
 
-PlaneCounts count_planes(const MeshRef& mesh, const Plan& plan, const Execution& execution) {
+PlaneCounts count_planes(const Mesh& mesh, const Plan& plan, const Execution& execution) {
     const Ranks ranks(plan);
     Executor executor(execution);
     std::vector<std::optional<PlaneCounts>> counts(executor.workers());
     constexpr std::uint64_t chunk = std::uint64_t{1} << 15;
-    executor.for_chunks(mesh.triangles(), chunk,
-                        [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
-                            if (!counts[worker])
-                                counts[worker].emplace(ranks.count());
-                            count(mesh, ranks, begin, end, *counts[worker]);
-                        });
+    executor.for_chunks(mesh.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+        if (!counts[worker])
+            counts[worker].emplace(ranks.count());
+        count(mesh, ranks, begin, end, *counts[worker]);
+    });
     executor.check_cancelled();
     PlaneCounts sum(ranks.count());
     for (const auto& part : counts)

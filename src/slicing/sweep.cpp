@@ -774,14 +774,14 @@ void run_sweep(const SliceJob& job) {
     Executor executor(job.execution);
     const auto start = Clock::now();
     const Ranks ranks(job.plan);
-    ProgressMeter progress(job.execution, Stage::link, job.mesh.triangles());
+    ProgressMeter progress(job.execution, Stage::link, job.mesh.size());
     const auto sweep = [&](const auto& graph) {
         progress.finish();
         job.report.link_seconds = seconds_since(start);
         sweep_graph(job, graph, ranks, executor);
     };
-    if (job.mesh.mesh() != nullptr)
-        sweep(build_cut_graph(*job.mesh.mesh(), ranks, executor, progress));
+    if (job.mesh.indexed() != nullptr)
+        sweep(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress));
     else if (job.mesh.soup()->has_placement())
         sweep(build_placed_cut_graph(*job.mesh.soup(), ranks, executor, progress));
     else

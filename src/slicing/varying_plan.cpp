@@ -117,14 +117,6 @@ class Slopes {
     std::vector<std::vector<float>> levels_; ///< [k][i]: of the 2^k steps from i on
 };
 
-Triangle3 triangle(const MeshRef& mesh, std::size_t i) {
-    if (mesh.soup() != nullptr)
-        return mesh.soup()->placed(i);
-    const auto& t = mesh.mesh()->triangles[i];
-    const std::vector<Point3>& vertices = mesh.mesh()->vertices;
-    return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
-}
-
 /// |n.z|, rounded up; 0 for a triangle without area, which bounds nothing.
 float steepness(const Triangle3& t) noexcept {
     const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
@@ -186,7 +178,7 @@ Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& 
     return stacked(z_min, z_max, lowest, slice_at, height_at);
 }
 
-Plan plan_adaptive(const MeshRef& mesh, const AdaptiveLayers& layers, const Execution& execution) {
+Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, const Execution& execution) {
     require_height(layers.min_height, "the lowest layer height");
     require_height(layers.max_height, "the largest layer height");
     require_height(layers.cusp_mm, "the cusp height");
@@ -194,8 +186,7 @@ Plan plan_adaptive(const MeshRef& mesh, const AdaptiveLayers& layers, const Exec
         throw Error(ErrorKind::usage, fmt::format("layers from {} to {} mm: the largest height is below the "
                                                   "lowest",
                                                   layers.min_height, layers.max_height));
-    const Box3 box = mesh.soup() != nullptr ? bounding_box(*mesh.soup(), execution)
-                                            : bounding_box(*mesh.mesh(), execution);
+    const Box3 box = bounding_box(mesh, execution);
     const double z_min = box.min.z;
     const double z_max = box.max.z;
     if (!(std::isfinite(z_max - z_min) && z_min < z_max))
@@ -204,9 +195,9 @@ Plan plan_adaptive(const MeshRef& mesh, const AdaptiveLayers& layers, const Exec
     Slopes slopes(z_min, z_max, layers.min_height / 4);
     Executor executor(execution);
     constexpr std::size_t chunk = std::size_t{1} << 14;
-    executor.for_chunks(mesh.triangles(), chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+    executor.for_chunks(mesh.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Triangle3 t = triangle(mesh, i);
+            const Triangle3 t = mesh.triangle(i);
             const auto [low, high] = std::minmax({t[0].z, t[1].z, t[2].z});
             if (const float steep = steepness(t); steep > 0)
                 slopes.add(low, high, steep);

@@ -3,12 +3,16 @@
 
 #include "fixtures/layer_checks.hpp"
 #include "fixtures/named_solids.hpp"
+#include "temporary_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>
 
 #include <atomic>
 #include <mutex>
+#include <string>
+#include <string_view>
 #include <thread>
 
 namespace lamella {
@@ -132,6 +136,80 @@ TEST_P(SameBytes, WhetherStreamedOrNot) {
             EXPECT_EQ(streamed_report.open_chains, report.open_chains);
         }
     });
+}
+
+/// A mesh file in which each face has vertices of its own.
+struct RepeatingFile {
+    std::string_view extension;
+    std::string (*text)(const TriangleSoup& mesh);
+};
+
+std::string corner_lines(const TriangleSoup& mesh, std::string_view before, std::string_view after) {
+    std::string text;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        for (const Point3f& p : mesh.stored(i))
+            text += fmt::format("{}{} {} {}{}\n", before, p.x, p.y, p.z, after);
+    return text;
+}
+
+/// Rows of three numbers each, counted from `first`.
+std::string face_lines(const TriangleSoup& mesh, std::string_view before, std::size_t first) {
+    std::string text;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        text += fmt::format("{} {} {} {}\n", before, 3 * i + first, 3 * i + first + 1, 3 * i + first + 2);
+    return text;
+}
+
+const std::vector<RepeatingFile> repeating_files{
+    {"obj",
+     [](const TriangleSoup& mesh) {
+         return corner_lines(mesh, "v ", "") + face_lines(mesh, "f", 1);
+     }},
+    {"off",
+     [](const TriangleSoup& mesh) {
+         return fmt::format("OFF\n{} {} 0\n", 3 * mesh.size(), mesh.size()) + corner_lines(mesh, "", "") +
+                face_lines(mesh, "3", 0);
+     }},
+    {"ply",
+     [](const TriangleSoup& mesh) {
+         return fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float "
+                            "y\nproperty float z\nelement face {}\nproperty list uchar int "
+                            "vertex_indices\nend_header\n",
+                            3 * mesh.size(), mesh.size()) +
+                corner_lines(mesh, "", "") + face_lines(mesh, "3", 0);
+     }},
+    {"amf",
+     [](const TriangleSoup& mesh) {
+         std::string text = "<?xml version=\"1.0\"?><amf unit=\"millimeter\"><object "
+                            "id=\"1\"><mesh><vertices>\n";
+         for (std::size_t i = 0; i < mesh.size(); ++i)
+             for (const Point3f& p : mesh.stored(i))
+                 text += fmt::format("<vertex><coordinates><x>{}</x><y>{}</y><z>{}</z></coordinates>"
+                                     "</vertex>\n",
+                                     p.x, p.y, p.z);
+         text += "</vertices><volume>\n";
+         for (std::size_t i = 0; i < mesh.size(); ++i)
+             text += fmt::format("<triangle><v1>{}</v1><v2>{}</v2><v3>{}</v3></triangle>\n", 3 * i, 3 * i + 1,
+                                 3 * i + 2);
+         return text + "</volume></mesh></object></amf>\n";
+     }},
+};
+
+TEST_P(SameBytes, FromFilesThatRepeatTheirVertices) {
+    const TriangleSoup mesh = GetParam().make();
+    const TemporaryFolder folder;
+    for (const RepeatingFile& file : repeating_files) {
+        SCOPED_TRACE(file.extension);
+        const std::string path = folder.file(fmt::format("part.{}", file.extension));
+        write_file(path, file.text(mesh));
+        const MeshFile part = read_mesh(path);
+        ASSERT_EQ(part.mesh().indexed()->vertices.size(), 3 * mesh.size()) << "as the file lists them";
+        for (const NamedPlan& plan : test::plans_for(mesh, 20))
+            for (const Engine& engine : engines())
+                EXPECT_EQ(hashes(slice(part.mesh(), plan.plan, {}, nullptr, engine)),
+                          hashes(slice(mesh, plan.plan, {}, nullptr, engine)))
+                    << engine.name << ", planes " << plan.name;
+    }
 }
 
 TEST_P(SameBytes, FromASoupAndAnIndexedMesh) {

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <thread>
 #include <vector>
 
 namespace lamella {
@@ -35,6 +38,58 @@ TEST(Mesh, IsSharedByItsCopies) {
     EXPECT_EQ(mesh.transformed(Transform{}).indexed(), mesh.indexed());
     const std::array one{mesh};
     EXPECT_EQ(joined(one).indexed(), mesh.indexed());
+}
+
+/// Each triangle with vertices of its own.
+IndexedMesh repeating(const TriangleSoup& soup) {
+    IndexedMesh mesh;
+    for (std::size_t i = 0; i < soup.size(); ++i) {
+        const auto first = static_cast<std::uint32_t>(3 * i);
+        for (const Point3& corner : soup.placed(i))
+            mesh.vertices.push_back(corner);
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+}
+
+TEST(Mesh, TellsItsTrianglesInEitherKind) {
+    const TriangleSoup soup = make_box(1, 2, 3).transformed(scaling(-1, 1, 1));
+    const Mesh indexed(repeating(soup));
+    for (std::size_t i = 0; i < soup.size(); ++i) {
+        EXPECT_EQ(Mesh(soup).triangle(i), soup.placed(i));
+        EXPECT_EQ(indexed.triangle(i), soup.placed(i));
+    }
+}
+
+TEST(Mesh, JoinsItsRepeatedVerticesOnceForAllCopies) {
+    const Mesh mesh(repeating(make_box(1, 2, 3)));
+    const Mesh copy = mesh;
+    const Mesh joined = mesh.with_joined_vertices();
+    EXPECT_EQ(joined.indexed()->vertices, weld(make_box(1, 2, 3)).vertices);
+    EXPECT_EQ(joined.indexed()->triangles, weld(make_box(1, 2, 3)).triangles);
+    EXPECT_EQ(copy.with_joined_vertices().indexed(), joined.indexed()) << "found once";
+    EXPECT_EQ(joined.with_joined_vertices().indexed(), joined.indexed());
+    EXPECT_EQ(mesh.indexed()->vertices.size(), 36U) << "the mesh itself stays as it is";
+}
+
+TEST(Mesh, IsItsOwnJoinedMeshWhereNothingRepeats) {
+    const Mesh indexed(weld(make_rook()));
+    EXPECT_EQ(indexed.with_joined_vertices().indexed(), indexed.indexed());
+    const Mesh soup(make_rook());
+    EXPECT_NE(soup.with_joined_vertices().soup(), nullptr);
+    EXPECT_EQ(soup.with_joined_vertices().size(), soup.size());
+}
+
+TEST(Mesh, JoinsItsVerticesForManyThreadsAtOnce) {
+    const Mesh mesh(repeating(make_rook()));
+    std::vector<const IndexedMesh*> found(8);
+    {
+        std::vector<std::jthread> threads;
+        for (const IndexedMesh*& mine : found)
+            threads.emplace_back([&mesh, &mine] { mine = mesh.with_joined_vertices().indexed(); });
+    }
+    for (const IndexedMesh* const one : found)
+        EXPECT_EQ(one, found.front());
 }
 
 TEST(Mesh, JoinsMeshesOfBothKinds) {

@@ -1,4 +1,4 @@
-"""lamella-mpi: the same bytes and statistics as by one process, and no output when a rank dies."""
+"""lamella-mpi: the same bytes and statistics as by one process, and no output when a process dies."""
 
 import json
 import os
@@ -15,19 +15,19 @@ from program import ProgramTest, Result, binary_stl, box_triangles, open_box  # 
 
 MPI_PROGRAM = os.environ.get("LAMELLA_MPI_PROGRAM", "")
 MPIRUN = os.environ.get("LAMELLA_MPIRUN", "mpirun")
-RANKS_TEST = os.environ.get("LAMELLA_MPI_RANKS_TEST", "")
-RANKS = [1, 2, 3, 5]
+PROCESSES_TEST = os.environ.get("LAMELLA_MPI_PROCESSES_TEST", "")
+NUMBERS = [1, 2, 3, 5]
 
 
 @unittest.skipUnless(MPI_PROGRAM and shutil.which(MPIRUN), "run by ctest, where there is an MPI")
 class MpiTest(ProgramTest):
-    def command(self, ranks, *arguments):
-        return [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), *map(str, arguments)]
+    def command(self, processes, *arguments):
+        return [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(processes), *map(str, arguments)]
 
-    def by(self, ranks, *arguments):
+    def by(self, processes, *arguments):
         # Tests may run beside each other, and processes of MPI wait busily unless told not to.
         environment = dict(os.environ, OMPI_MCA_mpi_yield_when_idle="1")
-        return Result(subprocess.run(self.command(ranks, MPI_PROGRAM, *arguments), cwd=self.folder, capture_output=True,
+        return Result(subprocess.run(self.command(processes, MPI_PROGRAM, *arguments), cwd=self.folder, capture_output=True,
                                      timeout=240, env=environment))
 
     def all_of(self, path):
@@ -37,7 +37,7 @@ class MpiTest(ProgramTest):
     @staticmethod
     def figures(text):
         stats = json.loads(text)
-        for varying in ["seconds", "peak_rss_bytes", "threads", "ranks"]:
+        for varying in ["seconds", "peak_rss_bytes", "threads", "processes"]:
             stats.pop(varying, None)
         return stats
 
@@ -52,10 +52,10 @@ class Results(MpiTest):
                 common += ["--translate", "50,50,50"]
             self.succeed(*common)
             expected, figures = self.all_of("out"), self.figures(self.bytes_of("stats.json"))
-            for ranks in RANKS if options == ["--format", "cli"] else [3]:
-                with self.subTest(options, ranks=ranks):
+            for processes in NUMBERS if options == ["--format", "cli"] else [3]:
+                with self.subTest(options, processes=processes):
                     self.path("stats.json").unlink()
-                    result = self.by(ranks, *common)
+                    result = self.by(processes, *common)
                     self.assertEqual(result.code, 0, result.err)
                     self.assertEqual(self.all_of("out"), expected)
                     self.assertEqual(self.figures(self.bytes_of("stats.json")), figures)
@@ -78,8 +78,8 @@ class Results(MpiTest):
         self.assertEqual(many.out, one.out)
 
     def test_messages_of_any_length(self):
-        for ranks in RANKS:
-            result = subprocess.run(self.command(ranks, RANKS_TEST), capture_output=True, timeout=120)
+        for processes in NUMBERS:
+            result = subprocess.run(self.command(processes, PROCESSES_TEST), capture_output=True, timeout=120)
             self.assertEqual(result.returncode, 0, result.stderr)
 
 
@@ -106,7 +106,7 @@ class Failures(MpiTest):
         self.fail_together(5, "more than the 100 that it may", "slice", "box.stl", "-o", "out.cli", "--max-output", "100")
         self.fail_together(6, "does not exist", "slice", "box.stl", "-o", "nowhere/out.cli")
 
-    def ranks_of(self, process):
+    def processes_of(self, process):
         """The processes of the program: whose command it is."""
         found = []
         for entry in Path("/proc").iterdir():
@@ -120,7 +120,7 @@ class Failures(MpiTest):
                 continue
         return sorted(found)
 
-    def test_a_rank_that_dies_ends_the_job_without_an_output(self):
+    def test_a_process_that_dies_ends_the_job_without_an_output(self):
         self.write("part.stl", binary_stl(box_triangles(10, 20, 30)))
         self.write("out.cli", "old")
         for victim in [2, 0]:
@@ -131,18 +131,18 @@ class Failures(MpiTest):
                                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
                 self.addCleanup(process.stderr.close)
                 self.addCleanup(process.kill)
-                # The temporary file is there: all ranks are slicing.
+                # The temporary file is there: all processes are slicing.
                 while not any(name.endswith(".tmp") for name in self.listing()):
                     self.assertIsNone(process.poll())
                     time.sleep(0.01)
-                ranks = self.ranks_of(process)
-                self.assertEqual(len(ranks), 3)
-                os.kill(ranks[victim], signal.SIGKILL)
+                processes = self.processes_of(process)
+                self.assertEqual(len(processes), 3)
+                os.kill(processes[victim], signal.SIGKILL)
                 self.assertNotEqual(process.wait(timeout=60), 0)
                 self.assertIn(b"signal 9", process.stderr.read())
                 self.assertEqual(self.bytes_of("out.cli"), b"old")
-                self.assertEqual(self.ranks_of(process), [])
-                # Nobody but rank 0 knows of the temporary file.
+                self.assertEqual(self.processes_of(process), [])
+                # Nobody but process 0 knows of the temporary file.
                 left = [name for name in self.listing() if name.endswith(".tmp")]
                 self.assertEqual(len(left), 1 if victim == 0 else 0, left)
 

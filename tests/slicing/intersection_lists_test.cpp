@@ -47,7 +47,7 @@ class Lists : public testing::Test {
 
     std::array<Point3, 20> vertices_{};
     IndexedMesh nothing_;
-    MeshRef mesh_ = nothing_;
+    Mesh mesh_ = nothing_;
     Plan plan_ = plan_listed({0});
     LayerSink sink_;
     Execution execution_;

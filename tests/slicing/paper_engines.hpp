@@ -33,12 +33,12 @@ inline std::string engine_test_name(const testing::TestParamInfo<std::string>& i
     return name;
 }
 
-inline LayerStack slice_with(std::string_view name, const MeshRef& mesh, const Plan& plan,
+inline LayerStack slice_with(std::string_view name, const Mesh& mesh, const Plan& plan,
                              SliceReport* report = nullptr) {
     return slice(mesh, plan, {}, report, engine(name));
 }
 
-inline MatchingCounts counts_of(std::string_view name, const MeshRef& mesh, const Plan& plan) {
+inline MatchingCounts counts_of(std::string_view name, const Mesh& mesh, const Plan& plan) {
     SliceReport report;
     (void)slice_with(name, mesh, plan, &report);
     return report.matching.value();

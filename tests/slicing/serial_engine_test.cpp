@@ -39,7 +39,7 @@ TEST(SerialEngine, FindsTheTwoCutEdgesOfEveryTriangleOnEveryPlane) {
         const LayerSink sink;
         const Execution execution;
         SliceReport report;
-        const MeshRef ref = soup;
+        const Mesh ref = soup;
         const SliceJob job{ref, plan, sink, execution, 0, report};
         const SerialEngine engine(job);
         for (std::size_t i = 0; i < triangles.size(); ++i) {

@@ -37,7 +37,7 @@ using test::Triangles;
 constexpr std::array both_rules{SliceAt::bottom, SliceAt::top};
 using Points = std::vector<Point2>;
 
-Layer cut(const MeshRef& mesh, double z, SliceAt at = SliceAt::bottom) {
+Layer cut(const Mesh& mesh, double z, SliceAt at = SliceAt::bottom) {
     Layer layer = slice(mesh, plan_listed({z}, at)).front();
     expect_sound(layer);
     return layer;
@@ -589,7 +589,7 @@ TEST(Sweep, OfAFlatMeshIsNothing) {
 }
 
 /// The layers as they come in order when at most so many points may be in flight.
-LayerStack swept(const MeshRef& mesh, const Plan& plan, unsigned threads, std::uint64_t points_in_flight) {
+LayerStack swept(const Mesh& mesh, const Plan& plan, unsigned threads, std::uint64_t points_in_flight) {
     LayerStack stack;
     const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
         return [&stack, kept = std::move(layer)]() mutable {

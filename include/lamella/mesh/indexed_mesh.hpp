@@ -14,12 +14,19 @@
 namespace lamella {
 
 /// Vertices (#V by 3, double) and triangles (#T by 3, indices into the vertices, counter-clockwise seen from
-/// outside). Sharing is taken at its word: two vertices with equal coordinates are still two vertices.
-/// At most 2^32 - 1 vertices and 2^32 - 1 triangles; functions that would need more throw Error{limit}.
+/// outside). Vertices may be repeated: those with equal coordinates are meant to be the same (see Mesh).
+/// Functions of an IndexedMesh itself take sharing at its word, and say so. At most 2^32 - 1 vertices and
+/// 2^32 - 1 triangles; functions that would need more throw Error{limit}.
 struct IndexedMesh {
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
+
+/// The corners of triangle i.
+[[nodiscard]] inline Triangle3 corners(const IndexedMesh& mesh, std::size_t i) noexcept {
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[i];
+    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
 
 /// Joins equal corners of a soup: exactly, without a tolerance, with -0 equal to +0, after the placement.
 /// Vertices are numbered in the order of their first occurrence, so the locality of the file is kept, and

@@ -14,17 +14,27 @@
 
 namespace lamella {
 
-/// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy.
+/// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. It is what all functions take that do
+/// not care which of the two it is.
+///
+/// Vertices with equal coordinates are the same vertex, in either kind: an indexed mesh may repeat them, as
+/// files do whose faces share none, and is sliced, welded and inspected as if it did not.
 class Mesh {
   public:
     /// An empty soup.
     Mesh() = default;
-    explicit Mesh(TriangleSoup soup);
-    explicit Mesh(IndexedMesh mesh);
+    Mesh(TriangleSoup soup); // NOLINT(google-explicit-constructor): a soup is a mesh
+    Mesh(IndexedMesh mesh);  // NOLINT(google-explicit-constructor): so is this; move it in to save a copy
 
     /// What it is; the other one is null.
     [[nodiscard]] const TriangleSoup* soup() const noexcept { return indexed_ ? nullptr : &soup_; }
     [[nodiscard]] const IndexedMesh* indexed() const noexcept { return indexed_.get(); }
+
+    /// body(soup) or body(indexed mesh).
+    template <class Body>
+    decltype(auto) visit(const Body& body) const {
+        return indexed_ ? body(*indexed_) : body(soup_);
+    }
 
     /// How many triangles.
     [[nodiscard]] std::size_t size() const noexcept {
@@ -32,13 +42,26 @@ class Mesh {
     }
     [[nodiscard]] bool empty() const noexcept { return size() == 0; }
 
+    /// The corners of triangle i, counter-clockwise seen from outside.
+    [[nodiscard]] Triangle3 triangle(std::size_t i) const noexcept {
+        return indexed_ ? corners(*indexed_, i) : soup_.placed(i);
+    }
+
+    /// The same mesh with each vertex once (see `weld` of an IndexedMesh); a soup as it is. Found when it is
+    /// asked for the first time, and then shared by all copies of the mesh, as long as one of them lives.
+    /// Expected O(n) the first time. From any number of threads.
+    [[nodiscard]] Mesh with_joined_vertices(const Execution& execution = {}) const;
+
     /// The same mesh under a map, still counter-clockwise seen from outside when that mirrors. O(1) for a
     /// soup and for the identity; an indexed mesh is copied. Throws Error{usage} when the map is not finite.
     [[nodiscard]] Mesh transformed(const Transform& map) const;
 
   private:
+    struct Joined;
+
     TriangleSoup soup_;
     std::shared_ptr<const IndexedMesh> indexed_;
+    std::shared_ptr<Joined> joined_; ///< of an indexed mesh
 };
 
 [[nodiscard]] Box3 bounding_box(const Mesh& mesh, const Execution& execution = {});

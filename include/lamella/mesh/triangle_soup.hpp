@@ -82,6 +82,15 @@ class TriangleSoup {
     /// Throws Error{usage} when the map is not finite.
     [[nodiscard]] TriangleSoup transformed(const Transform& map) const;
 
+    /// The triangles [begin, end). Shares the memory.
+    [[nodiscard]] TriangleSoup part(std::size_t begin, std::size_t end) const {
+        TriangleSoup some = *this;
+        some.first_ += begin * stride_;
+        some.count_ = end - begin;
+        some.stored_box_.reset();
+        return some;
+    }
+
     /// Where the triangles lie: for code that streams over them.
     [[nodiscard]] const std::byte* data() const noexcept { return first_; }
     [[nodiscard]] std::size_t stride() const noexcept { return stride_; }

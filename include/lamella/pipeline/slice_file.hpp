@@ -8,6 +8,7 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -52,11 +53,11 @@ struct FileJob {
     std::optional<Point3> build_volume;
     /// A limit of reading; `strict` below holds for it, too.
     std::uint64_t max_triangles = 0;
-    /// Bytes that the run may take, with all threads; 0: three quarters of the memory there is. STL files
-    /// that could not be sliced whole with that are sliced slab by slab, by way of a temporary file without a
-    /// name in $TMPDIR, else /var/tmp, with the same result. What can only be done with the whole mesh is
-    /// Error{limit} then: inspection, strict, the repairs that change a mesh, adaptive layers, engines that
-    /// weld, and formats other than STL; where the limit is not given, those are tried all the same.
+    /// Bytes that the run may take, with all threads, in each process; 0: three quarters of the memory there
+    /// is. STL files that could not be sliced whole with that are sliced slab by slab, by way of a temporary
+    /// file without a name in $TMPDIR, else /var/tmp, with the same result. What can only be done with the
+    /// whole mesh is Error{limit} then: inspection, strict, the repairs that change a mesh, adaptive layers,
+    /// engines that weld, and formats other than STL. Without an explicit limit these still run.
     std::uint64_t max_memory = 0;
 
     /// Layers of one height, stacked from the bottom of the plate's parts.
@@ -142,8 +143,11 @@ struct FileResult {
 
     std::string engine;
     unsigned threads = 0;
-    std::uint64_t slabs = 0; ///< the meshes were too large for the memory: in so many they were sliced
-    SliceReport report;      ///< contours and chains as they are after gaps were closed
+    std::uint64_t slabs = 0; ///< the meshes were too large for the memory: in so many shares of the planes
+                             ///< they were sliced, by all processes
+    /// What each process did, in their order.
+    std::vector<ProcessFigures> processes;
+    SliceReport report; ///< contours and chains as they are after gaps were closed
     /// Layers of one kind, and where the lowest of them was cut.
     struct Affected {
         std::uint64_t layers = 0;
@@ -194,7 +198,18 @@ struct FileResult {
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
 /// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.
-[[nodiscard]] FileResult slice_file(const FileJob& job, const Execution& execution = {});
+///
+/// Several processes slice a job together: all of them call this with the same job. The same bytes are
+/// written as by one alone, whatever the number; the result is that of the whole job, on each of them, with
+/// the longest times of all. Each reads a part of each binary STL file, and slices planes of equal work.
+/// Other files, and whatever needs the whole mesh (other engines, inspection, repair, adaptive layers), are
+/// read by each process as a whole; the planes are shared out all the same. Formats whose files are layers
+/// one after the other are written by all processes, each its piece, so the output must be on a file system
+/// that all of them see; layers for other formats and for standard output go to process 0, which writes.
+/// Errors are agreed on: whatever is thrown on one process, all of them throw. Besides, Error{usage} for
+/// standard input, which reaches one process only, for a shard and for a report.
+[[nodiscard]] FileResult slice_file(const FileJob& job, const Execution& execution = {},
+                                    Communicator& processes = alone());
 
 /// The same for a plate that was made of the job's inputs before (load_plate): they are not read again. It
 /// is sliced whole, whatever FileJob::max_memory says.

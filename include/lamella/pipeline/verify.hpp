@@ -17,7 +17,7 @@ namespace lamella {
 
 struct VerifyOptions {
     /// Compare each layer's area with the section of this mesh at the layer's z. It should be closed.
-    std::optional<MeshRef> mesh = {};
+    std::optional<Mesh> mesh = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
     /// How far the format may have moved a coordinate of a point or of the cut (half a unit). It scales the

@@ -22,7 +22,7 @@ class SectionSum {
     SectionSum& operator=(const SectionSum&) = delete;
 
     /// On the calling thread; from any number of threads at once.
-    void add(const MeshRef& batch);
+    void add(const Mesh& batch);
     /// Of all batches together, in mm^2; the last digits depend on who added what.
     [[nodiscard]] std::vector<double> areas() const;
 

@@ -66,9 +66,14 @@ class PlaneCounts {
     [[nodiscard]] std::uint64_t turns(std::size_t p) const noexcept { return counts_[2 * (planes_ + 1) + p]; }
 
   private:
+    friend PlaneCounts part_of(const PlaneCounts& counts, PlaneRange slab);
+
     std::size_t planes_;
     std::vector<std::uint64_t> counts_;
 };
+
+/// The counts on the planes of a slab: those of `part_of` its plan.
+[[nodiscard]] PlaneCounts part_of(const PlaneCounts& counts, PlaneRange slab);
 
 /// Counts triangles from any number of threads at once.
 class PlaneCounter {
@@ -79,7 +84,7 @@ class PlaneCounter {
     PlaneCounter& operator=(const PlaneCounter&) = delete;
 
     /// On the calling thread, O(triangles); the placement of a soup counts.
-    void add(const MeshRef& mesh);
+    void add(const Mesh& mesh);
     /// Of all that was added.
     [[nodiscard]] PlaneCounts total() const;
 
@@ -89,8 +94,7 @@ class PlaneCounter {
 };
 
 /// The same for a mesh in memory, on all threads.
-[[nodiscard]] PlaneCounts count_planes(const MeshRef& mesh, const Plan& plan,
-                                       const Execution& execution = {});
+[[nodiscard]] PlaneCounts count_planes(const Mesh& mesh, const Plan& plan, const Execution& execution = {});
 
 /// What a slab asks for, from the counts of all planes.
 struct SlabNeeds {

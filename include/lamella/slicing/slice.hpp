@@ -4,9 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
-#include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/mesh.hpp"
-#include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include <cstdint>
@@ -16,25 +14,6 @@
 #include <string_view>
 
 namespace lamella {
-
-/// Either kind of mesh, borrowed for the duration of a call.
-class MeshRef {
-  public:
-    MeshRef(const TriangleSoup& soup) : soup_(&soup) {} // NOLINT(google-explicit-constructor)
-    MeshRef(const IndexedMesh& mesh) : mesh_(&mesh) {}  // NOLINT(google-explicit-constructor)
-    MeshRef(const Mesh& mesh)                           // NOLINT(google-explicit-constructor)
-        : soup_(mesh.soup()), mesh_(mesh.indexed()) {}
-
-    [[nodiscard]] const TriangleSoup* soup() const noexcept { return soup_; }
-    [[nodiscard]] const IndexedMesh* mesh() const noexcept { return mesh_; }
-    [[nodiscard]] std::size_t triangles() const noexcept {
-        return soup_ != nullptr ? soup_->size() : mesh_->triangles.size();
-    }
-
-  private:
-    const TriangleSoup* soup_ = nullptr;
-    const IndexedMesh* mesh_ = nullptr;
-};
 
 /// What the engines of the EECC paper (King, Rennie, Bennett 2021) count while they sort intersections into
 /// contours; its Tables 2, 3 and 4 and its section 4.1 are made of these. An intersection is one triangle on
@@ -49,6 +28,7 @@ struct MatchingCounts {
         std::uint64_t close = 0;    ///< put behind the last one of a contour that it completed
 
         [[nodiscard]] std::uint64_t total() const noexcept { return new_list + front + back + link + close; }
+        Cases& operator+=(const Cases& other) noexcept;
     };
 
     /// How often the lists of a plane were gone through for a match (Table 2; "requires sorting" in Table 3).
@@ -65,11 +45,14 @@ struct MatchingCounts {
     std::uint64_t node_bytes = 0;
     /// The most memory that nodes, lists and edges together took, as allocated.
     std::uint64_t bytes = 0;
+
+    /// Of two runs, one after the other: the larger `bytes`, the sum of all else.
+    MatchingCounts& operator+=(const MatchingCounts& other) noexcept;
 };
 
 /// What a slicing run did; the statistics of the program are made from it.
 struct SliceReport {
-    double weld_seconds = 0;  ///< in engines that need an indexed mesh and were given a soup
+    double weld_seconds = 0;  ///< joining vertices; and in engines that need an indexed mesh, welding a soup
     double link_seconds = 0;  ///< sweep: ranks and cut graph; the paper's: ranks, intersections and lists
     double slice_seconds = 0; ///< sweep: walk and points; the paper's: reading the lists off
     std::uint64_t layers = 0;
@@ -77,6 +60,9 @@ struct SliceReport {
     std::uint64_t open_chains = 0;
     std::uint64_t points = 0;
     std::optional<MatchingCounts> matching; ///< of the engines of the paper
+
+    /// Of two runs, one after the other.
+    SliceReport& operator+=(const SliceReport& other) noexcept;
 };
 
 /// Receives layers while slicing goes on. It is called once for every layer, from several threads at once and
@@ -87,7 +73,7 @@ using LayerSink = std::function<std::function<void()>(Layer&&)>;
 
 /// What an engine is given.
 struct SliceJob {
-    const MeshRef& mesh;
+    const Mesh& mesh;
     const Plan& plan;
     const LayerSink& sink;
     const Execution& execution;
@@ -119,20 +105,20 @@ struct Engine {
 /// Default engine: O(triangles + points + c log c) for c contours in a layer, on all threads; the same bytes
 /// for any number of threads and any order of the triangles. Throws Error{limit} beyond 2^32 / 3 triangles,
 /// Error{cancelled}, and what the progress function throws.
-[[nodiscard]] LayerStack slice(const MeshRef& mesh, const Plan& plan, const Execution& execution = {},
+[[nodiscard]] LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution = {},
                                SliceReport* report = nullptr, const Engine& with = engines().front());
 
 /// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
 /// flight (some 56 MB per thread, or two layers per thread where single layers are larger). Layers that the
 /// sink has let go of take no memory. `points_in_flight`: so many instead, where they are not 0.
-void slice_to(const LayerSink& sink, const MeshRef& mesh, const Plan& plan, const Execution& execution = {},
+void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
               SliceReport* report = nullptr, const Engine& with = engines().front(),
               std::uint64_t points_in_flight = 0);
 
 /// The area of the section at each plane of the plan, in mm^2, straight from the triangles: no linking, no
 /// contours. For closed meshes it equals the area of the layers, whichever engine made them: the check that
 /// `lamella verify --mesh` and the tests rest on. O(triangles + points).
-[[nodiscard]] std::vector<double> section_areas(const MeshRef& mesh, const Plan& plan,
+[[nodiscard]] std::vector<double> section_areas(const Mesh& mesh, const Plan& plan,
                                                 const Execution& execution = {});
 
 } // namespace lamella

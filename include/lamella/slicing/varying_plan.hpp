@@ -48,7 +48,7 @@ struct AdaptiveLayers {
 /// the part's height, where that is more): next to a step a layer may come out a little lower than it could
 /// be. O(triangles + height / min_height), the same for any number of threads. Throws Error{usage} as
 /// `plan_uniform`, and unless 0 < min_height <= max_height and 0 < cusp_mm.
-[[nodiscard]] Plan plan_adaptive(const MeshRef& mesh, const AdaptiveLayers& layers,
+[[nodiscard]] Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers,
                                  const Execution& execution = {});
 
 } // namespace lamella

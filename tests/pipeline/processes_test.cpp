@@ -1,7 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
-#include "lamella/pipeline/ranks.hpp"
+#include "lamella/pipeline/processes.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
 #include "fixtures/rounds.hpp"
@@ -18,7 +18,7 @@
 #include <mutex>
 #include <thread>
 
-// Ranks as threads of one process: all of slice_file by ranks but the messages themselves.
+// Processes as threads of one process: all of slice_file by several but the messages themselves.
 
 namespace lamella {
 namespace {
@@ -30,9 +30,9 @@ TriangleSoup part() {
 
 /// What the threads share.
 struct Meeting {
-    explicit Meeting(std::size_t ranks)
-        : said(ranks), sums(ranks), outgoing(ranks), sizes(ranks),
-          barrier(static_cast<std::ptrdiff_t>(ranks)) {}
+    explicit Meeting(std::size_t processes)
+        : said(processes), sums(processes), outgoing(processes), sizes(processes),
+          barrier(static_cast<std::ptrdiff_t>(processes)) {}
 
     std::vector<std::string> said;
     std::vector<std::span<std::uint64_t>> sums;
@@ -44,15 +44,15 @@ struct Meeting {
     std::map<std::pair<std::size_t, std::size_t>, std::deque<std::string>> messages;
 };
 
-class ThreadRanks final : public Communicator {
+class ThreadProcesses final : public Communicator {
   public:
-    ThreadRanks(Meeting& meeting, std::size_t rank) : meeting_(meeting), rank_(rank) {}
+    ThreadProcesses(Meeting& meeting, std::size_t process) : meeting_(meeting), process_(process) {}
 
-    [[nodiscard]] std::size_t rank() const noexcept override { return rank_; }
+    [[nodiscard]] std::size_t process() const noexcept override { return process_; }
     [[nodiscard]] std::size_t size() const noexcept override { return meeting_.said.size(); }
 
     void sum(std::span<std::uint64_t> values) override {
-        meeting_.sums[rank_] = values;
+        meeting_.sums[process_] = values;
         meeting_.barrier.arrive_and_wait();
         std::vector<std::uint64_t> total(values.size(), 0);
         for (const auto& other : meeting_.sums)
@@ -64,7 +64,7 @@ class ThreadRanks final : public Communicator {
     }
 
     std::vector<std::string> gather(std::string_view mine) override {
-        meeting_.said[rank_] = mine;
+        meeting_.said[process_] = mine;
         meeting_.barrier.arrive_and_wait();
         std::vector<std::string> all = meeting_.said;
         meeting_.barrier.arrive_and_wait();
@@ -72,21 +72,21 @@ class ThreadRanks final : public Communicator {
     }
 
     std::vector<std::uint64_t> exchange(std::span<const std::uint64_t> outgoing) override {
-        meeting_.sizes[rank_] = outgoing;
+        meeting_.sizes[process_] = outgoing;
         meeting_.barrier.arrive_and_wait();
         std::vector<std::uint64_t> incoming;
         for (const auto& from : meeting_.sizes)
-            incoming.push_back(from[rank_]);
+            incoming.push_back(from[process_]);
         meeting_.barrier.arrive_and_wait();
         return incoming;
     }
 
     void exchange(std::span<const std::span<const std::byte>> outgoing,
                   std::span<const std::span<std::byte>> incoming) override {
-        meeting_.outgoing[rank_] = outgoing;
+        meeting_.outgoing[process_] = outgoing;
         meeting_.barrier.arrive_and_wait();
         for (std::size_t from = 0; from < size(); ++from) {
-            const auto sent = meeting_.outgoing[from][rank_];
+            const auto sent = meeting_.outgoing[from][process_];
             ASSERT_EQ(sent.size(), incoming[from].size());
             if (!sent.empty())
                 std::memcpy(incoming[from].data(), sent.data(), sent.size());
@@ -96,13 +96,13 @@ class ThreadRanks final : public Communicator {
 
     void send(std::size_t to, std::string_view bytes) override {
         const std::lock_guard lock(meeting_.mutex);
-        meeting_.messages[{rank_, to}].emplace_back(bytes);
+        meeting_.messages[{process_, to}].emplace_back(bytes);
         meeting_.arrived.notify_all();
     }
 
     std::string receive(std::size_t from) override {
         std::unique_lock lock(meeting_.mutex);
-        auto& queue = meeting_.messages[{from, rank_}];
+        auto& queue = meeting_.messages[{from, process_}];
         meeting_.arrived.wait(lock, [&] { return !queue.empty(); });
         std::string message = std::move(queue.front());
         queue.pop_front();
@@ -111,10 +111,10 @@ class ThreadRanks final : public Communicator {
 
   private:
     Meeting& meeting_;
-    std::size_t rank_;
+    std::size_t process_;
 };
 
-class RankSlicing : public testing::Test {
+class Processes : public testing::Test {
   protected:
     [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
 
@@ -128,19 +128,19 @@ class RankSlicing : public testing::Test {
         return job;
     }
 
-    /// All ranks' results, or the text of their errors.
-    static std::vector<FileResult> slice_by(std::size_t ranks, const FileJob& job,
+    /// All processes' results, or the text of their errors.
+    static std::vector<FileResult> slice_by(std::size_t processes, const FileJob& job,
                                             std::vector<std::string>* errors = nullptr) {
-        Meeting meeting(ranks);
-        std::vector<FileResult> results(ranks);
-        std::vector<std::string> failed(ranks);
+        Meeting meeting(processes);
+        std::vector<FileResult> results(processes);
+        std::vector<std::string> failed(processes);
         {
             std::vector<std::jthread> threads;
-            for (std::size_t r = 0; r < ranks; ++r)
+            for (std::size_t r = 0; r < processes; ++r)
                 threads.emplace_back([&, r] {
-                    ThreadRanks own(meeting, r);
+                    ThreadProcesses own(meeting, r);
                     try {
-                        results[r] = slice_file(job, own, {.threads = 2});
+                        results[r] = slice_file(job, {.threads = 2}, own);
                     } catch (const Error& error) {
                         failed[r] = error.what();
                     }
@@ -181,9 +181,9 @@ class RankSlicing : public testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(RankSlicing, WritesTheBytesOfOneProcessWithAnyNumberOfRanks) {
+TEST_F(Processes, WriteTheBytesOfOneProcessWithAnyNumberOfThem) {
     write_stl(path("part.stl"), part());
-    const auto ranks_of_a_job =
+    const auto numbers_of_processes =
         test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{1, 2, 3, 5, 50};
     for (const LayerFormat& format : layer_formats()) {
         if (format.directory)
@@ -194,17 +194,17 @@ TEST_F(RankSlicing, WritesTheBytesOfOneProcessWithAnyNumberOfRanks) {
         job.output = path("one");
         const FileResult one = slice_file(job);
         const std::string expected = content("one");
-        for (const std::size_t ranks : ranks_of_a_job) {
-            SCOPED_TRACE(testing::Message() << format.name << " by " << ranks);
+        for (const std::size_t processes : numbers_of_processes) {
+            SCOPED_TRACE(testing::Message() << format.name << " by " << processes);
             job.output = path("one"); // some formats repeat the name
-            for (const FileResult& many : slice_by(ranks, job))
+            for (const FileResult& many : slice_by(processes, job))
                 expect_same(one, many);
             EXPECT_EQ(content("one"), expected);
         }
     }
 }
 
-TEST_F(RankSlicing, TakesPlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
+TEST_F(Processes, TakePlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
     write_stl(path("part.stl"), part());
     // Every seventh triangle is missing: chains everywhere.
     const TriangleSoup whole = part();
@@ -228,28 +228,28 @@ TEST_F(RankSlicing, TakesPlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
     jobs[4].adaptive = AdaptiveLayers{.min_height = 0.5, .max_height = 2};
     jobs[5].inputs = {{.path = path("part.stl"), .unit_mm = 25.4, .placement = rotation('y', 30)}};
     jobs[5].steps.offset_mm = -0.1;
-    const auto ranks_of_a_job =
+    const auto numbers_of_processes =
         test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{2, 5};
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const FileResult one = slice_file(jobs[i]);
         const std::string expected = content("out.cli");
-        for (const std::size_t ranks : ranks_of_a_job) {
-            SCOPED_TRACE(testing::Message() << "job " << i << " by " << ranks);
-            for (const FileResult& many : slice_by(ranks, jobs[i]))
+        for (const std::size_t processes : numbers_of_processes) {
+            SCOPED_TRACE(testing::Message() << "job " << i << " by " << processes);
+            for (const FileResult& many : slice_by(processes, jobs[i]))
                 expect_same(one, many);
             EXPECT_EQ(content("out.cli"), expected);
         }
     }
 }
 
-TEST_F(RankSlicing, FailsOnAllRanksWithTheSameWords) {
+TEST_F(Processes, FailOnAllWithTheSameWords) {
     write_stl(path("part.stl"), part());
     FileJob plain = job_of({{.path = path("part.stl")}}, 0.1);
     plain.output = path("out.cli");
     const auto expect_failure = [&](const FileJob& job, const std::string& words) {
-        for (const std::size_t ranks : {1, 3}) {
+        for (const std::size_t processes : {1, 3}) {
             std::vector<std::string> errors;
-            static_cast<void>(slice_by(ranks, job, &errors));
+            static_cast<void>(slice_by(processes, job, &errors));
             for (const std::string& error : errors) {
                 EXPECT_NE(error.find(words), std::string::npos) << error;
                 EXPECT_EQ(error, errors.front());
@@ -271,7 +271,7 @@ TEST_F(RankSlicing, FailsOnAllRanksWithTheSameWords) {
     expect_failure(job, "does not exist");
     job = plain;
     job.write.most_bytes = 1000;
-    expect_failure(job, "more than the 1000 that it may");
+    expect_failure(job, "more than the 1000"); // bytes, as one process says it, or several of all pieces
     job.format = "npz";
     expect_failure(job, "1000 bytes that it may");
 }

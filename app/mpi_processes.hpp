@@ -1,8 +1,8 @@
 #pragma once
 
-// Ranks of an MPI job. The one source beside this is where MPI is visible.
+// Processes of an MPI job. The one source beside this is where MPI is visible.
 
-#include "lamella/pipeline/ranks.hpp"
+#include "lamella/pipeline/processes.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -11,18 +11,18 @@
 namespace lamella::app {
 
 /// The processes that `mpirun` has started, from the making of the one object of this kind to its end. For
-/// one thread. Where a message fails or a rank is gone, MPI ends all of them.
-class MpiRanks final : public Communicator {
+/// one thread. Where a message fails or one of them is gone, MPI ends all of them.
+class MpiProcesses final : public Communicator {
   public:
     /// Of one message; longer ones go in several.
     static constexpr std::uint64_t most_bytes = std::uint64_t{1} << 28;
 
-    explicit MpiRanks(std::uint64_t most_bytes_at_once = most_bytes);
-    ~MpiRanks() override;
-    MpiRanks(const MpiRanks&) = delete;
-    MpiRanks& operator=(const MpiRanks&) = delete;
+    explicit MpiProcesses(std::uint64_t most_bytes_at_once = most_bytes);
+    ~MpiProcesses() override;
+    MpiProcesses(const MpiProcesses&) = delete;
+    MpiProcesses& operator=(const MpiProcesses&) = delete;
 
-    [[nodiscard]] std::size_t rank() const noexcept override { return rank_; }
+    [[nodiscard]] std::size_t process() const noexcept override { return process_; }
     [[nodiscard]] std::size_t size() const noexcept override { return size_; }
     void sum(std::span<std::uint64_t> values) override;
     [[nodiscard]] std::vector<std::string> gather(std::string_view mine) override;
@@ -34,12 +34,12 @@ class MpiRanks final : public Communicator {
 
     /// Waits for the others to call this, too; false when they have not after that time.
     [[nodiscard]] bool meet(std::chrono::seconds patience);
-    /// Ends all ranks, when this one cannot go on and the others may be waiting for it.
+    /// Ends all processes, when this one cannot go on and the others may be waiting for it.
     [[noreturn]] static void abort(int exit_code);
 
   private:
     std::uint64_t most_at_once_;
-    std::size_t rank_ = 0;
+    std::size_t process_ = 0;
     std::size_t size_ = 1;
 };
 

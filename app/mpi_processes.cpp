@@ -1,4 +1,4 @@
-#include "mpi_ranks.hpp"
+#include "mpi_processes.hpp"
 
 #include <mpi.h>
 
@@ -30,7 +30,7 @@ std::uint64_t rounds_of(std::uint64_t bytes, std::uint64_t most) {
 
 // Errors of MPI calls end the job: that is the default of communicators.
 
-MpiRanks::MpiRanks(std::uint64_t most_bytes_at_once) : most_at_once_(most_bytes_at_once) {
+MpiProcesses::MpiProcesses(std::uint64_t most_bytes_at_once) : most_at_once_(most_bytes_at_once) {
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     int rank = 0;
@@ -38,17 +38,17 @@ MpiRanks::MpiRanks(std::uint64_t most_bytes_at_once) : most_at_once_(most_bytes_
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     MPI_Comm_dup(MPI_COMM_WORLD, &last_words);
-    rank_ = static_cast<std::size_t>(rank);
+    process_ = static_cast<std::size_t>(rank);
     size_ = static_cast<std::size_t>(size);
 }
 
-MpiRanks::~MpiRanks() {
+MpiProcesses::~MpiProcesses() {
     MPI_Comm_free(&last_words);
     MPI_Finalize();
 }
 
 // On a communicator of its own, since the others may be in the midst of something else.
-bool MpiRanks::meet(std::chrono::seconds patience) {
+bool MpiProcesses::meet(std::chrono::seconds patience) {
     MPI_Request everybody = MPI_REQUEST_NULL;
     MPI_Ibarrier(last_words, &everybody);
     const auto end = std::chrono::steady_clock::now() + patience;
@@ -62,12 +62,12 @@ bool MpiRanks::meet(std::chrono::seconds patience) {
     }
 }
 
-void MpiRanks::abort(int exit_code) {
+void MpiProcesses::abort(int exit_code) {
     MPI_Abort(MPI_COMM_WORLD, exit_code);
     std::_Exit(exit_code);
 }
 
-void MpiRanks::sum(std::span<std::uint64_t> values) {
+void MpiProcesses::sum(std::span<std::uint64_t> values) {
     const std::uint64_t most = most_at_once_ / sizeof(std::uint64_t);
     for (std::uint64_t round = 0; round < rounds_of(values.size(), most); ++round) {
         const auto some = piece(values, round, most);
@@ -76,14 +76,14 @@ void MpiRanks::sum(std::span<std::uint64_t> values) {
     }
 }
 
-std::vector<std::string> MpiRanks::gather(std::string_view mine) {
+std::vector<std::string> MpiProcesses::gather(std::string_view mine) {
     std::vector<std::uint64_t> sizes(size_);
     const std::uint64_t size = mine.size();
     MPI_Allgather(&size, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
     std::vector<std::string> all;
     for (std::size_t from = 0; from < size_; ++from) {
         std::string& text =
-            all.emplace_back(from == rank_ ? std::string(mine) : std::string(sizes[from], '\0'));
+            all.emplace_back(from == process_ ? std::string(mine) : std::string(sizes[from], '\0'));
         for (std::uint64_t round = 0; round < rounds_of(sizes[from], most_at_once_); ++round) {
             const auto some = piece(std::span(text), round, most_at_once_);
             MPI_Bcast(some.data(), static_cast<int>(some.size()), MPI_BYTE, static_cast<int>(from),
@@ -93,7 +93,7 @@ std::vector<std::string> MpiRanks::gather(std::string_view mine) {
     return all;
 }
 
-std::vector<std::uint64_t> MpiRanks::exchange(std::span<const std::uint64_t> outgoing) {
+std::vector<std::uint64_t> MpiProcesses::exchange(std::span<const std::uint64_t> outgoing) {
     std::vector<std::uint64_t> incoming(size_);
     MPI_Alltoall(outgoing.data(), 1, MPI_UINT64_T, incoming.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
     return incoming;
@@ -101,12 +101,12 @@ std::vector<std::uint64_t> MpiRanks::exchange(std::span<const std::uint64_t> out
 
 // Not MPI_Alltoallv: its counts and places end at 2^31. In step s every rank sends to the one that is s
 // further on and receives from the one s before, so no two send to the same one at a time.
-void MpiRanks::exchange(std::span<const std::span<const std::byte>> outgoing,
-                        std::span<const std::span<std::byte>> incoming) {
-    std::ranges::copy(outgoing[rank_], incoming[rank_].begin());
+void MpiProcesses::exchange(std::span<const std::span<const std::byte>> outgoing,
+                            std::span<const std::span<std::byte>> incoming) {
+    std::ranges::copy(outgoing[process_], incoming[process_].begin());
     for (std::size_t step = 1; step < size_; ++step) {
-        const std::size_t to = (rank_ + step) % size_;
-        const std::size_t from = (rank_ + size_ - step) % size_;
+        const std::size_t to = (process_ + step) % size_;
+        const std::size_t from = (process_ + size_ - step) % size_;
         const std::uint64_t sends = rounds_of(outgoing[to].size(), most_at_once_);
         const std::uint64_t receives = rounds_of(incoming[from].size(), most_at_once_);
         for (std::uint64_t round = 0; round < std::max(sends, receives); ++round) {
@@ -121,7 +121,7 @@ void MpiRanks::exchange(std::span<const std::span<const std::byte>> outgoing,
     }
 }
 
-void MpiRanks::send(std::size_t to, std::string_view bytes) {
+void MpiProcesses::send(std::size_t to, std::string_view bytes) {
     const std::uint64_t size = bytes.size();
     MPI_Send(&size, 1, MPI_UINT64_T, static_cast<int>(to), tag, MPI_COMM_WORLD);
     for (std::uint64_t round = 0; round < rounds_of(size, most_at_once_); ++round) {
@@ -131,7 +131,7 @@ void MpiRanks::send(std::size_t to, std::string_view bytes) {
     }
 }
 
-std::string MpiRanks::receive(std::size_t from) {
+std::string MpiProcesses::receive(std::size_t from) {
     std::uint64_t size = 0;
     MPI_Recv(&size, 1, MPI_UINT64_T, static_cast<int>(from), tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     std::string bytes(size, '\0');

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "lamella/core/execution.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include <optional>
+
+namespace lamella {
+
+/// The mesh with its equal vertices joined, as `weld` of an IndexedMesh has it; nothing where no two are
+/// equal.
+[[nodiscard]] std::optional<IndexedMesh> joined_vertices(const IndexedMesh& mesh, const Execution& execution);
+
+} // namespace lamella

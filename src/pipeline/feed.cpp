@@ -1,0 +1,473 @@
+#include "pipeline/feed.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "core/stopwatch.hpp"
+#include "mesh/folds.hpp"
+#include "pipeline/agreement.hpp"
+#include "pipeline/packed.hpp"
+#include "pipeline/plate_builder.hpp"
+#include "pipeline/stream_sums.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace lamella {
+namespace {
+
+constexpr std::uint64_t passes = 3;
+constexpr std::uint64_t record_bytes = 50; // of a binary STL file
+
+/// The first wish that needs the whole mesh in memory, as the program names it; "" if there is none.
+std::string wish_for_whole_mesh(const FileJob& job, const Engine& engine) {
+    if (engine.welds)
+        return fmt::format("the engine {}", engine.name);
+    if (job.strict)
+        return "--strict";
+    if (job.inspect)
+        return "--inspect";
+    if (job.repair.weld_tolerance_mm)
+        return "--weld-tolerance";
+    if (job.repair.drop_duplicates)
+        return "--drop-duplicates";
+    if (job.repair.orient)
+        return "--orient";
+    if (job.adaptive)
+        return "--adaptive";
+    return {};
+}
+
+/// The part of n triangles that a process reads: whole pieces of a fold, so that sums have the bits that one
+/// process finds.
+RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
+    const std::uint64_t pieces = (n + fold_piece - 1) / fold_piece;
+    const auto bound = [&](std::size_t p) {
+        return std::min(n, pieces * p / processes * fold_piece);
+    };
+    return {bound(process), bound(process + 1)};
+}
+
+/// What a process saw of a file.
+struct Seen {
+    Box3 box;
+    std::uint64_t unusable = 0;
+    std::uint64_t any = 0; ///< whether there is a first corner
+    Point3f first_corner;
+};
+
+/// Of a mesh that cannot be sliced in pieces.
+void check_size(const std::string& path, const Mesh& mesh, const JobMemory& memory, unsigned threads) {
+    const std::uint64_t bytes = memory.of_mesh(mesh, threads);
+    if (bytes > memory.limit)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: to slice its {} triangles takes up to {} MB of memory, above the {} MB of "
+                        "--max-memory; only STL files that are not packed are sliced in pieces: write "
+                        "the mesh as one, or allow more",
+                        path, mesh.size(), bytes / 1'000'000 + 1, memory.limit / 1'000'000));
+}
+
+} // namespace
+
+// ------------------------------------------------------------------------------------------------- open
+
+Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution)
+    : memory_(job), processes_(processes), among_(&alone()), reading_{.strict = job.strict,
+                                                                      .max_triangles = job.max_triangles,
+                                                                      .max_memory = job.max_memory},
+      measure_volume_(job.layer_statistics) {
+    if (processes.size() > 1 && std::ranges::count(job.inputs, std::string("-"), &PlateInput::path) > 0)
+        throw Error(ErrorKind::usage,
+                    "standard input reaches one of the processes only; give the name of a file");
+    const unsigned threads = thread_count(execution);
+    std::vector<MeshInput> inputs;
+    std::uint64_t bytes = 0;
+    std::string not_streamed;
+    bool divisible = true;
+    in_agreement(processes, [&] {
+        for (const PlateInput& input : job.inputs) {
+            const MeshInput& file =
+                inputs.emplace_back(input.path, memory_.of_input(threads), execution.cancel);
+            const bool placed = input.placement != Transform{} || input.unit_mm.value_or(1) != 1;
+            if (file.can_stream())
+                bytes += memory_.of_whole(file, placed, threads);
+            else
+                not_streamed = file.path();
+            divisible = divisible && file.can_stream() && file.records().has_value();
+        }
+    });
+    // Machines differ in memory, but all processes have to go the same way.
+    std::uint64_t too_large = bytes > memory_.limit ? 1 : 0;
+    processes.sum(std::span(&too_large, 1));
+
+    const std::string needs_all = wish_for_whole_mesh(job, engine);
+    const bool can_stream = not_streamed.empty() && needs_all.empty();
+    in_pieces_ = can_stream && too_large != 0;
+    if (processes.size() > 1 && can_stream && divisible)
+        among_ = &processes;
+    if (in_pieces_ || among_->size() > 1) {
+        look_at(job, std::move(inputs), execution);
+        return;
+    }
+    if (too_large != 0 && memory_.asked)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: to be sliced whole takes up to {} MB of memory, above the {} MB of "
+                        "--max-memory; it would be sliced in pieces, but for {}",
+                        job.inputs.front().path, bytes / 1'000'000 + 1, memory_.limit / 1'000'000,
+                        !needs_all.empty()
+                            ? fmt::format("{}, which needs the whole mesh", needs_all)
+                            : fmt::format("{}, which has to be read whole: only STL files that are not "
+                                          "packed can be read in pieces",
+                                          not_streamed)));
+    in_agreement(processes, [&] { read(job, std::move(inputs), execution); });
+}
+
+Feed::Feed(const FileJob& job, Plate plate, Communicator& processes)
+    : memory_(job), processes_(processes), among_(&alone()), measure_volume_(job.layer_statistics),
+      plate_(std::move(plate)) {}
+
+void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
+    const unsigned threads = thread_count(execution);
+    std::vector<MeshFile> meshes;
+    for (MeshInput& file : inputs) {
+        const MeshInput input = std::move(file); // a text is let go of once it is read
+        const bool stl = input.can_stream();
+        meshes.push_back(input.read(reading_, execution));
+        if (memory_.asked && !stl)
+            for (const MeshObject& object : meshes.back().objects)
+                check_size(input.path(), object.mesh, memory_, threads);
+    }
+    plate_ = build_plate(job.inputs, std::move(meshes), execution);
+}
+
+/// The first pass.
+void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
+    for (MeshInput& input : inputs) {
+        File& file = files_.emplace_back(File{std::move(input), std::nullopt, 0, {}});
+        if (among_->size() > 1) {
+            file.part = part_of(file.input.records().value(), among_->process(), among_->size());
+            figures_.triangles_read += file.part->end - file.part->begin;
+        }
+        bytes_to_read_ += passes * bytes_of(file, file.part);
+    }
+    PlateBuilder builder;
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+        File& file = files_[i];
+        const double unit = job.inputs[i].unit_mm.value_or(1);
+        const Transform placement = compose(job.inputs[i].placement, scaling(unit, unit, unit));
+        MeshFile read;
+        Seen mine;
+        in_agreement(*among_, [&] {
+            Extent extent(placement);
+            read = stream(
+                file, [&](const TriangleSoup& batch, std::uint64_t number) { extent.add(batch, number); },
+                execution, file.part);
+            mine = {extent.box(), read.nonfinite_triangles, extent.box().empty() ? 0U : 1U,
+                    extent.first_corner()};
+        });
+        Box3 box;
+        bool any = false;
+        file.triangles = read.stored_triangles;
+        for (const std::string& message : among_->gather(Packer().put(mine).take())) {
+            const Seen seen = Unpacker(message).get<Seen>();
+            file.triangles -= seen.unusable;
+            box.add(seen.box);
+            if (seen.any != 0 && !any)
+                file.first_corner = seen.first_corner;
+            any = any || seen.any != 0;
+        }
+        if (!any)
+            throw Error(ErrorKind::input, file.input.path() + ": no triangle of the file is usable");
+        builder.add(job.inputs[i], std::move(read), [&](const Mesh&, const Transform& where) {
+            if (where != placement)
+                throw Error(ErrorKind::internal, "a streamed mesh stands elsewhere than was thought");
+            return box;
+        });
+    }
+    plate_ = builder.finish();
+}
+
+std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>& part) {
+    return part ? record_bytes * (part->end - part->begin) : file.input.bytes();
+}
+
+/// All passes are one as progress is told.
+MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
+                      const std::optional<RecordRange>& part) {
+    const Stopwatch reading;
+    Execution counted = execution;
+    if (execution.progress)
+        counted.progress = [&](const Progress& progress) {
+            execution.progress(
+                {Stage::read, std::min(bytes_read_ + progress.done, bytes_to_read_), bytes_to_read_});
+        };
+    MeshFile read = file.input.stream(sink, reading_, counted, part);
+    bytes_read_ += bytes_of(file, part);
+    figures_.read_seconds += reading.seconds();
+    return read;
+}
+
+std::uint64_t Feed::triangles(std::size_t shape) const {
+    return files_.empty() ? plate_.shapes[shape].mesh.size() : files_[plate_.shapes[shape].input].triangles;
+}
+
+const Transform& Feed::placement(std::size_t shape) const {
+    return plate_.shapes[shape].mesh.soup()->placement();
+}
+
+// ------------------------------------------------------------------------------------------------ count
+
+PlaneCounts Feed::count(const Plan& plan, const Execution& execution) {
+    counts_.clear();
+    if (files_.empty())
+        for (const PlateShape& shape : plate_.shapes)
+            counts_.push_back(count_planes(shape.mesh, plan, execution));
+    else
+        count_streams(plan, execution);
+    return counts_of_parts(plan.layers.size());
+}
+
+PlaneCounts Feed::counts_of_parts(std::size_t planes) const {
+    PlaneCounts all(planes);
+    for (const PlatePart& part : plate_.parts)
+        all.add(counts_[part.shape]);
+    return all;
+}
+
+/// The second pass.
+void Feed::count_streams(const Plan& plan, const Execution& execution) {
+    const std::size_t shapes = plate_.shapes.size();
+    std::vector<std::unique_ptr<PlaneCounter>> counters;
+    std::vector<std::unique_ptr<VolumeSum>> volumes;
+    for (std::size_t shape = 0; shape < shapes; ++shape) {
+        counters.push_back(std::make_unique<PlaneCounter>(plan));
+        volumes.push_back(
+            std::make_unique<VolumeSum>(placement(shape), files_[plate_.shapes[shape].input].first_corner));
+    }
+    in_agreement(*among_, [&] {
+        for (std::size_t f = 0; f < files_.size(); ++f)
+            static_cast<void>(stream(
+                files_[f],
+                [&](const TriangleSoup& batch, std::uint64_t number) {
+                    for (std::size_t shape = 0; shape < shapes; ++shape) {
+                        if (plate_.shapes[shape].input != f)
+                            continue;
+                        const TriangleSoup placed = batch.transformed(placement(shape));
+                        counters[shape]->add(placed);
+                        if (measure_volume_)
+                            volumes[shape]->add(placed, number);
+                    }
+                },
+                execution, files_[f].part));
+    });
+    std::vector<double> six_volumes(shapes, 0);
+    for (std::size_t shape = 0; shape < shapes; ++shape) {
+        counts_.push_back(counters[shape]->total());
+        among_->sum(counts_.back().numbers());
+        if (measure_volume_)
+            for (const std::string& message :
+                 among_->gather(Packer().put_all(std::span(volumes[shape]->pieces())).take()))
+                for (const double piece : Unpacker(message).get_all<double>())
+                    six_volumes[shape] += piece;
+    }
+    volume_mm3_ = 0;
+    for (const PlatePart& part : plate_.parts)
+        volume_mm3_ += six_volumes[part.shape] / 6;
+}
+
+// ------------------------------------------------------------------------------------------------ bring
+
+std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange> division,
+                                    const Execution& execution) {
+    assert(division.size() == processes_.size());
+    const PlaneRange mine = division[processes_.process()];
+    if (files_.empty())
+        return mine.size() > 0 ? std::vector{mine} : std::vector<PlaneRange>{};
+    std::vector<PlaneRange> shares;
+    in_agreement(*among_, [&] {
+        shares = shares_of(plan, mine, thread_count(execution));
+        store_.emplace(plan, shares, counts_);
+    });
+    for (const PlaneCounts& shape : counts_)
+        figures_.triangles_sliced += SlabSurvey(shape).triangles(mine);
+    if (among_->size() > 1)
+        exchange(plan, division, execution);
+    else
+        bring_own(execution);
+    in_agreement(*among_, [&] {
+        if (!store_->full())
+            throw changed_while_read();
+    });
+    if (execution.progress)
+        execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
+    return shares;
+}
+
+std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsigned threads) const {
+    if (mine.size() == 0)
+        return {};
+    const SlabSurvey survey(part_of(counts_of_parts(plan.layers.size()), mine));
+    SlabMemory slab{
+        .threads = threads,
+        .placed = std::ranges::any_of(
+            plate_.shapes, [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
+        .points_in_flight = memory_.points_in_flight(threads)};
+    if (plate_.parts.size() > 1) // then all layers of a share are held
+        slab.points_in_flight = ~std::uint64_t{0};
+    const std::uint64_t overhead =
+        JobMemory::overhead(threads, plan.layers.size()) + memory_.of_messages(processes_.size());
+    std::uint64_t largest = 0;
+    std::uint32_t where = 0;
+    for (std::uint32_t p = 0; p < survey.planes(); ++p)
+        if (const std::uint64_t bytes = slab.bytes(survey.needs({p, p + 1})); bytes > largest) {
+            largest = bytes;
+            where = p;
+        }
+    if (overhead + largest > memory_.limit)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
+                        "--threads {} that takes {} MB of memory, above the {:.3g} MB of --max-memory; "
+                        "allow more, or use fewer threads",
+                        plate_.files.front().path, plan.layers[mine.begin + where].z, survey.points(where),
+                        threads, (overhead + largest) / 1'000'000 + 1,
+                        static_cast<double>(memory_.limit) / 1e6));
+    std::vector<PlaneRange> shares =
+        divide_to_fit(survey, part_of(plan, mine), slab, memory_.limit - overhead);
+    for (PlaneRange& share : shares)
+        share = {mine.begin + share.begin, mine.begin + share.end};
+    return shares;
+}
+
+Error Feed::changed_while_read() const {
+    return {ErrorKind::input, fmt::format("{}: was changed while it was read", plate_.files.front().path)};
+}
+
+/// The third pass, where this process reads all of the files.
+void Feed::bring_own(const Execution& execution) {
+    std::atomic<bool> fits{true};
+    for (std::size_t f = 0; f < files_.size(); ++f)
+        static_cast<void>(stream(
+            files_[f],
+            [&](const TriangleSoup& batch, std::uint64_t) {
+                for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape)
+                    if (plate_.shapes[shape].input == f &&
+                        !store_->add(shape, batch.transformed(placement(shape))))
+                        fits = false;
+            },
+            execution, std::nullopt));
+    if (!fits)
+        throw changed_while_read();
+}
+
+/// The third pass, where each process reads a part: in rounds, so that triangles on their way take little
+/// memory.
+void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution) {
+    using Outgoing = std::vector<std::vector<Triangle3f>>; // by process
+    const SlabFinder finder(plan, division);
+    const std::uint64_t at_once = memory_.triangles_in_a_round(among_->size());
+    for (std::size_t f = 0; f < files_.size(); ++f) {
+        File& file = files_[f];
+        std::uint64_t longest = 0;
+        for (std::size_t p = 0; p < among_->size(); ++p) {
+            const RecordRange part = part_of(file.input.records().value(), p, among_->size());
+            longest = std::max(longest, part.end - part.begin);
+        }
+        for (std::uint64_t done = 0; done < longest; done += at_once) {
+            const RecordRange now{std::min(file.part->begin + done, file.part->end),
+                                  std::min(file.part->begin + done + at_once, file.part->end)};
+            std::vector<Outgoing> outgoing(plate_.shapes.size(), Outgoing(among_->size()));
+            in_agreement(*among_, [&] {
+                if (now.begin == now.end)
+                    return;
+                std::mutex mutex;
+                static_cast<void>(stream(
+                    file,
+                    [&](const TriangleSoup& batch, std::uint64_t) {
+                        std::vector<SlabFinder::Touched> touched;
+                        for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape) {
+                            if (plate_.shapes[shape].input != f)
+                                continue;
+                            finder.find(batch.transformed(placement(shape)), touched);
+                            Outgoing sorted(among_->size());
+                            for (std::size_t i = 0; i < batch.size(); ++i)
+                                for (std::uint32_t p = touched[i].begin; p < touched[i].end; ++p)
+                                    sorted[p].push_back(batch.stored(i));
+                            const std::lock_guard lock(mutex);
+                            for (std::size_t p = 0; p < sorted.size(); ++p)
+                                outgoing[shape][p].insert(outgoing[shape][p].end(), sorted[p].begin(),
+                                                          sorted[p].end());
+                        }
+                    },
+                    execution, now));
+            });
+            const Stopwatch exchanging;
+            for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape) {
+                if (plate_.shapes[shape].input != f)
+                    continue;
+                const TriangleSoup incoming = exchanged(outgoing[shape]);
+                outgoing[shape].clear();
+                in_agreement(*among_, [&] { store(shape, incoming, execution); });
+            }
+            figures_.exchange_seconds += exchanging.seconds();
+        }
+    }
+}
+
+/// What the other processes have for this one, and what it keeps of its own.
+TriangleSoup Feed::exchanged(std::span<const std::vector<Triangle3f>> outgoing) {
+    std::vector<std::uint64_t> sizes;
+    std::vector<std::span<const std::byte>> out;
+    for (const std::vector<Triangle3f>& triangles : outgoing) {
+        sizes.push_back(triangles.size());
+        out.push_back(std::as_bytes(std::span(triangles)));
+        figures_.bytes_sent += out.back().size();
+    }
+    figures_.bytes_sent -= out[among_->process()].size(); // that stays here
+    const std::vector<std::uint64_t> coming = among_->exchange(sizes);
+    std::uint64_t total = 0;
+    for (const std::uint64_t count : coming)
+        total += count;
+    std::shared_ptr<const PageArray<Triangle3f>> memory;
+    in_agreement(*among_, [&] { memory = std::make_shared<const PageArray<Triangle3f>>(total); });
+    std::vector<std::span<std::byte>> in;
+    std::uint64_t at = 0;
+    for (const std::uint64_t count : coming) {
+        in.push_back(std::as_writable_bytes(memory->span().subspan(at, count)));
+        at += count;
+    }
+    assert(at == total);
+    among_->exchange(out, in);
+    return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), total};
+}
+
+void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution) {
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 13;
+    Executor executor(execution);
+    const TriangleSoup placed = triangles.transformed(placement(shape));
+    executor.for_chunks(placed.size(), at_once, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        if (!store_->add(shape, placed.part(begin, end)))
+            throw changed_while_read();
+    });
+    executor.check_cancelled();
+}
+
+Plate Feed::take(std::size_t share, const Execution& execution) {
+    Plate plate = plate_;
+    if (!files_.empty())
+        for (std::size_t shape = 0; shape < plate.shapes.size(); ++shape)
+            plate.shapes[shape].mesh = store_->take(share, shape, execution).transformed(placement(shape));
+    return plate;
+}
+
+} // namespace lamella

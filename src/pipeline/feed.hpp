@@ -1,0 +1,117 @@
+#pragma once
+
+// The triangles of a job on their way to be sliced.
+
+#include "lamella/core/error.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/read/mesh_input.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slabs.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "pipeline/job_memory.hpp"
+#include "pipeline/share_store.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// A plate whose meshes are in memory; or one whose triangles stay in their files and stream by, in three
+/// passes:
+///
+///     open     what the files hold and where it lies
+///     count    how many triangles each plane of the plan cuts
+///     bring    the triangles to where they wait for the planes that cut them
+///
+/// To read a file again is faster than to write its triangles down, and takes no room. Where several
+/// processes slice the job and the files can be divided, each reads its part of every file, and they talk
+/// after each pass; so all of them make one Feed of the same job, and call its functions in the same order.
+class Feed {
+  public:
+    /// Reads the files of the job, or looks at them: where they do not fit its memory, and where several
+    /// processes can divide them. Throws what load_plate throws, and Error{limit} where the memory does not
+    /// do either.
+    Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution);
+    /// Of a plate that is in memory already.
+    Feed(const FileJob& job, Plate plate, Communicator& processes);
+
+    /// Files, parts and boxes; meshes only where they are in memory.
+    [[nodiscard]] const Plate& plate() const noexcept { return plate_; }
+    /// Its meshes, to be prepared; null where they stay in their files.
+    [[nodiscard]] Plate* meshes() noexcept { return files_.empty() ? &plate_ : nullptr; }
+    /// Whether the memory of the job was too small for the meshes.
+    [[nodiscard]] bool in_pieces() const noexcept { return in_pieces_; }
+
+    /// Usable triangles of a shape, all processes together.
+    [[nodiscard]] std::uint64_t triangles(std::size_t shape) const;
+
+    /// Counts the triangles of all parts on the planes, all processes together.
+    [[nodiscard]] PlaneCounts count(const Plan& plan, const Execution& execution);
+    /// Signed volume of all parts; after `count`, where the job has layer statistics and the triangles stay
+    /// in their files.
+    [[nodiscard]] double volume_mm3() const noexcept { return volume_mm3_; }
+
+    /// After `count` of the same plan. `division`: the planes that each process slices. Divides those of this
+    /// process into shares that fit its memory, and has their triangles wait. Throws Error{limit} where a
+    /// layer does not fit by itself.
+    [[nodiscard]] std::vector<PlaneRange> bring(const Plan& plan, std::span<const PlaneRange> division,
+                                                const Execution& execution);
+
+    /// A plate with the triangles of a share, by its position in what `bring` returned. Each once.
+    [[nodiscard]] Plate take(std::size_t share, const Execution& execution);
+
+    [[nodiscard]] const JobMemory& memory() const noexcept { return memory_; }
+
+    /// Seconds of reading, and what went from process to process.
+    [[nodiscard]] const ProcessFigures& figures() const noexcept { return figures_; }
+
+  private:
+    struct File {
+        MeshInput input;
+        std::optional<RecordRange> part; ///< of this process; unset: all of it
+        std::uint64_t triangles = 0;     ///< usable ones, of all processes
+        Point3f first_corner;            ///< as stored
+    };
+
+    void read(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution);
+    void look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution);
+    [[nodiscard]] static std::uint64_t bytes_of(const File& file, const std::optional<RecordRange>& part);
+    MeshFile stream(const File& file, const TriangleSink& sink, const Execution& execution,
+                    const std::optional<RecordRange>& part);
+    [[nodiscard]] const Transform& placement(std::size_t shape) const;
+
+    void count_streams(const Plan& plan, const Execution& execution);
+    [[nodiscard]] PlaneCounts counts_of_parts(std::size_t planes) const;
+
+    [[nodiscard]] std::vector<PlaneRange> shares_of(const Plan& plan, PlaneRange mine,
+                                                    unsigned threads) const;
+    void bring_own(const Execution& execution);
+    void exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution);
+    [[nodiscard]] TriangleSoup exchanged(std::span<const std::vector<Triangle3f>> outgoing);
+    void store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution);
+    [[nodiscard]] Error changed_while_read() const;
+
+    JobMemory memory_;
+    Communicator& processes_;
+    Communicator* among_; ///< those that divide the files: this process alone, where each reads all of them
+    MeshReadOptions reading_;
+    bool measure_volume_;
+    bool in_pieces_ = false;
+    Plate plate_;
+    std::vector<File> files_; ///< where triangles stay in them
+    std::uint64_t bytes_to_read_ = 0;
+    std::uint64_t bytes_read_ = 0;
+    std::vector<PlaneCounts> counts_; ///< by shape, of all processes
+    double volume_mm3_ = 0;
+    std::optional<ShareStore> store_;
+    ProcessFigures figures_;
+};
+
+} // namespace lamella

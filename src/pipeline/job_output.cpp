@@ -1,0 +1,224 @@
+#include "pipeline/job_output.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "pipeline/agreement.hpp"
+#include "pipeline/packed.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <exception>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace lamella {
+namespace {
+
+/// A file that several processes can write: there is none yet, or it is a regular one.
+bool can_be_shared(const std::string& path) {
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    return path != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
+}
+
+std::string packed(std::span<const Layer> parts) {
+    Packer packer;
+    packer.put(std::uint64_t{parts.size()});
+    for (const Layer& layer : parts)
+        packer.put(layer.index)
+            .put(layer.z)
+            .put(layer.bottom)
+            .put(layer.top)
+            .put(std::uint64_t{layer.rings})
+            .put_all(std::span(layer.offsets))
+            .put_all(layer.points.span());
+    return packer.take();
+}
+
+std::vector<Layer> unpacked(const std::string& message) {
+    Unpacker unpacker(message);
+    std::vector<Layer> parts(unpacker.get<std::uint64_t>());
+    for (Layer& layer : parts) {
+        layer.index = unpacker.get<std::uint64_t>();
+        layer.z = unpacker.get<double>();
+        layer.bottom = unpacker.get<double>();
+        layer.top = unpacker.get<double>();
+        layer.rings = unpacker.get<std::uint64_t>();
+        layer.offsets = unpacker.get_all<std::uint64_t>();
+        layer.points = PointArray(unpacker.get_all<Point2>());
+    }
+    return parts;
+}
+
+/// Writes the bytes from `place` on, into a file that exists.
+void write_at(const std::string& path, std::uint64_t place, const ByteStore& bytes) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0)
+        throw output_error(path, errno);
+    const auto fail = [&](int system_error) {
+        ::close(descriptor);
+        throw output_error(path, system_error);
+    };
+    std::string block;
+    for (std::uint64_t at = 0; at < bytes.size(); at += block.size()) {
+        block.resize(std::min<std::uint64_t>(ByteStore::block_bytes, bytes.size() - at));
+        bytes.read(at, block);
+        for (std::string_view rest = block; !rest.empty();) {
+            const ssize_t written = ::pwrite(descriptor, rest.data(), rest.size(),
+                                             static_cast<off_t>(place + at + (block.size() - rest.size())));
+            if (written < 0 && errno != EINTR)
+                fail(errno);
+            if (written > 0)
+                rest.remove_prefix(static_cast<std::size_t>(written));
+        }
+    }
+    // Where files live on another machine, the last bytes meet it only now.
+    if (::fsync(descriptor) != 0 && errno != EINVAL)
+        fail(errno);
+    if (::close(descriptor) != 0 && errno != EINTR)
+        throw output_error(path, errno);
+}
+
+} // namespace
+
+JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Communicator& processes,
+                     std::uint64_t most_in_memory)
+    : processes_(processes), mine_(mine), path_(job.output), most_bytes_(job.write.most_bytes),
+      waiting_(most_in_memory) {
+    if (!job.output.empty()) {
+        format_ = &layer_format(job.format, job.output);
+        LayerWriteOptions options = job.write;
+        shared_ = processes.size() > 1 && format_->pieces && can_be_shared(job.output);
+        if (shared_) {
+            create_shared(job.output);
+            piece_ = {mine.begin, mine.size(), [this](std::string_view bytes) {
+                          waiting_.add(bytes);
+                      }};
+            info.piece = &piece_;
+            options.most_bytes = 0; // the limit is that of all pieces
+        }
+        in_agreement(processes, [&] {
+            if (shared_ || processes.process() == 0)
+                writer_ = open_layer_writer(job.output, *format_, info, options);
+        });
+        info.piece = nullptr;
+    }
+    if (!job.report.path.empty())
+        page_ = open_layer_page(job.report.path, info, job.report.page);
+}
+
+void JobOutput::create_shared(const std::string& path) {
+    in_agreement(processes_, [&] {
+        if (processes_.process() == 0)
+            file_.emplace(path);
+    });
+    working_path_ = processes_.gather(file_ ? file_->share() : std::string()).front();
+}
+
+std::function<void()> JobOutput::prepare(std::span<const Layer> parts) {
+    std::function<void()> to_file;
+    if (writer_)
+        to_file = writer_->prepare(parts);
+    else if (format_ != nullptr)
+        to_file = [this, message = packed(parts)] {
+            waiting_.add(message);
+            messages_.push_back(message.size());
+        };
+    if (!page_)
+        return to_file;
+    return [to_file = std::move(to_file), to_page = page_->prepare(parts)] {
+        if (to_file)
+            to_file();
+        to_page();
+    };
+}
+
+JobOutput::Written JobOutput::finish_file() {
+    Written written;
+    if (format_ == nullptr)
+        return written;
+    written.format = format_->name;
+    in_agreement(processes_, [&] {
+        if (!writer_)
+            return send_layers();
+        if (!shared_)
+            write_layers_of_others();
+        if (!shared_ || mine_.size() > 0)
+            writer_->finish();
+        written.bytes = shared_ ? 0 : writer_->bytes();
+        written.warnings = writer_->warnings();
+    });
+    if (shared_)
+        written.bytes = write_shared();
+    else
+        processes_.sum(std::span(&written.bytes, 1)); // those that did not write have 0
+    return written;
+}
+
+std::vector<std::string> JobOutput::finish_page(const PageNotes& notes) {
+    page_->tell(notes);
+    page_->finish();
+    return page_->warnings();
+}
+
+void JobOutput::send_layers() {
+    std::uint64_t at = 0;
+    std::string message;
+    for (const std::uint64_t length : messages_) {
+        message.resize(length);
+        waiting_.read(at, message);
+        processes_.send(0, message);
+        at += length;
+    }
+    processes_.send(0, {});
+}
+
+/// In order. Should the writer fail, the rest of the messages is received nevertheless.
+void JobOutput::write_layers_of_others() {
+    std::exception_ptr error;
+    for (std::size_t from = 1; from < processes_.size(); ++from)
+        for (std::string message; !(message = processes_.receive(from)).empty();) {
+            if (error)
+                continue;
+            try {
+                writer_->prepare(unpacked(message))();
+            } catch (...) {
+                error = std::current_exception();
+            }
+        }
+    if (error)
+        std::rethrow_exception(error);
+}
+
+/// The pieces of all processes, each at its place, which follows from the sizes of those before.
+std::uint64_t JobOutput::write_shared() {
+    std::vector<std::uint64_t> sizes(processes_.size(), 0);
+    sizes[processes_.process()] = waiting_.size();
+    processes_.sum(sizes);
+    std::uint64_t total = 0;
+    std::uint64_t place = 0;
+    for (std::size_t p = 0; p < sizes.size(); ++p) {
+        if (p == processes_.process())
+            place = total;
+        total += sizes[p];
+    }
+    if (most_bytes_ != 0 && total > most_bytes_)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("'{}' would take {} bytes, more than the {} that it may; choose higher layers, "
+                        "another format or a larger limit",
+                        path_, total, most_bytes_));
+    in_agreement(processes_, [&] { write_at(working_path_, place, waiting_); });
+    in_agreement(processes_, [&] {
+        if (file_)
+            file_->commit();
+    });
+    return total;
+}
+
+} // namespace lamella

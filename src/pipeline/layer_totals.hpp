@@ -1,0 +1,56 @@
+#pragma once
+
+// What is gathered about layers on their way to the output.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/slicing/plan.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// Has a row for each plane, and sums of rows are made at the end in their order: so threads, shares and
+/// processes give the same figures, bit for bit.
+class LayerTotals {
+  public:
+    /// Of the planes that this process slices; none, perhaps.
+    LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, std::size_t parts);
+
+    /// The layers of all parts on one plane, as they are written, and what was done to them. From any thread,
+    /// once for each plane.
+    void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes);
+
+    /// Points of the layers that were added.
+    [[nodiscard]] std::uint64_t points() const noexcept;
+
+    /// From here on, the rows of all processes, on each of them.
+    void gather(Communicator& processes);
+
+    /// Counts, sums and rows.
+    void tell(FileResult& result) const;
+
+  private:
+    struct Row {
+        LayerStatistics layer; ///< with `measure`, `hash` and `joins` only where the job has layer statistics
+        FileResult::Gaps closed;
+        bool inside_out = false;
+    };
+    struct Counts {
+        std::atomic<std::uint64_t> contours{0};
+        std::atomic<std::uint64_t> open_chains{0};
+        std::atomic<std::uint64_t> points{0};
+    };
+
+    bool statistics_;
+    bool changes_;
+    std::vector<Row> rows_;
+    std::vector<Counts> parts_;
+};
+
+} // namespace lamella

@@ -1,0 +1,100 @@
+#include "pipeline/share_store.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace lamella {
+
+ShareStore::ShareStore(const Plan& plan, std::span<const PlaneRange> shares,
+                       std::span<const PlaneCounts> counts)
+    : finder_(plan, shares), shares_(shares.size()), shapes_(counts.size()),
+      stretches_(shares.size() * counts.size()) {
+    std::vector<SlabSurvey> surveys;
+    for (const PlaneCounts& shape : counts)
+        surveys.emplace_back(shape);
+    std::uint64_t total = 0;
+    for (std::size_t share = 0; share < shares_; ++share)
+        for (std::size_t shape = 0; shape < shapes_; ++shape) {
+            Stretch& its = stretch(share, shape);
+            its.begin = its.next = total;
+            its.end = total += surveys[shape].triangles(shares[share]);
+        }
+    if (shares_ > 1)
+        file_.emplace(total * sizeof(Triangle3f));
+    else
+        memory_ = std::make_shared<const PageArray<Triangle3f>>(total);
+}
+
+bool ShareStore::add(std::size_t shape, const TriangleSoup& batch) {
+    // A triangle may be cut by planes of all shares: so many copies are made at a time.
+    constexpr std::uint64_t copies_at_once = std::uint64_t{1} << 15;
+    std::vector<SlabFinder::Touched> touched;
+    finder_.find(batch, touched);
+    for (std::size_t from = 0; from < batch.size();) {
+        std::size_t to = from;
+        for (std::uint64_t copies = 0; to < batch.size() && copies < copies_at_once; ++to)
+            copies += touched[to].end - touched[to].begin;
+        if (!add_some(shape, batch, touched, from, to))
+            return false;
+        from = to;
+    }
+    return true;
+}
+
+/// The triangles [from, to), sorted by shares.
+bool ShareStore::add_some(std::size_t shape, const TriangleSoup& batch,
+                          std::span<const SlabFinder::Touched> touched, std::size_t from, std::size_t to) {
+    std::vector<std::size_t> begin(shares_ + 1, 0);
+    for (std::size_t i = from; i < to; ++i)
+        for (std::uint32_t s = touched[i].begin; s < touched[i].end; ++s)
+            ++begin[s + std::size_t{1}];
+    for (std::size_t s = 0; s < shares_; ++s)
+        begin[s + 1] += begin[s];
+    std::vector<Triangle3f> sorted(begin[shares_]);
+    std::vector<std::size_t> next = begin;
+    for (std::size_t i = from; i < to; ++i)
+        for (std::uint32_t s = touched[i].begin; s < touched[i].end; ++s)
+            sorted[next[s]++] = batch.stored(i);
+    for (std::size_t s = 0; s < shares_; ++s) {
+        assert(next[s] == begin[s + 1]);
+        if (begin[s] < begin[s + 1] &&
+            !put(stretch(s, shape), std::span(sorted).subspan(begin[s], begin[s + 1] - begin[s])))
+            return false;
+    }
+    return true;
+}
+
+bool ShareStore::put(Stretch& stretch, std::span<const Triangle3f> triangles) {
+    const std::uint64_t at = stretch.next.fetch_add(triangles.size(), std::memory_order_relaxed);
+    if (at + triangles.size() > stretch.end)
+        return false;
+    if (memory_)
+        std::copy(triangles.begin(), triangles.end(), memory_->data() + at);
+    else
+        file_->write(at * sizeof(Triangle3f), std::as_bytes(triangles));
+    return true;
+}
+
+bool ShareStore::full() const noexcept {
+    return std::ranges::all_of(stretches_, [](const Stretch& one) { return one.next == one.end; });
+}
+
+TriangleSoup ShareStore::take(std::size_t share, std::size_t shape, const Execution& execution) {
+    const Stretch& from = stretch(share, shape);
+    const std::uint64_t count = from.end - from.begin;
+    if (memory_)
+        return {memory_, reinterpret_cast<const std::byte*>(memory_->data() + from.begin), sizeof(Triangle3f),
+                count};
+    const auto memory = std::make_shared<const PageArray<Triangle3f>>(count);
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 15;
+    Executor executor(execution);
+    executor.for_chunks(count, at_once, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        file_->read((from.begin + begin) * sizeof(Triangle3f),
+                    std::as_writable_bytes(memory->span().subspan(begin, end - begin)));
+    });
+    executor.check_cancelled();
+    file_->forget(from.begin * sizeof(Triangle3f), count * sizeof(Triangle3f));
+    return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
+}
+
+} // namespace lamella
