@@ -49,6 +49,8 @@ class AmfReader {
     }
 
   private:
+    using NodesById = std::map<std::string_view, std::size_t>;
+
     [[noreturn]] void fail(const std::string& what) const {
         throw Error(ErrorKind::input, fmt::format("{}: {}", name_, what));
     }
@@ -120,36 +122,47 @@ class AmfReader {
                                       [&](std::size_t) { executor_.check_cancelled(); });
     }
 
-    /// Objects and constellations are nodes alike; ids count for both.
+    /// Objects and constellations are nodes alike.
     void make_nodes() {
         const double unit = document_.unit_mm.value_or(1);
-        const auto add = [&](const std::string& id, const std::string& name, std::size_t line,
-                             std::string_view what) {
+        const auto add = [&](const auto& item, std::string_view what, NodesById& known) {
             const std::string place =
-                fmt::format("line {}: {} '{}'", line, what, printable(id, longest_quote));
-            if (!numbers_.emplace(id, nodes_.size()).second)
+                fmt::format("line {}: {} '{}'", item.line, what, printable(item.id, longest_quote));
+            if (!known.emplace(item.id, nodes_.size()).second)
                 fail(fmt::format("{}: the id is there for the second time", place));
-            nodes_.push_back({name, {}, scaling(unit, unit, unit), {}, place});
+            nodes_.push_back({item.name, {}, scaling(unit, unit, unit), {}, place});
         };
+        NodesById objects;
         for (const AmfObject& object : document_.objects)
-            add(object.id, object.name, object.line, "object");
-        for (const AmfConstellation& constellation : document_.constellations)
-            add(constellation.id, constellation.name, constellation.line, "constellation");
+            add(object, "object", objects);
+        NodesById constellations;
+        for (const AmfConstellation& constellation : document_.constellations) {
+            add(constellation, "constellation", constellations);
+            if (objects.contains(constellation.id))
+                remarks_.add(
+                    fmt::format("{}: an object has the same id; instances of this id are of the object",
+                                nodes_.back().place));
+        }
+        // Slic3r and its descendants number objects and constellations each by themselves: the object counts.
+        const auto node_of = [&](const AmfInstance& instance) {
+            for (const NodesById* const known : {&objects, &constellations})
+                if (const auto found = known->find(instance.object); found != known->end())
+                    return found->second;
+            fail(fmt::format("line {}: found objectid '{}', but there is nothing of that id", instance.line,
+                             printable(instance.object, longest_quote)));
+        };
         std::vector<bool> used(nodes_.size());
         for (std::size_t i = 0; i < document_.constellations.size(); ++i) {
             AssemblyNode& node = nodes_[document_.objects.size() + i];
             for (const AmfInstance& instance : document_.constellations[i].instances) {
                 const std::string place = fmt::format("line {}: this instance", instance.line);
-                const auto target = numbers_.find(instance.object);
-                if (target == numbers_.end())
-                    fail(fmt::format("line {}: found objectid '{}', but there is nothing of that id",
-                                     instance.line, printable(instance.object, longest_quote)));
-                used[target->second] = true;
+                const std::size_t target = node_of(instance);
+                used[target] = true;
                 if (instance.number("printable", 1) == 0) {
                     ++not_printable_;
                     continue;
                 }
-                node.uses.push_back({target->second, placement(instance, unit), place});
+                node.uses.push_back({target, placement(instance, unit), place});
             }
         }
         for (std::size_t i = 0; i < nodes_.size(); ++i)
@@ -223,7 +236,6 @@ class AmfReader {
     ByteSource source_;
     AmfDocument document_;
     std::vector<AssemblyNode> nodes_; ///< objects, then constellations
-    std::map<std::string, std::size_t> numbers_;
     std::vector<AssemblyUse> roots_;
     std::size_t not_printable_ = 0;
     MeshFile file_;

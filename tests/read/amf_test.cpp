@@ -98,6 +98,32 @@ TEST(Amf, ObjectsThatNothingPlacesStandWhereTheyAre) {
     EXPECT_EQ(file.instances[2].placement.offset, (std::array<double, 3>{9, 7, 0}));
 }
 
+TEST(Amf, ObjectsAndConstellationsMayShareIdsAsSlic3rWritesThem) {
+    for (const char* id : {"0", "1"}) {
+        const std::string text =
+            amf("<metadata type=\"cad\">Slic3r 1.3.0</metadata>" + amf_object("0") + amf_object("1") +
+                constellation(id, instance("0", "<deltax>9</deltax>") + instance("1", "<deltax>5</deltax>")));
+        const MeshFile file = read(text);
+        ASSERT_EQ(file.instances.size(), 2U) << "objectid means an object first";
+        EXPECT_EQ(file.instances[0].object, 0U);
+        EXPECT_EQ(file.instances[0].placement.offset, (std::array<double, 3>{9, 0, 0}));
+        EXPECT_EQ(file.instances[1].object, 1U);
+        EXPECT_EQ(file.instances[1].placement.offset, (std::array<double, 3>{5, 0, 0}));
+        const std::string said = fmt::format("line 19: constellation '{}': an object has the same id", id);
+        ASSERT_EQ(file.warnings.size(), 1U);
+        EXPECT_TRUE(says(file.warnings[0], said));
+        EXPECT_TRUE(says(error_of(text, ErrorKind::defect, {.strict = true}), said));
+    }
+}
+
+TEST(Amf, TwoObjectsOrTwoConstellationsOfOneIdAreRefused) {
+    EXPECT_EQ(error_of(amf(amf_object("0") + amf_object("0"))),
+              "x: line 11: object '0': the id is there for the second time");
+    EXPECT_EQ(error_of(amf(amf_object("0") + constellation("1", instance("0")) +
+                           constellation("1", instance("0")))),
+              "x: line 12: constellation '1': the id is there for the second time");
+}
+
 TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
     const std::string two = replaced(amf_object("0"), "</volume>",
                                      "</volume><volume materialid=\"2\"><metadata type=\"name\">x</metadata>"
@@ -185,8 +211,6 @@ TEST(Amf, NamesTheLineOfWhatIsWrong) {
     EXPECT_TRUE(says(wrong("objectid=\"0\"", "objectid=\"7\""),
                      "x: line 11: found objectid '7', but there is nothing of that id"));
     EXPECT_TRUE(says(wrong("objectid=\"0\"", ""), "found an element without objectid"));
-    EXPECT_TRUE(says(wrong("constellation id=\"1\"", "constellation id=\"0\""),
-                     "the id is there for the second time"));
     EXPECT_TRUE(says(wrong("</mesh>", "</mesh><mesh/>"), "found a second <mesh>"));
     EXPECT_TRUE(says(wrong("<rx>1</rx>", "<rx>one</rx>"), "found 'one' in <rx>, expected a number"));
 }
