@@ -1,6 +1,7 @@
 #include "batch_files.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/read/mesh_file.hpp"
 
 #include "numbers.hpp"
 #include "text_file.hpp"
@@ -22,23 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> mesh_extensions{".stl", ".3mf", ".amf", ".obj", ".ply", ".off"};
-
 std::string lower_case(std::string text) {
     for (char& c : text)
         c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return text;
-}
-
-/// The extension that says what a file holds: ".stl" of "part.STL.gz".
-std::string mesh_extension(fs::path name) {
-    if (lower_case(name.extension().string()) == ".gz")
-        name = name.stem();
-    return lower_case(name.extension().string());
-}
-
-bool is_mesh_name(const fs::path& name) {
-    return std::ranges::find(mesh_extensions, mesh_extension(name)) != mesh_extensions.end();
 }
 
 /// Without the extension, nor that of gzip.
@@ -64,15 +52,16 @@ std::vector<std::string> files_in(const std::string& folder, const std::string& 
         if (entries->is_directory(ignored)) {
             if (hidden || (!all && fs::weakly_canonical(path, ignored) == apart))
                 entries.disable_recursion_pending();
-        } else if (!hidden && is_mesh_name(path)) {
+        } else if (!hidden && is_mesh_name(path.string())) {
             found.push_back(path.string());
         }
     }
     if (error)
         refuse(folder, fmt::format("the folder cannot be listed: {}", error.message()));
     if (found.empty())
-        refuse(folder, "no file in this folder has a name as of a mesh (.stl, .3mf, .amf, .obj, .ply or "
-                       ".off); other names can be given in a list");
+        refuse(folder, fmt::format("no file in this folder has a name as of a mesh (.{}); other names can be "
+                                   "given in a list",
+                                   fmt::join(mesh_extensions(), ", .")));
     std::ranges::sort(found);
     return found;
 }

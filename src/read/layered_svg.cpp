@@ -7,6 +7,7 @@
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/read_limits.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -335,8 +336,9 @@ class SvgReader {
 
 bool is_svg(std::string_view bytes) {
     constexpr std::size_t longest_preface = 1U << 16;
-    return bytes.substr(0, longest_preface).find("<svg") != std::string_view::npos ||
-           bytes.substr(0, longest_preface).find(":svg") != std::string_view::npos;
+    const std::string_view begin = after_blanks(bytes.substr(0, longest_preface));
+    return begin.starts_with('<') &&
+           (begin.find("<svg") != std::string_view::npos || begin.find(":svg") != std::string_view::npos);
 }
 
 LayerFile read_layered_svg(std::string_view bytes, const std::string& name, ReadLimits& limits,

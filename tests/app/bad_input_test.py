@@ -54,6 +54,14 @@ class BadInput(ProgramTest):
         self.write("text.stl", "This is a letter, not a mesh.\n" * 20)
         self.refuse(3, r"text\.stl", "text.stl")
 
+    def test_layers_in_the_place_of_a_mesh(self):
+        self.succeed("make", "box", "-o", "box.stl")
+        for name in ["box.cli", "box.slc", "box.svg", "box.json", "box.npz"]:
+            with self.subTest(name=name):
+                self.succeed("slice", "box.stl", "-o", name)
+                self.fail_with(3, f"{name}: is .* layers.* no mesh.*; view, convert or verify", "slice", name, "-o", "x.cli")
+                self.succeed("info", name)
+
     def test_a_flat_mesh(self):
         self.write("flat.stl", binary_stl([((0, 0, 5), (1, 0, 5), (0, 1, 5))]))
         self.refuse(3, r"flat\.stl.*flat.*z = 5.*rotate", "flat.stl")

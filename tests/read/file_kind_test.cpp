@@ -13,7 +13,8 @@ using namespace std::string_view_literals;
 TEST(FileKind, LayersAreToldByTheirFirstWord) {
     for (const std::string_view head :
          {"$$HEADERSTART\n"sv, "// a comment\n$$HEADERSTART"sv, "<?xml version=\"1.0\"?><svg"sv,
-          "-SLCVER 2.0"sv, "{\"layers\": []}"sv, "PK\3\4 layers/z.npy"sv, "\xEF\xBB\xBF \r\n<svg>"sv})
+          "<?xml version=\"1.0\"?><!-- begins"sv, "-SLCVER 2.0"sv, "{\"layers\": []}"sv,
+          "PK\3\4 layers/z.npy"sv, "\xEF\xBB\xBF \r\n<svg>"sv})
         EXPECT_EQ(file_kind(head), FileKind::layers) << head;
 }
 
@@ -22,9 +23,9 @@ TEST(FileKind, PackagesMayHoldEither) {
 }
 
 TEST(FileKind, EverythingElseIsAMesh) {
-    for (const std::string_view head :
-         {""sv, "  \n"sv, "solid part"sv, "ply\n"sv, "OFF\n"sv, "v 0 0 0\n"sv, "PK"sv,
-          "<?xml version=\"1.0\"?><amf unit=\"inch\">"sv, "\x1f\x8b\x08"sv, "$HEADER"sv})
+    for (const std::string_view head : {""sv, "  \n"sv, "solid part"sv, "ply\n"sv, "OFF\n"sv, "v 0 0 0\n"sv,
+                                        "PK"sv, "<?xml version=\"1.0\"?><amf unit=\"inch\">"sv,
+                                        "<!DOCTYPE html><html><svg>"sv, "\x1f\x8b\x08"sv, "$HEADER"sv})
         EXPECT_EQ(file_kind(head), FileKind::mesh) << head;
 }
 

@@ -3,6 +3,7 @@
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/mesh/shapes.hpp"
 
+#include "container/zip_bytes.hpp"
 #include "read/face_text.hpp"
 #include "temporary_folder.hpp"
 
@@ -54,6 +55,43 @@ TEST(MeshFile, RefusesOtherKindsOfFilesByWhatTheyAre) {
         EXPECT_EQ(error_of(std::string("\xfe\xff\0v\0 ", 6), name),
                   name + ": is text in UTF-16; save it as UTF-8, or as a binary file");
     }
+}
+
+TEST(MeshFile, RefusesSliceFilesByWhatTheyHold) {
+    const std::string binary(300, '\1');
+    const std::string already = "it holds layers already, no mesh; view, convert or verify it as it is";
+    for (const std::string name : {"part.stl", "part.cli", "part.obj", "part"}) {
+        EXPECT_EQ(error_of("// by hand //\n$$HEADERSTART\n$$BINARY\n$$UNITS/1\n$$HEADEREND" + binary, name),
+                  name + ": is a slice file (Common Layer Interface): " + already);
+        EXPECT_EQ(error_of("-SLCVER 2.0 -UNIT MM\r\n\x1a" + binary, name),
+                  name + ": is a slice file (SLC): " + already);
+        EXPECT_TRUE(error_of("<?xml version=\"1.0\"?>\n<svg></svg>", name)
+                        .starts_with(name + ": is an SVG document, which may hold layers, but no mesh;"));
+        EXPECT_TRUE(error_of("{\"layers\": []}", name)
+                        .starts_with(name + ": is a JSON document, which may hold layers, but no mesh"));
+    }
+    EXPECT_EQ(error_of(zip_test::zip_bytes({{.name = "points.npy", .content = "x"}}), "part.npz"),
+              "part.npz: is a slice file (NumPy arrays): " + already);
+}
+
+TEST(MeshFile, IsNotGuessedToBeBinaryStlUnderTheNameOfASliceFile) {
+    for (const std::string extension : {"cli", "slc", "svg", "json", "npz"})
+        EXPECT_EQ(
+            error_of(std::string(300, '\1'), "part." + extension),
+            fmt::format("part.{0}: is neither a mesh file nor the slice file that its extension .{0} says",
+                        extension));
+    EXPECT_EQ(read(obj, "part.json").format, MeshFormat::obj);
+    EXPECT_EQ(read(stl, "part.cli").format, MeshFormat::stl_ascii);
+}
+
+TEST(MeshFile, GoesByTheExtensionsOfTheFormatsThatAreRead) {
+    for (const std::string_view extension : mesh_extensions()) {
+        EXPECT_TRUE(is_mesh_name(fmt::format("a.b/part.{}", extension)));
+        EXPECT_TRUE(is_mesh_name(fmt::format("part.{}.GZ", extension)));
+    }
+    EXPECT_TRUE(is_mesh_name("PART.Stl"));
+    for (const char* name : {"stl", "part.cli", "part.npz", "folder.stl/part", "part.gz", "part.stl.txt", ""})
+        EXPECT_FALSE(is_mesh_name(name)) << name;
 }
 
 /// The box of test::box_triangles with its sides as squares, as text.

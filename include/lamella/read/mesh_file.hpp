@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -19,6 +20,13 @@ enum class MeshFormat { stl_binary, stl_ascii, three_mf, amf, obj, ply, off };
 
 /// "stl-binary", "stl-ascii", "3mf", "amf", "obj", "ply", "off".
 [[nodiscard]] const char* format_name(MeshFormat format) noexcept;
+
+/// The extensions of mesh files, in lower case: "stl", "3mf"...
+[[nodiscard]] std::vector<std::string_view> mesh_extensions();
+
+/// Whether a file of this name, or path, goes for a mesh: one of `mesh_extensions` in any case, perhaps with
+/// ".gz".
+[[nodiscard]] bool is_mesh_name(const std::string& name);
 
 struct MeshReadOptions {
     /// Makes Error{defect} of what is otherwise a warning: wrong counts, truncation, corners that are not

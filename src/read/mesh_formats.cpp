@@ -1,0 +1,250 @@
+#include "read/mesh_formats.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/zip_reader.hpp"
+#include "core/lower_case.hpp"
+#include "read/amf.hpp"
+#include "read/common_layer.hpp"
+#include "read/layered_svg.hpp"
+#include "read/layers_json.hpp"
+#include "read/npz.hpp"
+#include "read/obj.hpp"
+#include "read/off.hpp"
+#include "read/ply.hpp"
+#include "read/slc.hpp"
+#include "read/stl.hpp"
+#include "read/text_pieces.hpp"
+#include "read/three_mf.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace lamella {
+
+namespace {
+
+using namespace std::string_view_literals;
+
+template <bool (*recognises)(std::string_view)>
+bool by_text(const ByteSource& source, const MeshReadOptions&) {
+    return recognises(source.text());
+}
+
+bool is_any_stl(const ByteSource& source, const MeshReadOptions&) {
+    return is_stl(source);
+}
+
+bool is_archive_of_arrays(const ByteSource& source, const MeshReadOptions& options) {
+    return is_zip(source.text()) && is_npz(ZipReader(source, options.max_memory));
+}
+
+/// Also a packed file, perhaps of another name, but no 3MF package.
+bool is_plain_or_packed_amf(const ByteSource& source, const MeshReadOptions& options) {
+    if (!is_zip(source.text()))
+        return is_amf(source.text());
+    const ZipReader zip(source, options.max_memory);
+    const auto any = [&](std::string_view suffix) {
+        return std::any_of(zip.entries().begin(), zip.entries().end(),
+                           [&](const ZipEntry& entry) { return entry.name.ends_with(suffix); });
+    };
+    if (any(".rels") || any(".model"))
+        return false;
+    return any(".amf") || any(".AMF") || any(".amf.xml") ||
+           (zip.entries().size() == 1 && is_amf(zip.read(zip.entries().front()).text()));
+}
+
+constexpr std::string_view web_page = "is a web page, no mesh file; download the file itself";
+constexpr std::string_view utf16 = "is text in UTF-16; save it as UTF-8, or as a binary file";
+constexpr std::string_view picture = "is a picture, no mesh file";
+constexpr std::string_view packed =
+    "is packed in a way that is not read here; unpack it first, or pack it with gzip";
+constexpr std::string_view surfaces =
+    "is a CAD file of surfaces without triangles; export STL, 3MF, OBJ or PLY from a CAD program";
+constexpr std::string_view scene =
+    "is a kind of mesh file that is not read here; save it as STL, 3MF, OBJ or PLY";
+
+/// The first row that recognises a file has it. Where nothing tells what a file is, it is of the first row:
+/// STL has no mark of its own.
+constexpr std::array rows = {
+    MeshFormatRow{.extension = "stl", .recognises = is_any_stl, .read = read_stl, .stream = stream_stl},
+    // Zip archives.
+    MeshFormatRow{.extension = "npz",
+                  .recognises = is_archive_of_arrays,
+                  .goes_by_name = true,
+                  .advice = "is a slice file (NumPy arrays): it holds layers already, no mesh; view, convert "
+                            "or verify it as it is",
+                  .layers = true},
+    MeshFormatRow{.extension = "amf", .recognises = is_plain_or_packed_amf, .read = read_amf},
+    MeshFormatRow{.extension = "3mf", .recognises = by_text<is_zip>, .read = read_three_mf},
+    // Texts, or binary behind a head of text.
+    MeshFormatRow{.extension = "ply", .recognises = by_text<is_ply>, .goes_by_name = true, .read = read_ply},
+    MeshFormatRow{.extension = "off", .recognises = by_text<is_off>, .goes_by_name = true, .read = read_off},
+    MeshFormatRow{.extension = "obj", .goes_by_name = true, .resembles = looks_like_obj, .read = read_obj},
+    // Slice files, and web pages, which may hold SVG.
+    MeshFormatRow{.first_bytes = "<!doctype html"sv, .advice = web_page},
+    MeshFormatRow{.first_bytes = "<html"sv, .advice = web_page},
+    MeshFormatRow{.extension = "cli",
+                  .first_bytes = "$$"sv,
+                  .recognises = by_text<is_common_layer>,
+                  .goes_by_name = true,
+                  .advice = "is a slice file (Common Layer Interface): it holds layers already, no mesh; "
+                            "view, convert or verify it as it is",
+                  .layers = true},
+    MeshFormatRow{.extension = "slc",
+                  .first_bytes = "-slc"sv,
+                  .recognises = by_text<is_slc>,
+                  .goes_by_name = true,
+                  .advice =
+                      "is a slice file (SLC): it holds layers already, no mesh; view, convert or verify "
+                      "it as it is",
+                  .layers = true},
+    MeshFormatRow{.extension = "svg",
+                  .recognises = by_text<is_svg>,
+                  .goes_by_name = true,
+                  .advice = "is an SVG document, which may hold layers, but no mesh; view, convert or verify "
+                            "layers as they are",
+                  .layers = true},
+    MeshFormatRow{.extension = "json",
+                  .recognises = by_text<is_json>,
+                  .goes_by_name = true,
+                  .advice = "is a JSON document, which may hold layers, but no mesh that is read here; view, "
+                            "convert or verify layers as they are",
+                  .layers = true},
+    // What is often found under the name of a mesh file, or given by mistake. Binary ones would be taken for
+    // binary STL with a wrong count.
+    MeshFormatRow{.first_bytes = "\x1f\x8b"sv, .advice = "is packed with gzip twice; unpack it once first"},
+    MeshFormatRow{.first_bytes = "<?xml"sv,
+                  .advice = "is an XML file of an unknown kind, no mesh file",
+                  .layers = true}, // most likely SVG, to whom has seen only its beginning
+    MeshFormatRow{.first_bytes = "version https://git-lfs"sv,
+                  .advice = "is a pointer of Git LFS to the real file; fetch it with 'git lfs pull'"},
+    MeshFormatRow{.first_bytes = "\xff\xfe"sv, .advice = utf16},
+    MeshFormatRow{.first_bytes = "\xfe\xff"sv, .advice = utf16},
+    MeshFormatRow{.first_bytes = "eos 1993 sli"sv,
+                  .advice = "is an SLI slice file of EOS, which is not read here; export CLI instead"},
+    MeshFormatRow{.first_bytes = "\x89PNG"sv, .advice = picture},
+    MeshFormatRow{.first_bytes = "\xff\xd8\xff"sv, .advice = picture},
+    MeshFormatRow{.first_bytes = "GIF8"sv, .advice = picture},
+    MeshFormatRow{.first_bytes = "%pdf-"sv, .advice = "is a PDF document, no mesh file"},
+    MeshFormatRow{.first_bytes = "\x7f"
+                                 "ELF"sv,
+                  .advice = "is a program, no mesh file"},
+    MeshFormatRow{.first_bytes = "BZh"sv, .advice = packed},
+    MeshFormatRow{.first_bytes = "\xfd"
+                                 "7zXZ"sv,
+                  .advice = packed},
+    MeshFormatRow{.first_bytes = "\x28\xb5\x2f\xfd"sv, .advice = packed}, // Zstandard
+    MeshFormatRow{.first_bytes = "7z\xbc\xaf"sv, .advice = packed},
+    MeshFormatRow{.first_bytes = "Rar!"sv, .advice = packed},
+    MeshFormatRow{.first_bytes = "iso-10303-21"sv, .advice = surfaces}, // STEP
+    // Compound documents, as SolidWorks and Inventor write.
+    MeshFormatRow{.first_bytes = "\xd0\xcf\x11\xe0"sv, .advice = surfaces},
+    MeshFormatRow{.first_bytes = "3D Geometry File Format"sv, .advice = surfaces},
+    MeshFormatRow{.first_bytes = "glTF"sv, .advice = scene},
+    MeshFormatRow{.first_bytes = "Kaydara FBX Binary"sv, .advice = scene},
+    MeshFormatRow{.first_bytes = "BLENDER"sv, .advice = scene},
+};
+
+bool begins_with(std::string_view text, std::string_view first_bytes) {
+    const auto same = [](char byte, char expected) {
+        return byte == expected ||
+               (expected >= 'a' && expected <= 'z' && byte == static_cast<char>(expected - ('a' - 'A')));
+    };
+    return text.size() >= first_bytes.size() &&
+           std::equal(first_bytes.begin(), first_bytes.end(), text.begin(),
+                      [&](char expected, char byte) { return same(byte, expected); });
+}
+
+/// The extension of a name in lower case, without the one of gzip: "stl" of "PART.STL.gz".
+std::string extension_of(std::string name) {
+    name = lower_case(name);
+    if (name.ends_with(".gz"))
+        name.resize(name.size() - 3);
+    const std::size_t point = name.find_last_of("./");
+    return point == std::string::npos || name[point] == '/' ? std::string() : name.substr(point + 1);
+}
+
+template <class Condition>
+const MeshFormatRow* first_row(const Condition& condition) {
+    const auto* const row = std::find_if(rows.begin(), rows.end(), condition);
+    return row == rows.end() ? nullptr : row;
+}
+
+[[noreturn]] void refuse(const ByteSource& source, std::string_view what) {
+    throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
+}
+
+} // namespace
+
+const MeshFormatRow* recognised_format(const ByteSource& source, const MeshReadOptions& options) {
+    const std::string_view text = source.text();
+    const std::string_view begin = after_blanks(text);
+    return first_row([&](const MeshFormatRow& row) {
+        if (row.recognises != nullptr && row.recognises(source, options))
+            return true;
+        return !row.first_bytes.empty() &&
+               (begins_with(text, row.first_bytes) || begins_with(begin, row.first_bytes));
+    });
+}
+
+const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOptions& options) {
+    if (const MeshFormatRow* const row = recognised_format(source, options)) {
+        if (row->read == nullptr)
+            refuse(source, row->advice);
+        return *row;
+    }
+    const std::string extension = extension_of(source.name);
+    const MeshFormatRow* const named =
+        first_row([&](const MeshFormatRow& row) { return row.goes_by_name && row.extension == extension; });
+    if (named != nullptr && named->read != nullptr)
+        return *named;
+    if (const MeshFormatRow* const row = first_row([&](const MeshFormatRow& candidate) {
+            return candidate.resembles != nullptr && candidate.resembles(source.text());
+        }))
+        return *row;
+    if (named != nullptr)
+        refuse(source, fmt::format("is neither a mesh file nor the slice file that its extension .{} says",
+                                   extension));
+    return rows.front();
+}
+
+std::vector<std::string_view> mesh_extensions() {
+    std::vector<std::string_view> extensions;
+    for (const MeshFormatRow& row : rows)
+        if (row.read != nullptr)
+            extensions.push_back(row.extension);
+    return extensions;
+}
+
+bool is_mesh_name(const std::string& name) {
+    const std::string extension = extension_of(name);
+    return first_row([&](const MeshFormatRow& row) {
+               return row.read != nullptr && row.extension == extension;
+           }) != nullptr;
+}
+
+const char* format_name(MeshFormat format) noexcept {
+    switch (format) {
+    case MeshFormat::stl_binary:
+        return "stl-binary";
+    case MeshFormat::stl_ascii:
+        return "stl-ascii";
+    case MeshFormat::three_mf:
+        return "3mf";
+    case MeshFormat::amf:
+        return "amf";
+    case MeshFormat::obj:
+        return "obj";
+    case MeshFormat::ply:
+        return "ply";
+    case MeshFormat::off:
+        return "off";
+    }
+    return "unknown";
+}
+
+} // namespace lamella
