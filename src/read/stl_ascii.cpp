@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -95,6 +96,14 @@ bool begins_like_number(std::string_view word) {
                              begins_with_keyword(word, "nan") || begins_with_keyword(word, "inf"));
 }
 
+/// Whether a word of a facet or a solid has to stand here, and none of a normal.
+bool begins_next_part(std::string_view word) {
+    constexpr std::array<std::string_view, 8> keywords = {"outer",    "loop",  "vertex",   "endloop",
+                                                          "endfacet", "facet", "endsolid", "solid"};
+    return std::any_of(keywords.begin(), keywords.end(),
+                       [&](std::string_view keyword) { return matches(word, keyword); });
+}
+
 /// Whether the word "facet" that begins here begins a facet, rather than being part of a name.
 bool facet_begins(Words words) {
     if (!words.take("facet"))
@@ -103,7 +112,14 @@ bool facet_begins(Words words) {
     if (!words.take("normal"))
         return matches(words.peek(), "outer");
     words.skip_blanks();
-    return matches(words.peek(), "outer") || begins_like_number(words.peek());
+    if (begins_like_number(words.peek()))
+        return true;
+    constexpr int most_words = 8; // of what is no normal
+    for (int i = 0; i < most_words && !begins_next_part(words.peek()); ++i) {
+        words.skip_word();
+        words.skip_blanks();
+    }
+    return matches(words.peek(), "outer");
 }
 
 /// Reads the name of a solid, up to the end of the line or to a facet on the same line.
@@ -140,6 +156,8 @@ struct Piece {
     std::uint64_t stored = 0; ///< facets, including those with a corner that is not finite
     std::uint64_t nonfinite = 0;
     std::size_t first_nonfinite = nowhere;
+    std::uint64_t odd_normals = 0; ///< that are not numbers, or more than three
+    std::size_t first_odd_normal = nowhere;
     std::size_t first_unended = nowhere; ///< a "solid" while another one has not ended
     std::size_t cut_off = nowhere;       ///< the facet in which the text ended
     std::size_t garbage = nowhere;       ///< what follows the last "endsolid"
@@ -246,17 +264,24 @@ class PieceParser {
         }
     }
 
-    /// Three numbers, or fewer: nobody needs them.
+    /// Three numbers, or fewer, or whatever else stands there on one line: nobody needs them.
     void skip_normal() {
-        for (int i = 0; i < 3; ++i) {
+        bool odd = false;
+        for (int i = 0;; ++i) {
+            const bool same_line = words_.skip_blanks_in_line();
             words_.skip_blanks();
             const std::string_view word = words_.peek();
             if (is_last(word))
                 throw CutOff{};
-            if (!begins_like_number(word))
-                return;
+            if (i >= 3 || !begins_like_number(word)) {
+                if (!same_line || begins_next_part(word))
+                    break;
+                odd = true;
+            }
             words_.skip_word();
         }
+        if (odd && piece_.odd_normals++ == 0)
+            piece_.first_odd_normal = facet_;
     }
 
     void expect(std::string_view keyword) {
@@ -426,6 +451,8 @@ void add(Piece& sum, const Piece& piece) {
     sum.stored += piece.stored;
     sum.nonfinite += piece.nonfinite;
     sum.first_nonfinite = std::min(sum.first_nonfinite, piece.first_nonfinite);
+    sum.odd_normals += piece.odd_normals;
+    sum.first_odd_normal = std::min(sum.first_odd_normal, piece.first_odd_normal);
     sum.first_unended = std::min(sum.first_unended, piece.first_unended);
     sum.cut_off = std::min(sum.cut_off, piece.cut_off);
     sum.garbage = std::min(sum.garbage, piece.garbage);
@@ -492,6 +519,10 @@ MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOpti
         remarks.add(fmt::format("line {}: left out {} of {} triangles, which have a corner that is NaN or "
                                 "infinite (this is the first)",
                                 line(sum.first_nonfinite), sum.nonfinite, sum.stored));
+    if (sum.odd_normals != 0)
+        remarks.add(fmt::format("line {}: {} normals are other words or more than three numbers, which were "
+                                "passed over (this is the first); normals are not needed",
+                                line(sum.first_odd_normal), sum.odd_normals));
     if (sum.first_unended != nowhere)
         remarks.add(
             fmt::format("line {}: a solid begins before the one above has ended; 'endsolid' is missing",

@@ -30,8 +30,8 @@ namespace lamella {
 [[nodiscard]] bool is_stl_ascii(std::string_view text);
 
 /// Reads a text that begins with "solid". Keywords in any case; any number of solids, taken together; normals
-/// are skipped, also when they are missing. In parallel, with the same result, errors included, as from front
-/// to back.
+/// are skipped, also when they are missing, and with a warning where other words stand in their place. In
+/// parallel, with the same result, errors included, as from front to back.
 [[nodiscard]] MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                                       const Execution& execution);
 

@@ -68,6 +68,10 @@ class ModelReader {
         XmlHandlers handlers;
         handlers.start = [this](XmlName name, const XmlAttributes& attributes, std::size_t line) {
             line_ = line;
+            if (where_.empty())
+                is_beta_ = name.space == three_mf::beta_core;
+            if (is_beta_ && name.space == three_mf::beta_core)
+                name.space = three_mf::core;
             where_.push_back(start(name, attributes));
         };
         handlers.end = [this](XmlName) {
@@ -226,6 +230,10 @@ class ModelReader {
         if (name != XmlName{three_mf::core, "model"})
             fail(fmt::format("found <{}> of namespace '{}', expected <model> of '{}'",
                              printable(name.local, 40), printable(name.space, 100), three_mf::core));
+        if (is_beta_)
+            remark(fmt::format("found a file of the beta of 3MF ('{}'); its meshes, components and build are "
+                               "taken as today's",
+                               three_mf::beta_core));
         if (const std::string_view unit = attributes.find("unit"); unit.data() != nullptr) {
             const std::optional<double> known = three_mf::unit_mm(unit);
             if (!known)
@@ -458,6 +466,7 @@ class ModelReader {
     ThreeMfModel model_;
     bool is_root_;
     bool skim_;
+    bool is_beta_ = false;
     GrowingMeshCount count_;
     std::size_t line_ = 1;
     std::vector<Where> where_;

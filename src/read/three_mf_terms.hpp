@@ -11,6 +11,8 @@
 namespace lamella::three_mf {
 
 inline constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+/// The core of version 0.93 of 2013, a beta. Its meshes, components and build are written as today's are.
+inline constexpr std::string_view beta_core = "http://schemas.microsoft.com/3dmanufacturing/2013/01";
 inline constexpr std::string_view production =
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 inline constexpr std::string_view slices = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07";

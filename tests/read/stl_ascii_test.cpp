@@ -97,6 +97,23 @@ TEST(StlAscii, DoesNotCareForNormals) {
         expect_clean("solid\n" + facet(one[0], normal) + "endsolid\n", one);
 }
 
+TEST(StlAscii, PassesOverWhatIsNoNormalAndSaysSo) {
+    for (const std::string_view normal : {"normal weirdvalue weirdvalue weirdvalue", "normal undefined",
+                                          "normal 0 0 1 4 5", "normal 0 0 weirdvalue", "normal x\t1 2 3 4"}) {
+        const std::string text = solid(two) + "solid\n" + facet(one[0], normal) + facet(one[0]) +
+                                 facet(one[0], normal) + "endsolid\n";
+        for (const std::string& form : {text, replaced(text, "\n", "\r\n")}) {
+            const MeshFile file = read(form);
+            EXPECT_EQ(file.stored_triangles, 5U) << normal;
+            ASSERT_EQ(file.warnings.size(), 1U) << normal;
+            EXPECT_EQ(file.warnings[0],
+                      "line 18: 2 normals are other words or more than three numbers, which "
+                      "were passed over (this is the first); normals are not needed");
+        }
+        EXPECT_EQ(read(replaced(text, "\n", " ")).stored_triangles, 5U) << normal << ", on one line";
+    }
+}
+
 TEST(StlAscii, ReadsNumbersInEveryWriting) {
     const auto value = [](std::string_view text) {
         return soup_of(read(with_coordinate(text))).stored(0)[0].x;
@@ -205,8 +222,10 @@ TEST(StlAscii, NamesTheLineOfAFaultWithAnyLineEnd) {
 TEST(StlAscii, NamesWhatStandsInTheWay) {
     EXPECT_EQ(error_of(replaced(solid(one), "outer loop", "outer lop")),
               "part.stl: line 3: found 'lop', expected 'loop'");
-    EXPECT_EQ(error_of(replaced(solid(one), "normal 0 0 1", "normal 0 0 1 4")),
-              "part.stl: line 2: found '4', expected 'outer'");
+    EXPECT_EQ(error_of(replaced(solid(one), "normal 0 0 1", "normal 0 0 1\n4")),
+              "part.stl: line 3: found '4', expected 'outer'");
+    EXPECT_EQ(error_of(replaced(solid(one), "outer loop", "vertex")),
+              "part.stl: line 3: found 'vertex', expected 'outer'");
     EXPECT_EQ(error_of(replaced(solid(two), "  endfacet\n  facet", "  endfacet\n  fact")),
               "part.stl: line 9: found 'fact', expected 'facet' or 'endsolid'");
     EXPECT_EQ(error_of("solid part\nvertex 0 0 0\n"),

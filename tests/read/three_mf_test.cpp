@@ -122,6 +122,35 @@ TEST(ThreeMf, ReadsMeshesThatAreNotWrittenPlainlyAllTheSame) {
     }
 }
 
+TEST(ThreeMf, FilesOfTheBetaAreReadWithAWarning) {
+    const std::string today =
+        model(object(1, box_mesh()) + object(2, components({{1, "transform=\"1 0 0 0 1 0 0 0 1 9 0 0\""}})),
+              one_item + "<item objectid=\"2\"/>");
+    const std::string beta = replaced(today, "core/2015/02", "2013/01");
+    for (const std::string& text : {beta, replaced(beta, "<vertex ", "<vertex a=\"b\" ")}) {
+        const MeshFile file = read(package(text));
+        const MeshFile same = read(package(today));
+        ASSERT_EQ(file.instances.size(), 2U);
+        EXPECT_EQ(file.instances[1].placement.offset, same.instances[1].placement.offset);
+        EXPECT_EQ(file.objects[0].mesh.indexed()->vertices, same.objects[0].mesh.indexed()->vertices);
+        EXPECT_EQ(file.objects[0].mesh.indexed()->triangles, same.objects[0].mesh.indexed()->triangles);
+        ASSERT_EQ(file.warnings.size(), 1U);
+        EXPECT_TRUE(says(file.warnings[0], "line 2: found a file of the beta of 3MF"));
+    }
+    EXPECT_TRUE(says(error_of(package(beta), ErrorKind::defect, {.strict = true}), "the beta of 3MF"));
+    EXPECT_TRUE(
+        says(error_of(package(replaced(beta, "v1=\"0\"", "v1=\"8\""))), "found v1 = 8, expected less"));
+    // Of a file of today's, elements of the beta are foreign ones.
+    EXPECT_EQ(
+        read(package(replaced(today, "</vertices>",
+                              "<b:vertex xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/2013/01\" "
+                              "x=\"a\"/></vertices>")))
+            .objects[0]
+            .mesh.indexed()
+            ->vertices.size(),
+        8U);
+}
+
 TEST(ThreeMf, NamespacesCountAndNotPrefixes) {
     const std::string plain = model(object(1, box_mesh()), one_item);
     std::string prefixed = replaced(replaced(plain, "</", "</c:"), "<c:", "<c:");
