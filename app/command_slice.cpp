@@ -185,6 +185,7 @@ OptionGroup checking_options(SliceArguments& target) {
 
 OptionGroup timed_run_options(SliceArguments& target) {
     OptionGroup group = run_options(target.run);
+    group.options.push_back(include_option(target.limits));
     group.options.push_back(max_triangles_option(target.limits));
     group.options.push_back(byte_limit(
         "max-memory",
@@ -262,6 +263,7 @@ FileJob make_job(const SliceArguments& arguments) {
         const auto& [x, y, z] = *arguments.build_volume;
         job.build_volume = Point3{x, y, z};
     }
+    job.supports = arguments.limits.of_meshes().supports;
     job.max_triangles = arguments.limits.max_triangles.value_or(0);
     job.max_memory = arguments.limits.max_memory.value_or(0);
     job.layers = {.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height),

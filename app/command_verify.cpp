@@ -146,7 +146,7 @@ Command verify_command() {
                      flag("json", "print JSON", arguments->json)}},
                    placement_options(arguments->placement),
                    run_options(arguments->run,
-                               {max_triangles_option(arguments->limits),
+                               {include_option(arguments->limits), max_triangles_option(arguments->limits),
                                 max_memory_option(arguments->limits, "each of the files takes")}),
                    common_options(true)},
         .examples = {{"lamella verify part.cli", "is the file sound in itself?"},

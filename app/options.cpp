@@ -212,11 +212,19 @@ Execution RunOptions::execution(const Context& context) const {
 }
 
 MeshReadOptions ReadLimits::of_meshes() const {
-    return {.max_triangles = max_triangles.value_or(0), .max_memory = max_memory.value_or(0)};
+    return {.supports = include == "support",
+            .max_triangles = max_triangles.value_or(0),
+            .max_memory = max_memory.value_or(0)};
 }
 
 LayerReadOptions ReadLimits::of_layers() const {
     return {.max_memory = max_memory.value_or(0)};
+}
+
+Option include_option(ReadLimits& target) {
+    return choice("include", "WHAT",
+                  "take what 3MF and AMF files mark as this, too, as solids; it is left out otherwise",
+                  {"support"}, target.include);
 }
 
 Option max_triangles_option(ReadLimits& target) {

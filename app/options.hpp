@@ -75,8 +75,9 @@ struct RunOptions {
 /// With `more` behind them.
 [[nodiscard]] OptionGroup run_options(RunOptions& target, const std::vector<Option>& more = {});
 
-/// What a file may not exceed.
+/// What is read of a file, and what it may not exceed.
 struct ReadLimits {
+    std::string include = {}; ///< "support", or nothing beyond the parts
     std::optional<std::uint64_t> max_triangles;
     std::optional<std::uint64_t> max_memory; ///< bytes
 
@@ -84,6 +85,7 @@ struct ReadLimits {
     [[nodiscard]] LayerReadOptions of_layers() const;
 };
 /// For commands that read meshes.
+[[nodiscard]] Option include_option(ReadLimits& target);
 [[nodiscard]] Option max_triangles_option(ReadLimits& target);
 /// For commands that hold in memory what they read: `what`, in the words of their help.
 [[nodiscard]] Option max_memory_option(ReadLimits& target, std::string_view what);

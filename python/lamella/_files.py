@@ -35,6 +35,7 @@ def read(
     *,
     unit_mm: Optional[float] = None,
     strict: bool = False,
+    supports: bool = False,
     max_triangles: int = 0,
     max_memory: int = 0,
     threads: int = 0,
@@ -46,6 +47,8 @@ def read(
         3MF with slices, JSON, NumPy arrays. Each may be packed with gzip.
     unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given.
     strict: makes a DefectError of what is otherwise a DefectWarning.
+    supports: takes what 3MF and AMF files mark as support, too, as solids; without it a DefectWarning says that it was
+        left out.
     max_triangles: more of them are a LimitError; 0 is any number.
     max_memory: more bytes than this for what is read are a LimitError; 0 is three quarters of the memory there is.
     threads: 0 takes one for each processor.
@@ -60,8 +63,8 @@ def read(
 
     def mesh() -> Mesh:
         return read_mesh(
-            path, unit_mm=unit_mm, strict=strict, max_triangles=max_triangles, max_memory=max_memory, threads=threads,
-            progress=progress,
+            path, unit_mm=unit_mm, strict=strict, supports=supports, max_triangles=max_triangles, max_memory=max_memory,
+            threads=threads, progress=progress,
         )  # fmt: skip
 
     def layers() -> Stack:

@@ -162,6 +162,7 @@ def read_mesh(
     label: str,
     unit_mm: Optional[float],
     strict: bool,
+    supports: bool,
     max_triangles: int,
     max_memory: int,
     threads: int,

@@ -86,6 +86,7 @@ def read_mesh(
     label: str = "",
     unit_mm: Optional[float] = None,
     strict: bool = False,
+    supports: bool = False,
     max_triangles: int = 0,
     max_memory: int = 0,
     threads: int = 0,
@@ -94,7 +95,7 @@ def read_mesh(
     if unit_mm is not None and not (0 < unit_mm < math.inf):
         raise UsageError(f"unit_mm: {unit_mm} is not possible; a unit is a number of millimetres above 0")
     mesh = _lamella.read_mesh(
-        os.fsencode(path), label, unit_mm, strict, max_triangles, max_memory, thread_count(threads), progress
+        os.fsencode(path), label, unit_mm, strict, supports, max_triangles, max_memory, thread_count(threads), progress
     )
     warn(f"{mesh.path}: {warning}" for warning in mesh.warnings)
     return mesh

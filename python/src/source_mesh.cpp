@@ -246,11 +246,13 @@ void bind_meshes(py::module_& module) {
         .def(py::pickle(&mesh_state, &mesh_of_state));
 
     module.def("mesh_of_arrays", &mesh_of_arrays);
-    module.def("read_mesh", [](const std::string& path, const std::string& label,
-                               std::optional<double> unit_mm, bool strict, std::uint64_t max_triangles,
-                               std::uint64_t max_memory, unsigned threads, const py::object& progress) {
-        return read_source_mesh(path, label, unit_mm, {strict, max_triangles, max_memory}, threads, progress);
-    });
+    module.def("read_mesh",
+               [](const std::string& path, const std::string& label, std::optional<double> unit_mm,
+                  bool strict, bool supports, std::uint64_t max_triangles, std::uint64_t max_memory,
+                  unsigned threads, const py::object& progress) {
+                   return read_source_mesh(path, label, unit_mm,
+                                           {strict, supports, max_triangles, max_memory}, threads, progress);
+               });
 }
 
 } // namespace lamella::python

@@ -31,8 +31,8 @@ constexpr std::size_t longest_quote = 200;
 class AmfReader {
   public:
     AmfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
-        : name_(source.name), remarks_(source.name, options.strict), limits_(source.name, options),
-          execution_(execution), executor_(execution) {
+        : name_(source.name), remarks_(source.name, options.strict), supports_(options.supports),
+          limits_(source.name, options), execution_(execution), executor_(execution) {
         source_ = is_zip(source.text()) ? unpacked(source, options) : source;
     }
 
@@ -83,10 +83,11 @@ class AmfReader {
         const std::string_view text = source_.text();
         ProgressMeter progress(execution_, Stage::read, text.size());
         try {
-            document_ = read_amf_document(text, source_.name, true, limits_, [&](std::size_t read) {
-                executor_.check_cancelled();
-                progress.add(read);
-            });
+            document_ =
+                read_amf_document(text, source_.name, supports_, true, limits_, [&](std::size_t read) {
+                    executor_.check_cancelled();
+                    progress.add(read);
+                });
             progress.finish();
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input)
@@ -118,7 +119,7 @@ class AmfReader {
     }
 
     void read_by_parser() {
-        document_ = read_amf_document(source_.text(), source_.name, false, limits_,
+        document_ = read_amf_document(source_.text(), source_.name, supports_, false, limits_,
                                       [&](std::size_t) { executor_.check_cancelled(); });
     }
 
@@ -230,6 +231,7 @@ class AmfReader {
     std::string name_;
     Remarks remarks_;
     std::vector<std::string> notes_;
+    bool supports_;
     ReadLimits limits_;
     const Execution& execution_;
     Executor executor_;

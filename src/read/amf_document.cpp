@@ -118,8 +118,8 @@ constexpr std::array<std::string_view, 14> instance_numbers = {
 
 class DocumentReader {
   public:
-    DocumentReader(const std::string& name, bool skim, ReadLimits& limits)
-        : name_(name), skim_(skim), count_(limits) {}
+    DocumentReader(const std::string& name, bool supports, bool skim, ReadLimits& limits)
+        : name_(name), supports_(supports), skim_(skim), count_(limits) {}
 
     AmfDocument read(std::string_view document, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
@@ -201,7 +201,7 @@ class DocumentReader {
             if (element == "vertices")
                 return Where::vertices;
             if (element == "volume") {
-                if (lower_case(trimmed(attributes.find("type"))) != "support")
+                if (supports_ || lower_case(trimmed(attributes.find("type"))) != "support")
                     return Where::volume;
                 result_.supports.note(line_);
             }
@@ -410,6 +410,7 @@ class DocumentReader {
     static constexpr unsigned all_three = 7;
 
     const std::string& name_;
+    bool supports_;
     bool skim_;
     GrowingMeshCount count_;
     AmfDocument result_;
@@ -429,9 +430,9 @@ const MeshTextForm& amf_text_form() noexcept {
     return text_form;
 }
 
-AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
+AmfDocument read_amf_document(std::string_view document, const std::string& name, bool supports, bool skim,
                               ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
-    return DocumentReader(name, skim, limits).read(document, progress);
+    return DocumentReader(name, supports, skim, limits).read(document, progress);
 }
 
 } // namespace lamella

@@ -63,15 +63,15 @@ struct AmfDocument {
     std::vector<AmfObject> objects;
     std::vector<AmfConstellation> constellations;
     Counted bent;     ///< edges and normals
-    Counted supports; ///< volumes
+    Counted supports; ///< volumes that were left out
 };
 
-/// Reads a document, which errors call `name`. `skim`: leave the vertices and triangles of meshes in `text`,
-/// unread, where they stand as plain runs; where others stand beside them that is Error{input}. Throws
-/// Error{input} with the line for what is no AMF, and Error{limit} for what is too much, as soon as it is;
-/// the limits count what is returned.
-[[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
-                                            ReadLimits& limits,
+/// Reads a document, which errors call `name`. `supports`: take volumes of type support, too. `skim`: leave
+/// the vertices and triangles of meshes in `text`, unread, where they stand as plain runs; where others stand
+/// beside them that is Error{input}. Throws Error{input} with the line for what is no AMF, and Error{limit}
+/// for what is too much, as soon as it is; the limits count what is returned.
+[[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name, bool supports,
+                                            bool skim, ReadLimits& limits,
                                             const std::function<void(std::size_t)>& progress);
 
 /// How meshes are written in documents.

@@ -26,15 +26,11 @@ constexpr std::string_view ticket_type = "http://schemas.microsoft.com/3dmanufac
 constexpr std::string_view usual_root = "3D/3dmodel.model";
 constexpr std::size_t longest_name = 200;
 
-bool is_solid(ThreeMfObjectType type) {
-    return type == ThreeMfObjectType::model || type == ThreeMfObjectType::solid_support;
-}
-
 class ThreeMfReader {
   public:
     ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
         : package_(source, options.max_memory), name_(source.name), remarks_(source.name, options.strict),
-          limits_(source.name, options), executor_(execution),
+          supports_(options.supports), limits_(source.name, options), executor_(execution),
           progress_(execution, Stage::read, bytes_of(package_.zip())) {}
 
     MeshFile read() {
@@ -294,6 +290,11 @@ class ThreeMfReader {
         return fmt::format("part '{}', line {}: {}", printable(model.part, longest_name), line, what);
     }
 
+    [[nodiscard]] bool is_taken(ThreeMfObjectType type) const {
+        return type == ThreeMfObjectType::model || type == ThreeMfObjectType::solid_support ||
+               (supports_ && type == ThreeMfObjectType::support);
+    }
+
     /// The meshes that the build reaches, and where they stand.
     void make_file() {
         if (parts_[0].model.items.empty())
@@ -302,7 +303,7 @@ class ThreeMfReader {
         std::vector<std::size_t> open;
         for (const AssemblyUse& root : roots_)
             open.push_back(root.node);
-        std::size_t not_solid = 0;
+        std::size_t not_taken = 0;
         std::size_t empty = 0;
         while (!open.empty()) {
             const std::size_t node = open.back();
@@ -310,9 +311,9 @@ class ThreeMfReader {
             if (reached[node])
                 continue;
             reached[node] = true;
-            if (!is_solid(sources_[node]->type)) {
+            if (!is_taken(sources_[node]->type)) {
                 nodes_[node].uses.clear();
-                ++not_solid;
+                ++not_taken;
                 continue;
             }
             for (const AssemblyUse& use : nodes_[node].uses)
@@ -326,7 +327,7 @@ class ThreeMfReader {
                 continue;
             }
             ThreeMfObject& source = *sources_[node];
-            if (!is_solid(source.type) || !source.is_mesh)
+            if (!is_taken(source.type) || !source.is_mesh)
                 continue;
             if (source.mesh.triangles.empty()) {
                 ++empty;
@@ -343,7 +344,9 @@ class ThreeMfReader {
         };
         tell_count(empty, "objects have a mesh without triangles", true);
         tell_count(degenerate, "triangles use a vertex twice; they bound nothing", true);
-        tell_count(not_solid, "objects are of type support or surface, which is no solid; they were left out",
+        tell_count(not_taken,
+                   fmt::format("objects are of type {}surface, which is no solid; they were left out",
+                               supports_ ? "" : "support or "),
                    false);
         tell_count(not_printable_, "items of the build are marked as not to be printed; they were left out",
                    false);
@@ -356,6 +359,7 @@ class ThreeMfReader {
     OpcPackage package_;
     std::string name_;
     Remarks remarks_;
+    bool supports_;
     std::vector<std::string> notes_;
     ReadLimits limits_;
     Executor executor_;

@@ -10,9 +10,9 @@
 namespace lamella {
 
 /// Reads what the build of a 3MF file puts on the plate; the contract of read_mesh. Each mesh of the file
-/// that is used is one object, each way to it from the build one instance. Of objects of the types support
-/// and surface, which are no solids, nothing is read, nor of items that are not to be printed: a warning says
-/// so.
+/// that is used is one object, each way to it from the build one instance. Of objects of the type
+/// surface, which are no solids, nothing is read, nor of those of the type support, unless the options ask
+/// for them, nor of items that are not to be printed: a warning says so.
 [[nodiscard]] MeshFile read_three_mf(const ByteSource& source, const MeshReadOptions& options,
                                      const Execution& execution);
 

@@ -26,6 +26,26 @@ class Info(ProgramTest):
         self.assertTrue(found["closed"])
         self.assertEqual(set(found["defects"].values()), {0})
 
+    def test_supports_are_included_where_they_are_asked_for(self):
+        corners = [(x + dx, y, z) for dx in (0, 10) for x, y, z in [(0, 0, 0), (3, 0, 0), (0, 3, 0), (0, 0, 3)]]
+        vertices = "".join("<vertex><coordinates><x>%d</x><y>%d</y><z>%d</z></coordinates></vertex>" % c for c in corners)
+        tetrahedron, support = (
+            "".join("<triangle><v1>%d</v1><v2>%d</v2><v3>%d</v3></triangle>" % tuple(first + v for v in t)
+                    for t in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]) for first in (0, 4))
+        self.write("part.amf", f"<amf><object id='0'><mesh><vertices>{vertices}</vertices><volume>{tetrahedron}</volume>"
+                               f"<volume type='support'>{support}</volume></mesh></object></amf>")
+        include = ["--include", "support"]
+        self.assertEqual(self.info("part.amf")["triangles"], 4)
+        self.assertIn("1 volumes are supports", self.succeed("info", "part.amf").err)
+        self.assertEqual(self.info("part.amf", *include)["triangles"], 8)
+        self.assertEqual(self.succeed("info", "part.amf", *include).err, "")
+        for words, triangles in ([], 4), (include, 8):
+            stats = self.succeed("slice", "part.amf", "-o", "part.cli", "--stats", "-", *words).json()
+            self.assertEqual(stats["input"]["triangles"], triangles)
+            self.succeed("verify", "part.cli", "--mesh", "part.amf", *words)
+        self.succeed("view", "part.amf", "-o", "part.html", *include)
+        self.fail_with(2, "--include.*surface.*support", "info", "part.amf", "--include", "surface")
+
     def test_the_text_names_what_matters(self):
         text = self.succeed("info", self.box()).text
         for word in ["12", "20 x 30 x 10 mm", "6000 mm3", "closed", "defects"]:

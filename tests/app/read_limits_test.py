@@ -115,7 +115,8 @@ class ReadLimits(ProgramTest):
             text = " ".join(self.succeed(command, "--help").text.split())
             self.assertIn("--max-memory SIZE", text)
             self.assertEqual("sliced in pieces" in text, command == "slice")
-            self.assertEqual("--max-triangles N" in text, command in ["slice", "info", "verify", "view"])
+            for option in ["--max-triangles N", "--include WHAT"]:
+                self.assertEqual(option in text, command in ["slice", "info", "verify", "view"])
 
 
 if __name__ == "__main__":

@@ -165,6 +165,23 @@ def test_odd_files_are_warned_of(rook, tmp_path):
         lamella.read(path, strict=True)
 
 
+def test_supports_are_read_where_they_are_asked_for(tmp_path):
+    points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    vertices = "".join("<vertex><coordinates><x>%d</x><y>%d</y><z>%d</z></coordinates></vertex>" % p for p in points)
+    volume = ">" + "".join(
+        "<triangle><v1>%d</v1><v2>%d</v2><v3>%d</v3></triangle>" % t
+        for t in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    )
+    path = tmp_path / "part.amf"
+    path.write_text(
+        f"<amf><object id='0'><mesh><vertices>{vertices}</vertices><volume{volume}</volume>"
+        f"<volume type='support'{volume}</volume></mesh></object></amf>"
+    )
+    with pytest.warns(lamella.DefectWarning, match="1 volumes are supports"):
+        assert len(lamella.read(path)) == 4
+    assert len(lamella.read(path, supports=True)) == 8
+
+
 def test_names_that_are_no_text_work(rook, tmp_path):
     name = os.fsencode(tmp_path) + b"/odd \xff name"
     os.link(rook, name + b".stl")

@@ -136,6 +136,10 @@ TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
         read(amf(replaced(two, "materialid=\"2\"", "type=\"support\"")), {.strict = true});
     EXPECT_EQ(without.stored_triangles, 4U);
     EXPECT_TRUE(says(without.warnings.at(0), "1 volumes are supports"));
+    const MeshFile with =
+        read(amf(replaced(two, "materialid=\"2\"", "type=\"support\"")), {.supports = true});
+    EXPECT_EQ(with.stored_triangles, 5U);
+    EXPECT_TRUE(with.warnings.empty());
 }
 
 TEST(Amf, CurvesAreFlatAndSaidToBe) {

@@ -181,6 +181,11 @@ TEST(ThreeMf, TypesOfObjectsDecideWhatIsRead) {
         ASSERT_EQ(file.warnings.size(), 1U);
         EXPECT_TRUE(says(file.warnings[0], "1 objects are of type support or surface"));
     }
+    EXPECT_EQ(read(with_type("support"), {.supports = true}).instances.size(), 2U);
+    EXPECT_TRUE(read(with_type("support"), {.supports = true}).warnings.empty());
+    const MeshFile surfaces = read(with_type("surface"), {.supports = true});
+    EXPECT_EQ(surfaces.instances.size(), 1U);
+    EXPECT_TRUE(says(surfaces.warnings.at(0), "1 objects are of type surface, which is no solid"));
     EXPECT_TRUE(
         says(in_model(error_of(with_type("other"))), "whose type 'other' says that it is not to be made"));
     EXPECT_TRUE(says(in_model(error_of(with_type("thing"))), "found an object of type 'thing'"));

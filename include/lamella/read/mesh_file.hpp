@@ -32,6 +32,9 @@ struct MeshReadOptions {
     /// Makes Error{defect} of what is otherwise a warning: wrong counts, truncation, corners that are not
     /// finite.
     bool strict = false;
+    /// Takes what a file marks as support, too, as solids: objects (3MF) and volumes (AMF) of type support.
+    /// Without it they are left out with a warning.
+    bool supports = false;
     /// More triangles than this, in the file or over all instances, are Error{limit}; 0: as many as can be
     /// held. They are counted while a file is read, before there is memory for the rest.
     std::uint64_t max_triangles = 0;
