@@ -34,51 +34,18 @@ struct CompareArguments {
     RunOptions run;
 };
 
-/// A layer of one file beside that of the other.
-struct Pair {
-    double z = 0;
-    const Layer* first = nullptr; ///< null: the file has none there
-    const Layer* second = nullptr;
-    LayerDifference difference = {};
-};
-
-/// Layers whose cuts lie no further apart than `reach` belong together. One without contours needs no
-/// partner.
-std::vector<Pair> pairs_of(const LayerStack& first, const LayerStack& second, double reach) {
-    std::vector<Pair> pairs;
-    std::size_t i = 0;
-    std::size_t j = 0;
-    while (i < first.size() || j < second.size()) {
-        const double z = i < first.size() ? first[i].z : std::numeric_limits<double>::infinity();
-        const double w = j < second.size() ? second[j].z : std::numeric_limits<double>::infinity();
-        if (std::abs(z - w) <= reach) {
-            pairs.push_back({z, &first[i++], &second[j++]});
-        } else if (z < w) {
-            if (first[i++].contours() > 0)
-                pairs.push_back({z, &first[i - 1], nullptr});
-        } else if (second[j++].contours() > 0) {
-            pairs.push_back({w, nullptr, &second[j - 1]});
-        }
-    }
-    return pairs;
-}
-
-bool agrees(const Pair& pair, double tolerance) {
-    return pair.first != nullptr && pair.second != nullptr && pair.difference.within(tolerance);
-}
-
 /// Orders differences by size: a layer that one file does not have is the largest.
-double size_of(const Pair& pair) {
-    return pair.first == nullptr || pair.second == nullptr ? std::numeric_limits<double>::infinity()
-                                                           : pair.difference.distance_mm;
+double size_of(const ComparedPlane& plane) {
+    return plane.first && plane.second ? plane.difference.distance_mm
+                                       : std::numeric_limits<double>::infinity();
 }
 
-std::string told(const Pair& pair, const CompareArguments& arguments) {
-    if (pair.first == nullptr || pair.second == nullptr)
-        return fmt::format("z = {} mm: only {} has contours there", brief(pair.z),
-                           one_line(arguments.inputs[pair.first == nullptr ? 1 : 0]));
-    const LayerDifference& found = pair.difference;
-    std::string text = fmt::format("z = {} mm: ", brief(pair.z));
+std::string told(const ComparedPlane& plane, const CompareArguments& arguments) {
+    if (!plane.first || !plane.second)
+        return fmt::format("z = {} mm: only {} has contours there", brief(plane.z),
+                           one_line(arguments.inputs[plane.first ? 0 : 1]));
+    const LayerDifference& found = plane.difference;
+    std::string text = fmt::format("z = {} mm: ", brief(plane.z));
     if (std::isinf(found.distance_mm))
         text += fmt::format("{} contours against {}", grouped(found.first.contours),
                             grouped(found.second.contours));
@@ -95,14 +62,14 @@ std::string told(const Pair& pair, const CompareArguments& arguments) {
            fmt::format(", area {} against {} mm2", brief(found.first.area_mm2), brief(found.second.area_mm2));
 }
 
-Json pair_json(const Pair& pair) {
-    const bool both = pair.first != nullptr && pair.second != nullptr;
-    const LayerDifference& found = pair.difference;
+Json plane_json(const ComparedPlane& plane) {
+    const bool both = plane.first && plane.second;
+    const LayerDifference& found = plane.difference;
     const bool measured = both && std::isfinite(found.distance_mm);
-    return {{"z", pair.z},
-            {"in", both                    ? "both"
-                   : pair.first != nullptr ? "first"
-                                           : "second"},
+    return {{"z", plane.z},
+            {"in", both          ? "both"
+                   : plane.first ? "first"
+                                 : "second"},
             {"distance_mm", measured ? Json(found.distance_mm) : Json()},
             {"at", measured ? Json{found.where.x, found.where.y} : Json()},
             {"contours", {found.first.contours, found.second.contours}},
@@ -120,38 +87,34 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
         for (const std::string& warning : file->warnings)
             context.messages.warn(warning);
 
-    const double rounding = (first.resolution_mm + second.resolution_mm) / 2 * std::sqrt(2.0);
-    const double tolerance = arguments.tolerance.value_or(rounding);
     const LayerStack stacks[2] = {first.merged(), second.merged()};
-    std::vector<Pair> pairs = pairs_of(stacks[0], stacks[1], std::max(tolerance, rounding) + 1e-9);
-    for (Pair& pair : pairs)
-        if (pair.first != nullptr && pair.second != nullptr)
-            pair.difference = compare(*pair.first, *pair.second);
-
-    std::vector<const Pair*> differing;
+    const StackComparison found =
+        compare(RoundedLayers{stacks[0], first.rounding}, {stacks[1], second.rounding}, arguments.tolerance);
+    const double tolerance = found.tolerance_mm;
+    std::vector<const ComparedPlane*> differing;
     std::uint64_t same = 0;
-    for (const Pair& pair : pairs) {
-        same += pair.difference.same ? 1 : 0;
-        if (!agrees(pair, tolerance))
-            differing.push_back(&pair);
+    for (const ComparedPlane& plane : found.planes) {
+        same += plane.difference.same ? 1 : 0;
+        if (!plane.agree)
+            differing.push_back(&plane);
     }
     const auto largest =
-        std::ranges::max_element(differing, {}, [](const Pair* pair) { return size_of(*pair); });
+        std::ranges::max_element(differing, {}, [](const ComparedPlane* plane) { return size_of(*plane); });
 
     if (arguments.json) {
         Json layers = Json::array();
-        for (const Pair* pair : differing)
-            layers.push_back(pair_json(*pair));
+        for (const ComparedPlane* plane : differing)
+            layers.push_back(plane_json(*plane));
         context.messages.result(
             json_text({{"first", arguments.inputs[0]},
                        {"second", arguments.inputs[1]},
                        {"agree", differing.empty()},
                        {"tolerance_mm", tolerance},
-                       {"layers", pairs.size()},
+                       {"layers", found.planes.size()},
                        {"same", same},
                        {"differing", differing.size()},
-                       {"first_difference", differing.empty() ? Json() : pair_json(*differing.front())},
-                       {"largest_difference", differing.empty() ? Json() : pair_json(**largest)},
+                       {"first_difference", differing.empty() ? Json() : plane_json(*differing.front())},
+                       {"largest_difference", differing.empty() ? Json() : plane_json(**largest)},
                        {"differences", std::move(layers)}}));
     } else {
         std::string text = fmt::format(
@@ -163,7 +126,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
                               differing.size() == 1 ? "1 layer does not agree"
                                                     : grouped(differing.size()) + " layers do not agree",
                               brief(tolerance)),
-            counted(pairs.size(), "layer"), grouped(same));
+            counted(found.planes.size(), "layer"), grouped(same));
         if (!differing.empty()) {
             text += fmt::format("  the first difference:   {}\n", told(*differing.front(), arguments));
             text += fmt::format("  the largest difference: {}\n", told(**largest, arguments));

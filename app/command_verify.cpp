@@ -91,7 +91,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
-    VerifyOptions options{.mesh = {}, .quantum_mm = file.resolution_mm / 2};
+    VerifyOptions options{.mesh = {}, .rounding = file.rounding};
     if (!arguments.slice_at.empty()) {
         const SliceAt at = slice_at_of(arguments.slice_at);
         for (LayerPart& part : file.parts)

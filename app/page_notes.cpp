@@ -122,9 +122,9 @@ PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found) {
 
 PageNotes file_notes(const LayerFile& file) {
     PageSection section{"File", {{"Name", title_of(file.path)}, {"Format", file.format}}};
-    if (file.resolution_mm > 0)
+    if (file.rounding.step_mm > 0)
         section.facts.push_back(
-            {"Its coordinates are rounded to", fmt::format("{} mm", brief(file.resolution_mm))});
+            {"Its coordinates are rounded to", fmt::format("{} mm", brief(file.rounding.step_mm))});
     for (const std::string& warning : file.warnings)
         section.facts.push_back({"Remark", warning, Tone::warning});
     return {.sections = {section}, .places = {}};

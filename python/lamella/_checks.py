@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Iterator, List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy.typing as npt
 
@@ -100,40 +100,17 @@ def compare(
 
     Raises InputError.
     """
-    stacks = as_stack(first), as_stack(second)
-    rounding = (stacks[0].resolution + stacks[1].resolution) / 2 * math.sqrt(2.0)
-    if tolerance is None:
-        tolerance = rounding
-    if not tolerance >= 0:
+    if tolerance is not None and not tolerance >= 0:
         raise UsageError(f"tolerance: {tolerance} is no distance; it cannot be negative")
-    layers = same = 0
+    one, other = as_stack(first), as_stack(second)
+    tolerance, planes = _lamella.compare(one, other, tolerance)
+    same = 0
     differences = []
-    for a, b in _pairs(*stacks, max(tolerance, rounding) + 1e-9):
-        layers += 1
+    for i, j, equal, agree, distance, where in planes:
+        same += equal
+        a, b = None if i is None else one[i], None if j is None else other[j]
         if a is None or b is None:
             differences.append(LayerDifference((a or b).z, math.inf, None, a, b))  # type: ignore[union-attr]
-            continue
-        equal, agree, distance, where = _lamella.compare(a, b, tolerance)
-        same += equal
-        if not agree:
+        elif not agree:
             differences.append(LayerDifference(a.z, distance, where if math.isfinite(distance) else None, a, b))
-    return Comparison(not differences, tolerance, layers, same, differences)
-
-
-def _pairs(first: Stack, second: Stack, reach: float) -> Iterator[Tuple[Optional[Layer], Optional[Layer]]]:
-    """Layers whose cuts lie no further apart than `reach`. One without contours needs no partner."""
-    i = j = 0
-    while i < len(first) or j < len(second):
-        z = first[i].z if i < len(first) else math.inf
-        w = second[j].z if j < len(second) else math.inf
-        if abs(z - w) <= reach:
-            yield first[i], second[j]
-            i, j = i + 1, j + 1
-        elif z < w:
-            if len(first[i]):
-                yield first[i], None
-            i += 1
-        else:
-            if len(second[j]):
-                yield None, second[j]
-            j += 1
+    return Comparison(not differences, tolerance, len(planes), same, differences)

@@ -39,7 +39,7 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
     stack->box = box_of(stack->layers);
     stack->path = file.path;
     stack->format = file.format;
-    stack->resolution_mm = file.resolution_mm;
+    stack->rounding = file.rounding;
     return stack;
 }
 
@@ -147,7 +147,7 @@ void write_mesh(const std::string& path, const std::string& extension, const Mes
 py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, unsigned threads,
                   const py::object& progress) {
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
-        VerifyOptions options{.mesh = {}, .quantum_mm = stack.resolution_mm / 2};
+        VerifyOptions options{.mesh = {}, .rounding = stack.rounding};
         Mesh sliced;
         if (mesh) {
             sliced = mesh->mesh();
@@ -182,12 +182,24 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
     return fields;
 }
 
-/// same, agree, distance, where
-std::tuple<bool, bool, double, std::pair<double, double>>
-compared(const SharedLayer& first, const SharedLayer& second, double tolerance) {
-    const py::gil_scoped_release released;
-    const LayerDifference found = compare(first.get(), second.get());
-    return {found.same, found.within(tolerance), found.distance_mm, {found.where.x, found.where.y}};
+/// The tolerance; and of each plane the numbers of its layers in the stacks, or None, same, agree, distance
+/// and where that begins.
+py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance) {
+    StackComparison found;
+    {
+        const py::gil_scoped_release released;
+        const LayerStack of_first = plain(first);
+        const LayerStack of_second = plain(second);
+        found = compare(RoundedLayers{of_first, first.rounding}, {of_second, second.rounding}, tolerance);
+    }
+    py::list planes;
+    for (const ComparedPlane& plane : found.planes) {
+        const LayerDifference& difference = plane.difference;
+        planes.append(py::make_tuple(plane.first, plane.second, difference.same, plane.agree,
+                                     difference.distance_mm,
+                                     std::pair(difference.where.x, difference.where.y)));
+    }
+    return py::make_tuple(found.tolerance_mm, planes);
 }
 
 const char* kind_name(const std::string& head) {

@@ -185,7 +185,7 @@ py::tuple layer_state(const py::object& self) {
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
-    if (state.size() != 8)
+    if (state.size() != 9)
         throw Error(ErrorKind::input, "this is no pickled layer");
     const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
                          state[3].cast<double>()};
@@ -249,6 +249,13 @@ std::uint64_t sum_of(const Stack& stack, const Count& count) {
     return sum;
 }
 
+double resolution_of(const Stack& stack) {
+    double largest = 0;
+    for (const Point3& corner : {stack.box.min, stack.box.max})
+        largest = std::max({largest, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
+    return stack.rounding.step_at(largest);
+}
+
 std::string stack_text(const Stack& stack) {
     std::string text = "<lamella.Stack of " + std::to_string(stack.layers.size()) + " layers";
     if (!stack.layers.empty()) {
@@ -286,11 +293,12 @@ StackPointer stack_of_layers(std::vector<LayerPointer> layers, const std::string
 
 py::tuple pickled(const Stack& stack) {
     return py::make_tuple(stack.layers, stack.label, bounds_of(stack.box), matrix_of(stack.matrix),
-                          py::bytes(stack.path), stack.format, stack.resolution_mm, stack.parts);
+                          py::bytes(stack.path), stack.format, stack.rounding.step_mm,
+                          stack.rounding.single_precision, stack.parts);
 }
 
 StackPointer unpickled(const py::tuple& state) {
-    if (state.size() != 8)
+    if (state.size() != 9)
         throw Error(ErrorKind::input, "this is no pickled stack of layers");
     StackPointer stack =
         stack_of_layers(state[0].cast<std::vector<LayerPointer>>(), state[1].cast<std::string>());
@@ -298,8 +306,8 @@ StackPointer unpickled(const py::tuple& state) {
     stack->matrix = transform_of(state[3].cast<Matrix>());
     stack->path = state[4].cast<std::string>();
     stack->format = state[5].cast<std::string>();
-    stack->resolution_mm = state[6].cast<double>();
-    stack->parts = state[7].cast<std::vector<StackPointer>>();
+    stack->rounding = {state[6].cast<double>(), state[7].cast<bool>()};
+    stack->parts = state[8].cast<std::vector<StackPointer>>();
     return stack;
 }
 
@@ -506,8 +514,9 @@ void bind_stack(py::module_& module) {
             "format", [](const Stack& self) { return self.format; },
             "The format of that file, such as \"cli\".")
         .def_property_readonly(
-            "resolution", [](const Stack& self) { return self.resolution_mm; },
-            "The step to which that file rounds, in millimetres; 0 where it does not.")
+            "resolution", [](const Stack& self) { return resolution_of(self); },
+            "The largest step to which that file rounds one of these numbers, in millimetres; 0 where it rounds\n"
+            "none.")
         .def("__len__", [](const Stack& self) { return self.layers.size(); })
         .def("__getitem__",
              [](const Stack& self, py::ssize_t index) {

@@ -52,7 +52,7 @@ struct Stack {
     /// The slice file it was read from; empty where it was sliced.
     std::string path = {};
     std::string format = {};
-    double resolution_mm = 0; ///< to which that file rounds
+    Rounding rounding = {}; ///< of that file
     /// The parts of a file that holds several.
     std::vector<std::shared_ptr<Stack>> parts = {};
 };

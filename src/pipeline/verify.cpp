@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace lamella {
 
@@ -37,16 +39,22 @@ struct LayerCheck {
     Occurrences overlapping;
 };
 
-/// Whether a ring is so thin that rounding its points may have turned it over.
-bool orientation_is_lost(std::span<const Point2> ring, double quantum) {
+double largest_coordinate(std::span<const Point2> points) {
     double largest = 0;
-    for (const Point2& p : ring)
+    for (const Point2& p : points)
         largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    const double moved = std::sqrt(2.0) * quantum + 4 * std::numeric_limits<double>::epsilon() * largest;
+    return largest;
+}
+
+/// Whether a ring is so thin that rounding its points may have turned it over.
+bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) {
+    const double largest = largest_coordinate(ring);
+    const double moved = std::sqrt(0.5) * rounding.step_at(largest) +
+                         4 * std::numeric_limits<double>::epsilon() * largest;
     return std::abs(ring_area(ring)) <= contour_length(ring, true) * moved;
 }
 
-LayerCheck check(const Layer& layer, double quantum) {
+LayerCheck check(const Layer& layer, const Rounding& rounding) {
     LayerCheck result;
     result.measure = measure(layer);
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
@@ -60,7 +68,7 @@ LayerCheck check(const Layer& layer, double quantum) {
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         if (kinds[i] != RingKind::misoriented && kinds[i] != RingKind::overlapping)
             continue;
-        if (!orientation_is_lost(layer.contour(i), quantum))
+        if (!orientation_is_lost(layer.contour(i), rounding))
             (kinds[i] == RingKind::misoriented ? result.misoriented : result.overlapping)
                 .add(1, layer.contour(i).front());
     }
@@ -107,7 +115,7 @@ std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
         worst->gaps.from.x, worst->gaps.from.y, worst->gaps.to.x, worst->gaps.to.y);
 }
 
-/// The areas that the section of a mesh has within a quantum of the z of a layer.
+/// The areas that the section of a mesh has where the format may have moved the cut of a layer from.
 struct SectionArea {
     double nominal = 0;
     double least = 0;
@@ -116,18 +124,19 @@ struct SectionArea {
 
 std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const VerifyOptions& options,
                                            const Execution& execution) {
-    std::vector<double> z;
-    for (const Layer& layer : layers)
-        z.push_back(layer.z);
-    std::sort(z.begin(), z.end());
-    z.erase(std::unique(z.begin(), z.end()), z.end());
+    std::map<double, double> moved_by; // z to how far it may have been moved
+    for (const Layer& layer : layers) {
+        double& most = moved_by[layer.z];
+        most = std::max(most, moved_cut(layer, options.rounding));
+    }
+    const std::vector<std::pair<double, double>> z(moved_by.begin(), moved_by.end());
 
-    const auto areas_at = [&](double offset) {
+    const auto areas_at = [&](double direction) {
         Plan plan;
         plan.rule = options.rule;
         std::vector<std::size_t> plane_of(z.size());
         for (std::size_t i = 0; i < z.size(); ++i) {
-            const double shifted = z[i] + offset; // may round to the one before
+            const double shifted = z[i].first + direction * z[i].second; // may round to the one before
             if (plan.layers.empty() || shifted > plan.layers.back().z)
                 plan.layers.push_back({plan.layers.size(), shifted, shifted, shifted});
             plane_of[i] = plan.layers.size() - 1;
@@ -142,9 +151,9 @@ std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const 
     const std::vector<double> nominal = areas_at(0);
     for (std::size_t i = 0; i < z.size(); ++i)
         areas[i] = {nominal[i], nominal[i], nominal[i]};
-    if (options.quantum_mm > 0)
-        for (const double offset : {-options.quantum_mm, options.quantum_mm}) {
-            const std::vector<double> shifted = areas_at(offset);
+    if (options.rounding != Rounding{})
+        for (const double direction : {-1.0, 1.0}) {
+            const std::vector<double> shifted = areas_at(direction);
             for (std::size_t i = 0; i < z.size(); ++i) {
                 areas[i].least = std::min(areas[i].least, shifted[i]);
                 areas[i].greatest = std::max(areas[i].greatest, shifted[i]);
@@ -153,18 +162,18 @@ std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const 
 
     std::vector<SectionArea> result;
     for (const Layer& layer : layers)
-        result.push_back(
-            areas[static_cast<std::size_t>(std::lower_bound(z.begin(), z.end(), layer.z) - z.begin())]);
+        result.push_back(areas[static_cast<std::size_t>(
+            std::ranges::lower_bound(z, layer.z, {}, &std::pair<double, double>::first) - z.begin())]);
     return result;
 }
 
 /// How far the area of a layer may be off from that of the mesh's section, when each of its points is off by
-/// up to `quantum` in x and y. `extent` is the mesh's.
-double area_tolerance(const Layer& layer, const LayerMeasure& measure, double quantum, double extent) {
+/// up to half a step of the format in x and y. `extent` is the mesh's.
+double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rounding& rounding,
+                      double extent) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    double largest = 0;
-    for (const Point2& p : layer.points)
-        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    const double largest = largest_coordinate(layer.points.span());
+    const double quantum = rounding.step_at(largest) / 2;
     const auto points = static_cast<double>(measure.points);
     // Rings smaller than a unit may have vanished: hence the perimeter of a few units more.
     const double moved_points =
@@ -190,7 +199,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         const SectionArea& section = sections[i];
         largest_error = std::max(largest_error, std::abs(area - section.nominal));
         const double beyond = std::max(section.least - area, area - section.greatest);
-        if (beyond > area_tolerance(layers[i], checks[i].measure, options.quantum_mm, extent)) {
+        if (beyond > area_tolerance(layers[i], checks[i].measure, options.rounding, extent)) {
             if (differing == 0)
                 first = i;
             ++differing;
@@ -215,7 +224,7 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     ProgressMeter progress(execution, Stage::polygon, layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            checks[i] = check(layers[i], options.quantum_mm);
+            checks[i] = check(layers[i], options.rounding);
             progress.add(1);
         }
     });

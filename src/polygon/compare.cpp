@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -124,6 +126,65 @@ class NearestSegment {
     std::vector<Node> nodes_;
 };
 
+/// How far the format may have moved a point of these layers.
+double moved_points(const RoundedLayers& stack) {
+    double largest = 0;
+    for (const Layer& layer : stack.layers)
+        for (const Point2& p : layer.points)
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    return stack.rounding.step_at(largest) / 2 * std::sqrt(2.0);
+}
+
+/// Pairs the layers of two stacks, which both ascend.
+class PlanePairs {
+  public:
+    PlanePairs(const RoundedLayers& first, const RoundedLayers& second) : first_(first), second_(second) {
+        std::size_t i = 0;
+        std::size_t j = 0;
+        while (i < first.layers.size() || j < second.layers.size()) {
+            if (belong_together(i, j)) {
+                planes_.push_back({first.layers[i].z, i, j});
+                ++i;
+                ++j;
+            } else if (z(first, i) < z(second, j)) {
+                add_alone(first.layers[i], i, {});
+                ++i;
+            } else {
+                add_alone(second.layers[j], {}, j);
+                ++j;
+            }
+        }
+    }
+
+    [[nodiscard]] std::vector<ComparedPlane> take() { return std::move(planes_); }
+
+  private:
+    [[nodiscard]] static double z(const RoundedLayers& stack, std::size_t i) {
+        return i < stack.layers.size() ? stack.layers[i].z : infinity;
+    }
+
+    [[nodiscard]] bool belong_together(std::size_t i, std::size_t j) const {
+        if (i == first_.layers.size() || j == second_.layers.size())
+            return false;
+        constexpr double of_arithmetic = 1e-9; // a cut half-way up is computed
+        const double apart = std::abs(z(first_, i) - z(second_, j));
+        return apart <= moved_cut(first_.layers[i], first_.rounding) +
+                            moved_cut(second_.layers[j], second_.rounding) + of_arithmetic &&
+               apart <= std::abs(z(first_, i + 1) - z(second_, j)) &&
+               apart <= std::abs(z(first_, i) - z(second_, j + 1));
+    }
+
+    void add_alone(const Layer& layer, std::optional<std::size_t> in_first,
+                   std::optional<std::size_t> in_second) {
+        if (layer.contours() > 0)
+            planes_.push_back({layer.z, in_first, in_second});
+    }
+
+    const RoundedLayers& first_;
+    const RoundedLayers& second_;
+    std::vector<ComparedPlane> planes_;
+};
+
 /// The largest way from a corner of `from` to the contours of the other, where it is larger than what was
 /// found before.
 void farthest(const Layer& from, const NearestSegment& to, double& largest, Point2& where) {
@@ -160,6 +221,20 @@ LayerDifference compare(const Layer& first, const Layer& second) {
     farthest(second, NearestSegment(first), largest, difference.where);
     difference.distance_mm = std::sqrt(largest);
     return difference;
+}
+
+StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
+                        std::optional<double> tolerance_mm) {
+    StackComparison result{.tolerance_mm =
+                               tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
+                           .planes = PlanePairs(first, second).take()};
+    for (ComparedPlane& plane : result.planes) {
+        if (!plane.first || !plane.second)
+            continue;
+        plane.difference = compare(first.layers[*plane.first], second.layers[*plane.second]);
+        plane.agree = plane.difference.within(result.tolerance_mm);
+    }
+    return result;
 }
 
 } // namespace lamella

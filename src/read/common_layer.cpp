@@ -64,7 +64,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, Rea
     file.path = name;
     file.format = header.binary ? "cli" : "cli-ascii";
     file.units_mm = header.units_mm;
-    file.resolution_mm = header.units_mm;
+    file.rounding = {.step_mm = header.units_mm, .single_precision = header.binary};
 
     CommonLayerGeometry geometry(header, name, limits);
     if (header.binary)

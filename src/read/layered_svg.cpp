@@ -347,7 +347,7 @@ LayerFile read_layered_svg(std::string_view bytes, const std::string& name, Read
     file.path = name;
     file.format = "svg";
     file.units_mm = 1;
-    file.resolution_mm = 0.001;
+    file.rounding = text_rounding;
     SvgReader reader(name, bytes.size(), file, limits);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());

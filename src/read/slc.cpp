@@ -274,6 +274,7 @@ LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& 
     LayerFile file;
     file.path = name;
     file.format = "slc";
+    file.rounding = {.single_precision = true};
     SlcReader(bytes, name, file, limits).read(execution);
     return file;
 }

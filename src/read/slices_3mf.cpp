@@ -535,7 +535,7 @@ LayerFile read_slices_3mf(const OpcPackage& package, ReadLimits& limits, const E
     file.path = package.zip().name();
     file.format = "3mf";
     file.units_mm = 1;
-    file.resolution_mm = 0.001;
+    file.rounding = text_rounding;
     file.warnings = package.zip().oddities();
     PackageReader(package, file, limits, execution).read();
     return file;

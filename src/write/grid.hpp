@@ -2,6 +2,7 @@
 
 // Contours on a grid of whole numbers, as text and 16-bit formats store them.
 
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/point.hpp"
 
 #include <cstdint>
@@ -18,8 +19,7 @@ struct GridPoint {
     friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
-/// What text formats round coordinates to that have no unit of their own.
-inline constexpr double text_step_mm = 0.001;
+inline constexpr double text_step_mm = text_rounding.step_mm;
 
 /// Signed area of a ring in square steps.
 [[nodiscard]] double grid_area(std::span<const GridPoint> ring) noexcept;

@@ -25,7 +25,7 @@ class Compare(ProgramTest):
         self.assertEqual(found["differences"], [])
 
     def test_formats_agree_up_to_their_rounding(self):
-        for name in ["torus.cli", "torus.svg", "torus.npz", "torus.3mf"]:
+        for name in ["torus.cli", "torus.svg", "torus.npz", "torus.3mf", "torus.slc"]:
             with self.subTest(name):
                 self.slice(name)
                 self.assertTrue(self.succeed("compare", "torus.json", name, "--json").json()["agree"])

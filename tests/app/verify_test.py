@@ -47,6 +47,11 @@ class Verify(ProgramTest):
                 self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", at)
         self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", "bottom", code=4)
 
+    def test_single_precision_of_a_format_is_granted(self):
+        self.succeed("make", "rook", "-o", "rook.stl")
+        self.succeed("slice", "rook.stl", "-o", "rook.slc", "--layer-height", "1")
+        self.verify("rook.slc", "--mesh", "rook.stl")
+
     def test_another_mesh_is_noticed(self):
         self.succeed("slice", self.box(), "-o", "box.cli")
         self.box("wider.stl", "21,30,10")

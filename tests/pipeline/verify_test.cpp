@@ -128,21 +128,31 @@ TEST(Verify, MissesLayersThatAreNotThere) {
 TEST(Verify, GrantsTheQuantumOfAFormat) {
     const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
     const LayerStack rounded{at(0, layer_of({rectangle(0, 0, 4.01, 4.01)}))};
-    EXPECT_FALSE(verify(rounded, {.mesh = mesh, .quantum_mm = 0.001}).ok());
-    EXPECT_TRUE(verify(rounded, {.mesh = mesh, .quantum_mm = 0.01}).ok());
+    EXPECT_FALSE(verify(rounded, {.mesh = mesh, .rounding = {.step_mm = 0.002}}).ok());
+    EXPECT_TRUE(verify(rounded, {.mesh = mesh, .rounding = {.step_mm = 0.02}}).ok());
     // The cut may have been moved, too: here over the top of the box.
     LayerStack high{at(2, layer_of({rectangle(0, 0, 4, 4)}))};
     high[0].z = 3;
     EXPECT_FALSE(verify(high, {.mesh = mesh}).ok());
-    EXPECT_TRUE(verify(high, {.mesh = mesh, .quantum_mm = 0.001}).ok());
+    EXPECT_TRUE(verify(high, {.mesh = mesh, .rounding = {.step_mm = 0.002}}).ok());
     EXPECT_TRUE(verify(high, {.mesh = mesh, .rule = PlaneRule::section_below}).ok());
+}
+
+TEST(Verify, GrantsWhatSinglePrecisionMovesOfALayerWhereItLies) {
+    const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
+    const Rounding single{.single_precision = true};
+    const LayerStack near{at(0, layer_of({rectangle(0, 0, 4 + 1e-7, 4)}))};
+    EXPECT_FALSE(verify(near, {.mesh = mesh}).ok());
+    EXPECT_TRUE(verify(near, {.mesh = mesh, .rounding = single}).ok());
+    const LayerStack off{at(0, layer_of({rectangle(0, 0, 4 + 1e-5, 4)}))};
+    EXPECT_FALSE(verify(off, {.mesh = mesh, .rounding = single}).ok());
 }
 
 TEST(Verify, HoldsNoRingToAnOrientationThatRoundingMayHaveTurned) {
     const Layer thin = at(0, layer_of({reversed(rectangle(0, 0, 5, 0.001))}));
     EXPECT_EQ(verify(LayerStack{thin}).misoriented, 1U);
-    EXPECT_EQ(verify(LayerStack{thin}, {.quantum_mm = 0.0005}).misoriented, 0U);
-    EXPECT_EQ(verify(LayerStack{thin}, {.quantum_mm = 0.00005}).misoriented, 1U);
+    EXPECT_EQ(verify(LayerStack{thin}, {.rounding = {.step_mm = 0.001}}).misoriented, 0U);
+    EXPECT_EQ(verify(LayerStack{thin}, {.rounding = {.step_mm = 0.0001}}).misoriented, 1U);
     // A ring of a few units in the last place, such as a plane makes just below the tip of a part.
     const double x = 43.1;
     const double next = std::nextafter(x, 50.0);
@@ -155,7 +165,7 @@ TEST(Verify, TakesLayersAtTheSameHeightOrNextToIt) {
                       at(0, layer_of({rectangle(0, 0, 4, 4)}))};
     layers[2].z = std::nextafter(layers[1].z, 0.0);
     EXPECT_TRUE(verify(layers, {.mesh = mesh}).ok());
-    EXPECT_TRUE(verify(layers, {.mesh = mesh, .quantum_mm = 0.01}).ok());
+    EXPECT_TRUE(verify(layers, {.mesh = mesh, .rounding = {.step_mm = 0.02}}).ok());
 }
 
 TEST(Verify, ComparesNoAreaOfLayersWithOpenChains) {

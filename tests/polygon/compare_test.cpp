@@ -75,6 +75,62 @@ TEST(Compare, NothingIsInfinitelyFarFromSomething) {
     EXPECT_TRUE(compare(layer_with({}), layer_with({})).same);
 }
 
+Layer at(double z, double thickness, Layer layer) {
+    layer.z = z;
+    layer.bottom = z - thickness / 2;
+    layer.top = z + thickness / 2;
+    return layer;
+}
+
+LayerStack squares(const std::vector<double>& heights, double thickness) {
+    LayerStack stack;
+    for (const double z : heights)
+        stack.push_back(at(z, thickness, layer_with({square})));
+    return stack;
+}
+
+TEST(CompareStacks, PlanesBelongTogetherAsFarAsEitherFormatRounds) {
+    const LayerStack exact = squares({100.05, 100.15}, 0.1);
+    const LayerStack rounded = squares({100.05 + 3e-6, 100.15 - 3e-6}, 0.1);
+    const Rounding single{.single_precision = true};
+    EXPECT_EQ(compare(RoundedLayers{exact}, {rounded}).planes.size(), 4U);
+    for (const StackComparison& found :
+         {compare(RoundedLayers{exact}, {rounded, single}), compare(RoundedLayers{rounded, single}, {exact})}) {
+        ASSERT_EQ(found.planes.size(), 2U);
+        EXPECT_TRUE(found.planes[0].agree && found.planes[1].agree);
+        EXPECT_EQ(found.planes[1].first, 1U);
+        EXPECT_EQ(found.planes[1].second, 1U);
+    }
+}
+
+TEST(CompareStacks, ALayerBelongsToTheNearestOneAlsoWhereLayersAreThinnerThanTheStep) {
+    const LayerStack all = squares({1, 1.0001, 1.0002}, 0.0001);
+    const LayerStack without_first = squares({1.0001, 1.0002}, 0.0001);
+    const StackComparison found = compare(RoundedLayers{all, text_rounding}, {without_first, text_rounding});
+    ASSERT_EQ(found.planes.size(), 3U);
+    EXPECT_FALSE(found.planes[0].second.has_value());
+    EXPECT_FALSE(found.planes[0].agree);
+    EXPECT_EQ(found.planes[2].second, 1U);
+}
+
+TEST(CompareStacks, GrantsContoursWhatBothFormatsRound) {
+    LayerStack moved = squares({1}, 1);
+    Contour wider = square;
+    wider[2] = {10.0005, 10};
+    moved[0] = at(1, 1, layer_with({wider}));
+    const LayerStack exact = squares({1}, 1);
+    EXPECT_FALSE(compare(RoundedLayers{exact}, {moved}).planes[0].agree);
+    EXPECT_TRUE(compare(RoundedLayers{exact}, {moved, text_rounding}).planes[0].agree);
+    EXPECT_FALSE(compare(RoundedLayers{exact}, {moved, text_rounding}, 0.0001).planes[0].agree);
+    EXPECT_NEAR(compare(RoundedLayers{exact, text_rounding}, {moved, text_rounding}).tolerance_mm,
+                0.001 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(CompareStacks, ALayerWithoutContoursNeedsNoPartner) {
+    const LayerStack empty{at(1, 1, layer_with({}))};
+    EXPECT_TRUE(compare(RoundedLayers{empty}, {}).planes.empty());
+}
+
 TEST(Compare, AgreesWithLookingAtEverySegment) {
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> place(0, 50);

@@ -41,6 +41,7 @@ def test_slice_files_read_back(rook, tmp_path, name):
     if name in EXACT:
         assert back == stack and back.resolution == 0 and comparison.same == len(stack)
     assert np.allclose(back.area, stack.area, rtol=1e-3)
+    assert lamella.compare(stack, back) and lamella.verify(back, rook).ok
 
 
 @pytest.mark.parametrize("extension", ["stl", "ply", "obj"])

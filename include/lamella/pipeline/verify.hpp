@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/open_gaps.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/slicing/slice.hpp"
 
@@ -20,10 +21,9 @@ struct VerifyOptions {
     std::optional<Mesh> mesh = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
-    /// How far the format may have moved a coordinate of a point or of the cut (half a unit). It scales the
-    /// area tolerance with the layer's perimeter; and rings so thin that it can turn them over are not held
-    /// to an orientation.
-    double quantum_mm = 0;
+    /// How the format rounds coordinates and heights. The area tolerance grows with it and the layer's
+    /// perimeter; and rings so thin that it can turn them over are not held to an orientation.
+    Rounding rounding = {};
 };
 
 struct Verification {
@@ -51,7 +51,7 @@ struct Verification {
     /// Largest difference between a layer's area and the mesh's section, layers with open chains left out;
     /// with VerifyOptions::mesh.
     std::optional<double> max_area_error_mm2;
-    /// Whether each area lies within its tolerance: quantum and rounding errors, times the perimeter.
+    /// Whether each area lies within its tolerance: the rounding of the format and of sums, times the perimeter.
     bool areas_agree = true;
     /// One line for each kind of finding, with the first layer and place where it occurs.
     std::vector<std::string> findings;

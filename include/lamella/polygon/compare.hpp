@@ -1,9 +1,15 @@
 #pragma once
 
-// How far two layers are from being the same.
+// How far layers, and stacks of them, are from being the same.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/rounding.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace lamella {
 
@@ -24,5 +30,33 @@ struct LayerDifference {
 
 /// Expected O(n log n) for n points in both layers; O(n) where they are the same.
 [[nodiscard]] LayerDifference compare(const Layer& first, const Layer& second);
+
+/// Layers in ascending z, and how the file that they come from rounds.
+struct RoundedLayers {
+    std::span<const Layer> layers;
+    Rounding rounding = {};
+};
+
+/// Two layers that belong together, or one that the other stack has no partner for.
+struct ComparedPlane {
+    double z = 0; ///< of the cut
+    /// Their numbers in the stacks; none where that stack has no contours there.
+    std::optional<std::size_t> first;
+    std::optional<std::size_t> second;
+    LayerDifference difference = {}; ///< where there are both
+    bool agree = false;
+};
+
+struct StackComparison {
+    double tolerance_mm = 0;
+    std::vector<ComparedPlane> planes; ///< in ascending z
+};
+
+/// Compares two stacks plane by plane. Layers belong together when their cuts are no further apart than the
+/// rounding of both formats explains, and neither is nearer to another layer; one without contours needs no
+/// partner. `tolerance_mm` is for LayerDifference::within; unless given, it is what the rounding of both
+/// formats explains.
+[[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
+                                      std::optional<double> tolerance_mm = {});
 
 } // namespace lamella

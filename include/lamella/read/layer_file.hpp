@@ -3,6 +3,7 @@
 // Reading slice files back.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 
 #include <cstddef>
@@ -29,8 +30,7 @@ struct LayerFile {
     std::string path;
     std::string format;  ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json" or "npz"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
-    /// The step to which the format rounds coordinates and heights, mm; 0 where it keeps them as they are.
-    double resolution_mm = 0;
+    Rounding rounding;                 ///< of coordinates and heights, by the format
     std::vector<LayerPart> parts;      ///< at least one; all have the same planes
     std::vector<std::string> warnings; ///< one line each: what was odd and what was made of it
 

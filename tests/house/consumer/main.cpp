@@ -12,7 +12,7 @@ int main() {
                               {.box = lamella::bounding_box(box), .layers = layers.size()});
         const lamella::LayerFile file = lamella::read_layers(path);
         const lamella::Verification check =
-            lamella::verify(file.merged(), {.mesh = box, .quantum_mm = 0.001});
+            lamella::verify(file.merged(), {.mesh = box, .rounding = file.rounding});
         std::cout << path << ": " << check.layers << " layers, " << check.volume_mm3 << " mm3\n";
         if (!check.ok() || check.layers != 30 || check.volume_mm3 < 599.9 || check.volume_mm3 > 600.1)
             return 1;

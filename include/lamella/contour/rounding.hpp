@@ -1,0 +1,35 @@
+#pragma once
+
+// How slice formats round numbers.
+
+#include "lamella/contour/layer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lamella {
+
+/// How a format rounds coordinates and heights. By default it does not.
+struct Rounding {
+    double step_mm = 0;            ///< to multiples of this; 0: to none
+    bool single_precision = false; ///< to 24 significant bits
+
+    /// The largest distance of neighbouring numbers that the format can tell apart, up to this magnitude: no
+    /// number is moved by more than half of it.
+    [[nodiscard]] double step_at(double magnitude_mm) const noexcept {
+        constexpr double last_place = 0x1p-23;
+        return std::max(step_mm, single_precision ? std::abs(magnitude_mm) * last_place : 0.0);
+    }
+    friend bool operator==(const Rounding&, const Rounding&) = default;
+};
+
+/// How far a format may have moved the cut of a layer. Where it keeps the slab only, the cut was computed from
+/// its ends.
+[[nodiscard]] inline double moved_cut(const Layer& layer, const Rounding& rounding) noexcept {
+    return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
+}
+
+/// What text formats round to that have no unit of their own.
+inline constexpr Rounding text_rounding{.step_mm = 0.001};
+
+} // namespace lamella
