@@ -82,6 +82,7 @@ void check_size(const std::string& path, const Mesh& mesh, const JobMemory& memo
 
 Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution)
     : memory_(job), processes_(processes), among_(&alone()), reading_{.strict = job.strict,
+                                                                      .supports = job.supports,
                                                                       .max_triangles = job.max_triangles,
                                                                       .max_memory = job.max_memory},
       measure_volume_(job.layer_statistics) {

@@ -117,7 +117,7 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
     check_heights(plate);
     const Box3& box = plate.box;
     if (!job.z.empty())
-        return selected(job, plan_listed(job.z, job.layers.slice_at), box);
+        return selected(job, plan_listed(job.z, job.layers.slice_at, job.layers.layer_height), box);
     if (job.adaptive)
         return selected(job, plan_adaptive(joined(plate, execution), *job.adaptive, execution), box);
     if (!job.heights.empty())
@@ -376,8 +376,13 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     if (!job.output.empty())
         static_cast<void>(layer_format(job.format, job.output));
     if (!job.z.empty())
-        static_cast<void>(plan_listed(job.z, job.layers.slice_at));
+<<<<<<< HEAD
+        static_cast<void>(plan_listed(job.z, job.layers.slice_at, job.layers.layer_height));
     result.engine = engine.name;
+=======
+        plan = plan_listed(job.z, job.layers.slice_at, job.layers.layer_height);
+    result.engine = with.name;
+>>>>>>> 7ed9ed7 (Give the layer of a single listed cut a thickness)
     result.threads = thread_count(execution);
 
     const Stopwatch reading;

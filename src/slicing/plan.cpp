@@ -153,7 +153,8 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
     return plan;
 }
 
-Plan plan_listed(const std::vector<double>& z, SliceAt slice_at) {
+Plan plan_listed(const std::vector<double>& z, SliceAt slice_at, double single_height) {
+    require_height(single_height, "the layer height");
     if (z.empty())
         throw Error(ErrorKind::usage, "the list of z holds no number; it must name at least one cut");
     if (z.size() > max_layers)
@@ -179,8 +180,8 @@ Plan plan_listed(const std::vector<double>& z, SliceAt slice_at) {
     plan.rule = rule_for(slice_at);
     plan.layers.resize(z.size());
     const std::size_t n = z.size();
-    const double first_gap = n > 1 ? z[1] - z[0] : 0.0;
-    const double last_gap = n > 1 ? z[n - 1] - z[n - 2] : 0.0;
+    const double first_gap = n > 1 ? z[1] - z[0] : single_height;
+    const double last_gap = n > 1 ? z[n - 1] - z[n - 2] : single_height;
     for (std::size_t i = 0; i < n; ++i) {
         const double below = i > 0 ? z[i] - z[i - 1] : first_gap;
         const double above = i + 1 < n ? z[i + 1] - z[i] : last_gap;

@@ -183,6 +183,35 @@ class Slice(ProgramTest):
         layers = self.stats("box.stl", "--z-list", "z.txt", "--layers", "1:2")["layers"]
         self.assertEqual([(layer["index"], layer["z"]) for layer in layers], [(1, 1.5)])
 
+    def test_a_single_height_makes_a_layer_with_a_thickness_in_every_format(self):
+        self.succeed("make", "sphere", "-o", "ball.stl")
+        self.write("z.txt", "3\n")
+        for at, bottom in {"bottom": 3, "middle": 2.95, "top": 2.9}.items():
+            for name in ["ball.cli", "ball.slc", "ball.3mf", "ball.svg", "ball.json"]:
+                with self.subTest(name, at=at):
+                    self.succeed("slice", "ball.stl", "-o", name, "--z-list", "z.txt", "--slice-at", at)
+                    self.succeed("verify", name, "--mesh", "ball.stl", "--slice-at", at)
+                    self.succeed("convert", name, "read.json")
+                    (layer,) = json.loads(self.bytes_of("read.json"))["layers"]
+                    self.assertAlmostEqual(layer["bottom"], bottom, delta=1e-6)
+                    self.assertAlmostEqual(layer["top"], bottom + 0.1, delta=1e-6)
+
+    def test_what_single_precision_loses_far_from_the_origin_is_told(self):
+        self.succeed("make", "sphere", "-o", "ball.stl")
+        far = ["slice", "ball.stl", "--layer-height", "1", "--translate", "1e7,0,0"]
+        for name in ["ball.cli", "ball.slc"]:
+            with self.subTest(name):
+                told = self.succeed(*far, "-o", name).err
+                self.assertRegex(told, r"warning: ball\.\w+: rounding moved points by up to 0\.\d+ mm, merged \d+ of")
+                self.fail_with(4, "rounding moved points", *far, "-o", "no" + name, "--strict")
+                self.assertEqual(self.succeed("slice", "ball.stl", "-o", name, "--strict").err, "")
+        self.succeed(*far, "-o", "ball.svg", "--strict")
+
+    def test_layers_that_single_precision_cannot_tell_apart_are_refused(self):
+        self.succeed("make", "sphere", "-o", "ball.stl")
+        self.fail_with(2, "so thin that its top", "slice", "ball.stl", "-o", "x.cli", "--layer-height", "0.1",
+                       "--translate", "0,0,1e7")
+
     def test_placement_is_unit_scale_rotation_translation(self):
         self.box(size="1,2,3")
         stats = self.stats("box.stl", "--unit", "cm", "--scale", "1,1,2", "--rotate", "90,0,0", "--translate",

@@ -95,6 +95,11 @@ def test_heights_are_absolute_and_offsets_are_not():
     assert lamella.slice(part, offsets=np.array([1.0, 2.25])).z.tolist() == [6.0, 7.25]
 
 
+def test_a_single_height_makes_a_layer_with_a_thickness():
+    (layer,) = lamella.slice(box_arrays(), z=[3.0], at="bottom")
+    assert (layer.bottom, layer.z, layer.top) == (3.0, 3.0, 3.1)
+
+
 def test_directions_and_transforms_keep_their_matrix():
     part = nested_boxes()
     transform = np.array([[1, 0, 0, 5], [0, 2, 0, 0], [0, 0, 3, -1], [0, 0, 0, 1.0]])

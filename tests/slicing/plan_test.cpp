@@ -373,12 +373,17 @@ TEST(PlanListed, ReachesToTheNextCutWhenCutAtTheBottomAndToTheOneBeforeWhenCutAt
     EXPECT_EQ(top.layers[2].top, 3.0);
 }
 
-TEST(PlanListed, TakesASingleCut) {
-    const Plan plan = plan_listed({4.25});
-    ASSERT_EQ(plan.layers.size(), 1U);
-    EXPECT_EQ(plan.layers[0].z, 4.25);
-    EXPECT_EQ(plan.layers[0].bottom, 4.25);
-    EXPECT_EQ(plan.layers[0].top, 4.25);
+TEST(PlanListed, MakesOfASingleCutALayerOfTheHeightGiven) {
+    for (const SliceAt at : everywhere) {
+        const Plan plan = plan_listed({4.25}, at, 0.5);
+        ASSERT_EQ(plan.layers.size(), 1U);
+        EXPECT_EQ(plan.layers[0].z, 4.25);
+        EXPECT_EQ(plan.layers[0].bottom, at == SliceAt::bottom ? 4.25 : at == SliceAt::top ? 3.75 : 4.0);
+        EXPECT_EQ(plan.layers[0].top, plan.layers[0].bottom + 0.5);
+    }
+    const Plan usual = plan_listed({4.25}, SliceAt::bottom);
+    EXPECT_EQ(usual.layers[0].top, 4.25 + UniformLayers{}.layer_height);
+    expect_error(ErrorKind::usage, {"layer height"}, [] { (void)plan_listed({1}, SliceAt::middle, 0); });
 }
 
 TEST(PlanListed, TakesNeighboursAsNearAsDoublesGo) {

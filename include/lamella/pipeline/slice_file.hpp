@@ -65,7 +65,7 @@ struct FileJob {
     /// Layers of one height, stacked from the bottom of the plate's parts.
     UniformLayers layers;
     /// Where not empty: cuts at exactly these z instead. Of `layers`, slice_at and the two ranges still
-    /// count.
+    /// count; and layer_height is how thick the layer of a single cut is (plan_listed).
     std::vector<double> z;
 
     /// Where not empty: layers of these heights, of `layers.layer_height` elsewhere; see plan_by_ranges.

@@ -56,8 +56,11 @@ struct UniformLayers {
 
 /// Cuts at exactly these z. Layer i is cut at z[i]; its slab reaches half-way to its neighbours (for slice_at
 /// middle), from the cut to the next cut (bottom), or from the previous cut to this one (top); the outermost
-/// slabs continue with the neighbouring thickness. Throws Error{usage} when the list is empty, not strictly
-/// ascending or not finite, naming the first offender, or when it reaches further than a double can say.
-[[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle);
+/// slabs continue with the neighbouring thickness. A single cut has no neighbours: its slab is
+/// `single_height` thick. Throws Error{usage} when the list is empty, not strictly
+/// ascending or not finite, naming the first offender, when it reaches further than a double can say, or when
+/// the height is not a positive finite number.
+[[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle,
+                               double single_height = UniformLayers{}.layer_height);
 
 } // namespace lamella
