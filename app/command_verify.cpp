@@ -91,13 +91,12 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
-    VerifyOptions options{.mesh = {}, .rounding = file.rounding};
+    VerifyOptions options{.mesh = {}, .rule = file.rule, .rounding = file.rounding};
     if (!arguments.slice_at.empty()) {
         const SliceAt at = slice_at_of(arguments.slice_at);
         for (LayerPart& part : file.parts)
             place_cuts(part.layers, at);
-        if (at == SliceAt::top)
-            options.rule = PlaneRule::section_below;
+        options.rule = at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
     }
     Mesh mesh;
     if (!arguments.mesh.empty()) {

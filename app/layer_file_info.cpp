@@ -33,7 +33,8 @@ LayerFileInfo info_of(const LayerFile& file) {
     const LayerStack& layers = file.parts.front().layers;
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
-    LayerFileInfo info{.box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}};
+    LayerFileInfo info{
+        .box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}, .rule = file.rule};
     for (const LayerPart& part : file.parts)
         info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label, box_of(part.layers)});
     info.box = box_of(info, layers);

@@ -132,10 +132,11 @@ def write(
         _write_mesh(path, what)
         return
     thread_count(threads)
-    parts, planes, bottom = _planes(what)
+    parts, planes, bottom, rule = _planes(what)
     pixel = (pixel_mm, pixel_mm) if isinstance(pixel_mm, (int, float)) else pixel_mm
     writer = _lamella.open_writer(
-        os.fsencode(path), format, parts, _length(what), bottom, units_mm, short_form, pixel, pixels, display_mm
+        os.fsencode(path), format, parts, _length(what), bottom, rule, units_mm, short_form, pixel, pixels,
+        display_mm,
     )
     done, total = 0, _length(what)
     for batch in _batches(planes):
@@ -175,10 +176,11 @@ def _length(what: Layers) -> int:
     return len(what) if isinstance(what, Stack) else len(what[0])
 
 
-def _planes(what: Layers) -> Tuple[List[Tuple[str, npt.NDArray[np.float64]]], Iterator[List[Layer]], float]:
-    """The label and the bounds of each part, the layers plane by plane, and where the first one begins."""
+def _planes(what: Layers) -> Tuple[List[Tuple[str, npt.NDArray[np.float64]]], Iterator[List[Layer]], float, str]:
+    """The label and the bounds of each part, the layers plane by plane, where the first one begins, and the rule of the
+    plane."""
     if isinstance(what, LayerStream):
-        return [(what.label, what.bounds)], ([layer] for layer in what), what._bottom
+        return [(what.label, what.bounds)], ([layer] for layer in what), what._bottom, what.rule
     parts = what.parts if isinstance(what, Stack) else list(what)
     if not parts or not all(isinstance(part, Stack) for part in parts):
         raise TypeError("what is written is a lamella.Mesh, a lamella.Stack, a list of these, or a stream of layers")
@@ -186,9 +188,11 @@ def _planes(what: Layers) -> Tuple[List[Tuple[str, npt.NDArray[np.float64]]], It
         raise UsageError("there are no layers to write")
     if any(len(part) != len(parts[0]) or (part.z != parts[0].z).any() for part in parts):
         raise UsageError("the parts of a file must have the same planes: slice them at the same z")
+    if any(part.rule != parts[0].rule for part in parts):
+        raise UsageError("the parts of a file must be cut by the same rule: slice them with the same `at`")
     names = [(part.label or "part", part.bounds) for part in parts]
     planes = (list(plane) for plane in zip(*parts))
-    return names, planes, parts[0][0].bottom
+    return names, planes, parts[0][0].bottom, parts[0].rule
 
 
 def convert(

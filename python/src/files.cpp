@@ -40,6 +40,7 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
     stack->path = file.path;
     stack->format = file.format;
     stack->rounding = file.rounding;
+    stack->rule = file.rule;
     return stack;
 }
 
@@ -104,11 +105,12 @@ using PartNames = std::vector<std::pair<std::string, Bounds>>;
 
 std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::string& format,
                                          const PartNames& parts, std::uint64_t layers, double bottom,
-                                         std::optional<double> units_mm, bool short_form,
+                                         const std::string& rule, std::optional<double> units_mm,
+                                         bool short_form,
                                          const std::optional<std::pair<double, double>>& pixel_mm,
                                          const std::optional<std::pair<std::uint32_t, std::uint32_t>>& pixels,
                                          const std::optional<std::pair<double, double>>& display_mm) {
-    LayerFileInfo info{.box = {}, .layers = layers, .bottom = bottom, .parts = {}};
+    LayerFileInfo info{.box = {}, .layers = layers, .bottom = bottom, .parts = {}, .rule = rule_named(rule)};
     for (const auto& [label, bounds] : parts) {
         info.parts.push_back({label, box_of(bounds)});
         info.box.add(info.parts.back().box);
@@ -147,15 +149,15 @@ void write_mesh(const std::string& path, const std::string& extension, const Mes
 py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, unsigned threads,
                   const py::object& progress) {
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
-        VerifyOptions options{.mesh = {}, .rounding = stack.rounding};
+        VerifyOptions options{.mesh = {}, .rule = stack.rule, .rounding = stack.rounding};
         Mesh sliced;
         if (mesh) {
             sliced = mesh->mesh();
             options.mesh = sliced;
         }
         LayerStack layers = plain(stack);
-        if (at == "top")
-            options.rule = PlaneRule::section_below;
+        if (!at.empty())
+            options.rule = at == "top" ? PlaneRule::section_below : PlaneRule::section_above;
         for (Layer& layer : layers) {
             if (at == "bottom")
                 layer.z = layer.bottom;

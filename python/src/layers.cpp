@@ -185,7 +185,7 @@ py::tuple layer_state(const py::object& self) {
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
-    if (state.size() != 9)
+    if (state.size() != 10)
         throw Error(ErrorKind::input, "this is no pickled layer");
     const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
                          state[3].cast<double>()};
@@ -294,7 +294,7 @@ StackPointer stack_of_layers(std::vector<LayerPointer> layers, const std::string
 py::tuple pickled(const Stack& stack) {
     return py::make_tuple(stack.layers, stack.label, bounds_of(stack.box), matrix_of(stack.matrix),
                           py::bytes(stack.path), stack.format, stack.rounding.step_mm,
-                          stack.rounding.single_precision, stack.parts);
+                          stack.rounding.single_precision, plane_rule_name(stack.rule), stack.parts);
 }
 
 StackPointer unpickled(const py::tuple& state) {
@@ -307,7 +307,8 @@ StackPointer unpickled(const py::tuple& state) {
     stack->path = state[4].cast<std::string>();
     stack->format = state[5].cast<std::string>();
     stack->rounding = {state[6].cast<double>(), state[7].cast<bool>()};
-    stack->parts = state[8].cast<std::vector<StackPointer>>();
+    stack->rule = rule_named(state[8].cast<std::string>());
+    stack->parts = state[9].cast<std::vector<StackPointer>>();
     return stack;
 }
 
@@ -515,8 +516,14 @@ void bind_stack(py::module_& module) {
             "The format of that file, such as \"cli\".")
         .def_property_readonly(
             "resolution", [](const Stack& self) { return resolution_of(self); },
-            "The largest step to which that file rounds one of these numbers, in millimetres; 0 where it rounds\n"
+            "The largest step to which that file rounds one of these numbers, in millimetres; 0 where it "
+            "rounds\n"
             "none.")
+        .def_property_readonly(
+            "rule", [](const Stack& self) { return plane_rule_name(self.rule); },
+            "Whether layers are sections of what is just above their plane (\"section_above\"), or, cut at "
+            "the\n"
+            "top, of what is just below it (\"section_below\").")
         .def("__len__", [](const Stack& self) { return self.layers.size(); })
         .def("__getitem__",
              [](const Stack& self, py::ssize_t index) {

@@ -1,6 +1,7 @@
 #include "shared_layer.hpp"
 
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
 
 namespace lamella::python {
 
@@ -50,6 +51,14 @@ std::vector<LayerPointer> shared(LayerStack layers) {
     for (Layer& layer : layers)
         pointers.push_back(std::make_shared<SharedLayer>(std::move(layer)));
     return pointers;
+}
+
+PlaneRule rule_named(const std::string& name) {
+    const std::optional<PlaneRule> rule = plane_rule(name);
+    if (!rule)
+        throw Error(ErrorKind::usage,
+                    "rule: \"" + name + "\" is neither \"section_above\" nor \"section_below\"");
+    return *rule;
 }
 
 LayerStack plain(const Stack& stack) {

@@ -2,6 +2,8 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/plane_rule.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/polygon/nesting.hpp"
@@ -53,6 +55,7 @@ struct Stack {
     std::string path = {};
     std::string format = {};
     Rounding rounding = {}; ///< of that file
+    PlaneRule rule = PlaneRule::section_above;
     /// The parts of a file that holds several.
     std::vector<std::shared_ptr<Stack>> parts = {};
 };
@@ -62,6 +65,8 @@ struct Stack {
 [[nodiscard]] Box3 box_of(const std::vector<LayerPointer>& layers);
 
 [[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers);
+/// Throws Error{usage} for no rule's name.
+[[nodiscard]] PlaneRule rule_named(const std::string& name);
 /// The layers themselves: their points stay where they are.
 [[nodiscard]] LayerStack plain(const Stack& stack);
 

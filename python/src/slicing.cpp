@@ -73,6 +73,7 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const Plan& plan, co
     run(threads, progress, [&](const Execution& execution) {
         stack->layers = shared(slice(mesh->mesh(), plan, execution, nullptr, chosen));
     });
+    stack->rule = plan.rule;
     stack->label = mesh->origin().label;
     stack->box = mesh->box();
     stack->matrix = mesh->origin().matrix;
@@ -97,6 +98,9 @@ void bind_stream(py::module_& module) {
         .def_property_readonly(
             "label", [](const LayerStream& self) { return path_text(self.mesh().origin().label); },
             "What the part is called in slice files.")
+        .def_property_readonly(
+            "rule", [](const LayerStream& self) { return plane_rule_name(self.plan().rule); },
+            "The rule of the plane, as Stack.rule.")
         .def_property_readonly("_bottom",
                                [](const LayerStream& self) { return self.plan().layers.front().bottom; })
         .def("close", &LayerStream::close, "Stops slicing. To be called more than once does no harm.")

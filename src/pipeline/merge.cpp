@@ -24,6 +24,7 @@ struct ShardFile {
     std::string path;
     std::string format;
     double units_mm = 0;
+    PlaneRule rule = PlaneRule::section_above;
     std::vector<std::string> labels;
     std::vector<Box3> boxes; ///< of the points of each part
     std::uint64_t layers = 0;
@@ -43,6 +44,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
     ShardFile shard{.path = path,
                     .format = file.format,
                     .units_mm = file.units_mm,
+                    .rule = file.rule,
                     .labels = {},
                     .boxes = {},
                     .layers = layers.size(),
@@ -68,6 +70,9 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
         refuse(fmt::format("one is {}, the other {}; all must be of one format", below.format, above.format));
     if (below.units_mm != above.units_mm)
         refuse(fmt::format("have units of {:g} and of {:g} mm", below.units_mm, above.units_mm));
+    if (below.rule != above.rule)
+        refuse(fmt::format("one is cut by {}, the other by {}", plane_rule_name(below.rule),
+                           plane_rule_name(above.rule)));
     if (below.labels != above.labels)
         refuse(fmt::format("hold different parts ({} and {})", fmt::join(below.labels, ", "),
                            fmt::join(above.labels, ", ")));
@@ -201,7 +206,11 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
 void write_anew(const std::vector<ShardFile>& shards, const std::string& output, const LayerFormat& format,
                 const LayerWriteOptions& options, const LayerReadOptions& reading, MergeResult& result,
                 const Execution& execution) {
-    LayerFileInfo info{.box = {}, .layers = result.layers, .bottom = result.bottom, .parts = {}};
+    LayerFileInfo info{.box = {},
+                       .layers = result.layers,
+                       .bottom = result.bottom,
+                       .parts = {},
+                       .rule = shards.front().rule};
     for (std::size_t part = 0; part < shards.front().labels.size(); ++part) {
         const std::string& label = shards.front().labels[part];
         PartInfo& of_part = info.parts.emplace_back();

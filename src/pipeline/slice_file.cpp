@@ -147,6 +147,7 @@ LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
         .box = plate.box, .layers = plan.layers.size(), .bottom = plan.layers.front().bottom, .parts = {}};
     for (const PlatePart& part : plate.parts)
         info.parts.push_back({part.label, part.box});
+    info.rule = plan.rule;
     return info;
 }
 

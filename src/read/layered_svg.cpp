@@ -96,6 +96,14 @@ class SvgReader {
                 origin_.x = numbers.next();
                 origin_.y = numbers.next();
             }
+            if (const std::string_view name = attributes.find("data-lamella-rule"); name.data() != nullptr) {
+                const std::optional<PlaneRule> rule = plane_rule(name);
+                if (!rule)
+                    fail(line, fmt::format("found the rule '{}'; planes are cut by section_above or "
+                                           "section_below",
+                                           printable(name, 40)));
+                file_.rule = *rule;
+            }
         } else if (depth_ == 2 && local(element) == "g") {
             start_layer(attributes, line);
         } else if (in_layer_) {

@@ -35,6 +35,8 @@ class LayersJsonReader {
                 check_version();
             else if (key == "parts")
                 read_parts();
+            else if (key == "rule")
+                read_rule();
             else if (key == "layers")
                 read_layers();
             else
@@ -62,6 +64,15 @@ class LayersJsonReader {
         const double version = text_.number();
         if (version != 1)
             text_.fail(fmt::format("version {}", version), "version 1 is read");
+    }
+
+    void read_rule() {
+        const std::string name = text_.string();
+        const std::optional<PlaneRule> rule = plane_rule(name);
+        if (!rule)
+            text_.fail(fmt::format("the rule '{}'", name.substr(0, 40)),
+                       "planes are cut by section_above or section_below");
+        file_.rule = *rule;
     }
 
     // In front of the layers.

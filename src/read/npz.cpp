@@ -239,6 +239,7 @@ class NpzReader {
         for (std::uint64_t i = 0; i < labels.size(); ++i)
             file_.parts.push_back({labels.text(i), {}});
         check_part_planes(file_, z.size(), zip_bytes());
+        read_rule();
 
         std::vector<RawLayer> raw;
         limits_.make_room(raw, z.size(), [] { return std::string_view("array 'z'"); });
@@ -310,6 +311,19 @@ class NpzReader {
                 dropped_.note(place);
             begin = end;
         }
+    }
+
+    void read_rule() const {
+        if (zip_.find("rule.npy") == nullptr)
+            return;
+        const Array array = this->array("rule");
+        array.expect_size(1, "rule");
+        const std::string name = array.text(0);
+        const std::optional<PlaneRule> rule = plane_rule(name);
+        if (!rule)
+            array.fail(fmt::format("'{}'", printable(name, 40)),
+                       "planes are cut by section_above or section_below");
+        file_.rule = *rule;
     }
 
     void read_hatches(std::vector<RawLayer>& raw) const {

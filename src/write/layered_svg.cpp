@@ -76,9 +76,12 @@ class LayeredSvgWriter final : public SequentialWriter {
                            "xmlns:svg=\"http://www.w3.org/2000/svg\" "
                            "xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
                            "xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\" "
-                           "data-lamella-origin=\"{} {}\">\n",
+                           "data-lamella-origin=\"{} {}\"{}>\n",
                            decimal_text(box.max.x - box.min.x, 6, 0),
-                           decimal_text(box.max.y - box.min.y, 6, 0), mm(origin.x), mm(origin.y));
+                           decimal_text(box.max.y - box.min.y, 6, 0), mm(origin.x), mm(origin.y),
+                           info.rule == PlaneRule::section_above
+                               ? std::string()
+                               : fmt::format(" data-lamella-rule=\"{}\"", plane_rule_name(info.rule)));
     }
 
     std::string layer_head(const Place& place) override {

@@ -46,6 +46,8 @@ class LayersJsonWriter final : public SequentialWriter {
             text += fmt::format("{{\"label\":{}}},", json_quoted(part.label));
         }
         text.back() = ']';
+        if (info.rule != PlaneRule::section_above)
+            text += fmt::format(",\"rule\":\"{}\"", plane_rule_name(info.rule));
         return text + ",\"layers\":[";
     }
 

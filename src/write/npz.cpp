@@ -63,7 +63,7 @@ std::u32string characters(std::string_view text) {
 class NpzWriter final : public LayerWriter {
   public:
     NpzWriter(const std::string& path, const LayerFileInfo& info)
-        : labels_(info.parts), zip_(path, Overwriting::yes), order_(info) {
+        : labels_(info.parts), rule_(info.rule), zip_(path, Overwriting::yes), order_(info) {
         zip_.begin_headed("points.npy", head_size);
     }
 
@@ -109,6 +109,8 @@ class NpzWriter final : public LayerWriter {
         add_plane_numbers<double>("bottom", "<f8", [](const Plane& p) { return p.bottom; });
         add_plane_numbers<double>("top", "<f8", [](const Plane& p) { return p.top; });
         add_labels();
+        if (rule_ != PlaneRule::section_above)
+            add_texts("rule", {characters(plane_rule_name(rule_))});
         add_hatches();
         zip_.finish();
     }
@@ -196,17 +198,21 @@ class NpzWriter final : public LayerWriter {
 
     void add_labels() {
         std::vector<std::u32string> labels;
-        std::size_t longest = 1;
         constexpr std::size_t most_bytes = 4096;
-        for (const PartInfo& part : labels_) {
+        for (const PartInfo& part : labels_)
             labels.push_back(characters(printable(part.label, most_bytes)));
-            longest = std::max(longest, labels.back().size());
-        }
+        add_texts("labels", std::move(labels));
+    }
+
+    void add_texts(std::string_view name, std::vector<std::u32string> texts) {
+        std::size_t longest = 1;
+        for (const std::u32string& text : texts)
+            longest = std::max(longest, text.size());
         const std::string type = fmt::format("<U{}", longest);
-        Array array(zip_, "labels", type, fmt::format("{},", labels.size()), 0);
-        for (std::u32string& label : labels) {
-            label.resize(longest, U'\0');
-            array.add(bytes_of(std::span<const char32_t>(label)));
+        Array array(zip_, name, type, fmt::format("{},", texts.size()), 0);
+        for (std::u32string& text : texts) {
+            text.resize(longest, U'\0');
+            array.add(bytes_of(std::span<const char32_t>(text)));
         }
         array.end();
     }
@@ -239,6 +245,7 @@ class NpzWriter final : public LayerWriter {
     }
 
     std::vector<PartInfo> labels_;
+    PlaneRule rule_;
     ZipWriter zip_;
     LayerOrder order_;
     std::vector<Plane> planes_;

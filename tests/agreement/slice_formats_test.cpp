@@ -119,12 +119,14 @@ Layer kept(const Layer& layer, const Resolution& of) {
 }
 
 std::string written(const char* format, const std::vector<LayerStack>& parts,
-                    std::vector<std::string>* warnings = nullptr) {
+                    std::vector<std::string>* warnings = nullptr, PlaneRule rule = PlaneRule::section_above) {
     const TemporaryFolder folder;
+    LayerFileInfo info = info_of(parts);
+    info.rule = rule;
     LayerWriteOptions options;
     options.page.viewer = "<!--lamella-data-->";
     std::vector<std::string> told =
-        write_layers(folder.file("out"), layer_format(format, ""), parts, info_of(parts), options);
+        write_layers(folder.file("out"), layer_format(format, ""), parts, info, options);
     if (warnings != nullptr)
         *warnings = std::move(told);
     return file_bytes(folder.file("out"));

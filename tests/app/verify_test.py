@@ -47,6 +47,16 @@ class Verify(ProgramTest):
                 self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", at)
         self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", "bottom", code=4)
 
+    def test_formats_that_keep_cuts_keep_the_rule_of_the_plane(self):
+        self.succeed("make", "rook", "-o", "rook.stl")
+        for name, other in {"rook.json": "other.npz", "rook.npz": "other.json", "rook.svg": "other.svg"}.items():
+            for at in ["bottom", "middle", "top"]:
+                with self.subTest(name, at=at):
+                    self.succeed("slice", "rook.stl", "-o", name, "--slice-at", at, "--layer-height", "1")
+                    self.verify(name, "--mesh", "rook.stl")
+                    self.succeed("convert", name, other)
+                    self.verify(other, "--mesh", "rook.stl")
+
     def test_single_precision_of_a_format_is_granted(self):
         self.succeed("make", "rook", "-o", "rook.stl")
         self.succeed("slice", "rook.stl", "-o", "rook.slc", "--layer-height", "1")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,19 @@ def test_slice_files_read_back(rook, tmp_path, name):
         assert back == stack and back.resolution == 0 and comparison.same == len(stack)
     assert np.allclose(back.area, stack.area, rtol=1e-3)
     assert lamella.compare(stack, back) and lamella.verify(back, rook).ok
+
+
+@pytest.mark.parametrize("name", ["layers.json", "layers.npz", "layers.svg"])
+@pytest.mark.parametrize("at", ["bottom", "middle", "top"])
+def test_the_rule_of_the_plane_is_kept_with_the_cuts(rook, tmp_path, name, at):
+    stack = lamella.slice(rook, 0.5, at=at)
+    assert stack.rule == ("section_below" if at == "top" else "section_above")
+    assert lamella.verify(stack, rook).ok
+    for layers in stack, lamella.iter_layers(rook, 0.5, at=at):
+        lamella.write(tmp_path / name, layers)
+        back = lamella.read(tmp_path / name)
+        assert back.rule == stack.rule
+        assert lamella.verify(pickle.loads(pickle.dumps(back)), rook).ok
 
 
 @pytest.mark.parametrize("extension", ["stl", "ply", "obj"])

@@ -48,6 +48,7 @@ TEST(ReadLayersJson, RefusesWhatItDoesNotUnderstand) {
     const auto expect = [](const std::string& text, const char* part) {
         EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
     };
+    expect(R"({"format": "lamella layers", "rule": "above", "parts": [{}], "layers": []})", "'above'");
     expect("{}", "format");
     expect("{\"format\": \"geojson\"}", "'geojson'");
     expect("{\"format\": \"lamella layers\", \"version\": 2}", "version 2");

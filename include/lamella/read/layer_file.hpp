@@ -3,6 +3,7 @@
 // Reading slice files back.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/plane_rule.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 
@@ -30,7 +31,9 @@ struct LayerFile {
     std::string path;
     std::string format;  ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json" or "npz"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
-    Rounding rounding;                 ///< of coordinates and heights, by the format
+    Rounding rounding;   ///< of coordinates and heights, by the format
+    /// By which the layers were cut, where the format says it; else the usual one.
+    PlaneRule rule = PlaneRule::section_above;
     std::vector<LayerPart> parts;      ///< at least one; all have the same planes
     std::vector<std::string> warnings; ///< one line each: what was odd and what was made of it
 

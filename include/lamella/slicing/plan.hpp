@@ -1,6 +1,8 @@
 #pragma once
 
-// Plans: where a mesh is cut. And the one rule of what "above a plane" means.
+// Plans: where a mesh is cut.
+
+#include "lamella/contour/plane_rule.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,13 +14,6 @@ namespace lamella {
 
 /// Where within its slab of material a layer is cut.
 enum class SliceAt { bottom, middle, top };
-
-/// Which side a vertex that lies exactly on a plane belongs to; see docs/conventions.md, "The rule of the
-/// plane". Nothing ever lies on a plane:
-///                          v.z < z   v.z == z   v.z > z
-///     section_above         below     below      above     the layer is the section of what is just above z
-///     section_below         below     above      above     the layer is the section of what is just below z
-enum class PlaneRule { section_above, section_below };
 
 struct PlannedLayer {
     std::uint64_t index = 0; ///< in the whole plan, kept when only a part of it is sliced

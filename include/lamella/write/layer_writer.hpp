@@ -3,6 +3,8 @@
 // Writing slice files: Common Layer Interface, SVG, pictures.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/plane_rule.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/write/picture_options.hpp"
@@ -39,6 +41,8 @@ struct LayerFileInfo {
     std::uint64_t layers = 0;        ///< how many planes will follow
     double bottom = 0;               ///< of the first layer
     std::vector<PartInfo> parts{{}}; ///< at least one
+    /// By which all layers were cut; formats that keep cuts keep it, too.
+    PlaneRule rule = PlaneRule::section_above;
     /// Where set: only this piece is written, not to a file. It must outlive the writer.
     const LayerFilePiece* piece = nullptr;
 };
