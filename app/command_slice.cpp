@@ -399,8 +399,7 @@ std::vector<std::string> all_warnings(const FileJob& job, const FileResult& resu
 std::string_view batch_extension(const SliceArguments& arguments) {
     if (arguments.output.empty() || has_placeholder(arguments.output))
         return {};
-    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
-    return format.name == "cli-ascii" ? ".cli" : format.extension;
+    return layer_format(arguments.writing.format, arguments.output).file_extension;
 }
 
 int slice_batch(SliceArguments& arguments, const Context& context) {

@@ -258,11 +258,11 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
 }
 
 LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) const {
-    if (units_mm && !with.name.starts_with("cli"))
+    if (units_mm && !with.units)
         throw Error(
             ErrorKind::usage,
             fmt::format("--units-mm goes with the formats cli and cli-ascii, not with {}", with.name));
-    if (short_form && with.name != "cli")
+    if (short_form && !with.short_form)
         throw Error(ErrorKind::usage,
                     fmt::format("--short goes with the format cli, not with {}", with.name));
     LayerWriteOptions options;

@@ -16,9 +16,6 @@
 namespace lamella::app {
 namespace {
 
-constexpr std::array picture_formats{"png", "png-zip", "sl1", "sl1s"};
-constexpr std::array job_formats{"sl1", "sl1s"};
-
 /// "F" or "X,Y".
 AlongXY<double> parse_lengths(const std::string& text) {
     const std::vector<double> numbers = parse_numbers(text);
@@ -118,21 +115,26 @@ OptionGroup picture_options(PictureArguments& target) {
 }
 
 void PictureArguments::apply(const LayerFormat& format, LayerWriteOptions& options) const {
-    const auto check = [&format](bool given, std::string_view option, const auto& formats) {
-        if (given && std::ranges::find(formats, format.name) == formats.end())
-            throw Error(ErrorKind::usage, fmt::format("--{} goes with the formats {}, not with {}", option,
-                                                      fmt::join(formats, ", "), format.name));
+    const auto check = [&format](bool given, std::string_view option, bool LayerFormat::*takes) {
+        if (!given || format.*takes)
+            return;
+        std::vector<std::string_view> others;
+        for (const LayerFormat& other : layer_formats())
+            if (other.*takes)
+                others.push_back(other.name);
+        throw Error(ErrorKind::usage, fmt::format("--{} goes with the formats {}, not with {}", option,
+                                                  fmt::join(others, ", "), format.name));
     };
-    check(pixel_mm.has_value(), "pixel-size", picture_formats);
-    check(pixels.has_value(), "resolution", picture_formats);
-    check(display_mm.has_value(), "display-size", picture_formats);
-    check(!orientation.empty(), "orientation", picture_formats);
-    check(!mirror.empty(), "mirror", picture_formats);
-    check(antialias.has_value(), "antialias", picture_formats);
-    check(gamma.has_value(), "gamma", picture_formats);
-    check(exposure_s.has_value(), "exposure", job_formats);
-    check(first_exposure_s.has_value(), "first-exposure", job_formats);
-    check(fade_layers.has_value(), "fade-layers", job_formats);
+    check(pixel_mm.has_value(), "pixel-size", &LayerFormat::picture);
+    check(pixels.has_value(), "resolution", &LayerFormat::picture);
+    check(display_mm.has_value(), "display-size", &LayerFormat::picture);
+    check(!orientation.empty(), "orientation", &LayerFormat::picture);
+    check(!mirror.empty(), "mirror", &LayerFormat::picture);
+    check(antialias.has_value(), "antialias", &LayerFormat::picture);
+    check(gamma.has_value(), "gamma", &LayerFormat::picture);
+    check(exposure_s.has_value(), "exposure", &LayerFormat::exposure);
+    check(first_exposure_s.has_value(), "first-exposure", &LayerFormat::exposure);
+    check(fade_layers.has_value(), "fade-layers", &LayerFormat::exposure);
 
     PictureOptions& picture = options.picture;
     picture.pixel_mm = pixel_mm;
@@ -149,7 +151,7 @@ void PictureArguments::apply(const LayerFormat& format, LayerWriteOptions& optio
     options.exposure.normal_s = exposure_s;
     options.exposure.first_s = first_exposure_s;
     options.exposure.fade_layers = fade_layers.value_or(options.exposure.fade_layers);
-    if (std::ranges::find(job_formats, format.name) != job_formats.end())
+    if (format.exposure)
         options.exposure.created_s = source_date();
 }
 

@@ -122,7 +122,7 @@ struct CommonLayerFile {
                             path));
 }
 
-CommonLayerFile take_apart(const std::string& path, bool binary, const Execution& execution) {
+CommonLayerFile take_apart(const std::string& path, const Execution& execution) {
     CommonLayerFile file{open_bytes(path, execution.cancel), {}, {}, {}, {}};
     const std::string_view text(reinterpret_cast<const char*>(file.source.bytes.data()),
                                 file.source.bytes.size());
@@ -135,7 +135,7 @@ CommonLayerFile take_apart(const std::string& path, bool binary, const Execution
     const std::size_t count = key + count_key.size();
     const std::size_t behind = std::min(text.find_first_not_of("0123456789", count), end);
     std::size_t first = end + head_end.size();
-    if (binary) {
+    if (text.substr(0, end).find("$$BINARY") != std::string_view::npos) {
         std::uint16_t command = 0;
         constexpr std::uint16_t long_layer = 127;
         if (text.size() < first + sizeof command)
@@ -174,11 +174,11 @@ void check_heads(const std::string& one, std::string_view head, const std::strin
 }
 
 std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint64_t layers,
-                                 const std::string& output, bool binary, const Execution& execution) {
+                                 const std::string& output, const Execution& execution) {
     AtomicFile out(output);
     std::string head;
     for (std::size_t i = 0; i < shards.size(); ++i) {
-        const CommonLayerFile file = take_apart(shards[i].path, binary, execution);
+        const CommonLayerFile file = take_apart(shards[i].path, execution);
         if (i == 0) {
             head = file.before_count;
             out.append(head);
@@ -254,8 +254,8 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                        .warnings = {}};
     for (const ShardFile& shard : shards)
         result.layers += shard.layers;
-    if (to.name == result.format && to.name.starts_with("cli"))
-        result.bytes = join_common_layers(shards, result.layers, output, to.name == "cli", execution);
+    if (to.joins && to.name == result.format)
+        result.bytes = join_common_layers(shards, result.layers, output, execution);
     else
         write_anew(shards, output, to, options, reading, result, execution);
     return result;

@@ -94,7 +94,8 @@ class DxfWriter final : public SequentialWriter {
 
 } // namespace
 
-std::unique_ptr<LayerWriter> open_dxf(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_dxf(const std::string& path, const LayerFileInfo& info,
+                                      const LayerWriteOptions& /*options*/) {
     return std::make_unique<DxfWriter>(path, info);
 }
 

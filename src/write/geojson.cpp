@@ -110,7 +110,8 @@ class GeoJsonWriter final : public SequentialWriter {
 
 } // namespace
 
-std::unique_ptr<LayerWriter> open_geojson(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_geojson(const std::string& path, const LayerFileInfo& info,
+                                          const LayerWriteOptions& /*options*/) {
     return std::make_unique<GeoJsonWriter>(path, info);
 }
 

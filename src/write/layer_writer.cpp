@@ -33,29 +33,110 @@ namespace lamella {
 
 namespace {
 
+std::unique_ptr<LayerWriter> open_page(const std::string& path, const LayerFileInfo& info,
+                                       const LayerWriteOptions& options) {
+    return open_layer_page(path, info, options.page);
+}
+
+constexpr Rounding exact{};
+
 constexpr std::array formats{
-    LayerFormat{"cli", ".cli",
-                "Common Layer Interface, binary; single precision, or 16 bits in the short form", false,
-                true},
-    LayerFormat{"cli-ascii", "", "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm",
-                false, true},
-    LayerFormat{"svg", ".svg", "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm",
-                false, true},
-    LayerFormat{"slc", ".slc", "SLC of 3D Systems, binary; single precision; closed contours only"},
-    LayerFormat{"3mf", ".3mf", "3MF with slice stacks; coordinates to 0.001 mm; closed contours only"},
-    LayerFormat{"dxf", ".dxf", "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm", false, true},
-    LayerFormat{"geojson", ".geojson", "GeoJSON, one feature per layer; coordinates to 0.001 mm", false,
-                true},
-    LayerFormat{"wkt", ".csv", "CSV with the layers as well-known text; coordinates to 0.001 mm", false,
-                true},
-    LayerFormat{"json", ".json", "all that layers have as JSON; exact", false, true},
-    LayerFormat{"npz", ".npz", "NumPy arrays; exact"},
-    LayerFormat{"html", ".html", "a page to look at the layers with any browser; see docs/viewer.md"},
-    LayerFormat{"svg-layers", "", "a folder with one SVG picture per layer; coordinates to 0.001 mm", true},
-    LayerFormat{"png", "", "a folder with one PNG picture per layer; as fine as its pixels", true},
-    LayerFormat{"png-zip", ".zip", "the same pictures in a zip archive"},
-    LayerFormat{"sl1", ".sl1", "a job for the resin printer Original Prusa SL1; as fine as its pixels"},
-    LayerFormat{"sl1s", ".sl1s", "the same for the SL1S"},
+    LayerFormat{.name = "cli",
+                .extension = ".cli",
+                .summary = "Common Layer Interface, binary; single precision, or 16 bits in the short form",
+                .open = open_common_layer_binary,
+                .pieces = true,
+                .joins = true,
+                .rounding = Rounding{.step_mm = LayerWriteOptions{}.units_mm, .single_precision = true},
+                .units = true,
+                .short_form = true},
+    LayerFormat{.name = "cli-ascii",
+                .extension = "",
+                .summary = "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm",
+                .open = open_common_layer_ascii,
+                .file_extension = ".cli",
+                .pieces = true,
+                .joins = true,
+                .rounding = Rounding{.step_mm = LayerWriteOptions{}.units_mm},
+                .units = true},
+    LayerFormat{.name = "svg",
+                .extension = ".svg",
+                .summary = "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm",
+                .open = open_layered_svg,
+                .pieces = true,
+                .rounding = text_rounding},
+    LayerFormat{.name = "slc",
+                .extension = ".slc",
+                .summary = "SLC of 3D Systems, binary; single precision; closed contours only",
+                .open = open_slc,
+                .rounding = Rounding{.single_precision = true}},
+    LayerFormat{.name = "3mf",
+                .extension = ".3mf",
+                .summary = "3MF with slice stacks; coordinates to 0.001 mm; closed contours only",
+                .open = open_slices_3mf,
+                .rounding = text_rounding},
+    LayerFormat{.name = "dxf",
+                .extension = ".dxf",
+                .summary = "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm",
+                .open = open_dxf,
+                .pieces = true,
+                .rounding = text_rounding},
+    LayerFormat{.name = "geojson",
+                .extension = ".geojson",
+                .summary = "GeoJSON, one feature per layer; coordinates to 0.001 mm",
+                .open = open_geojson,
+                .pieces = true,
+                .rounding = text_rounding},
+    LayerFormat{.name = "wkt",
+                .extension = ".csv",
+                .summary = "CSV with the layers as well-known text; coordinates to 0.001 mm",
+                .open = open_wkt,
+                .pieces = true,
+                .rounding = text_rounding},
+    LayerFormat{.name = "json",
+                .extension = ".json",
+                .summary = "all that layers have as JSON; exact",
+                .open = open_layers_json,
+                .pieces = true,
+                .rounding = exact},
+    LayerFormat{.name = "npz",
+                .extension = ".npz",
+                .summary = "NumPy arrays; exact",
+                .open = open_npz,
+                .rounding = exact},
+    LayerFormat{.name = "html",
+                .extension = ".html",
+                .summary = "a page to look at the layers with any browser; see docs/viewer.md",
+                .open = open_page},
+    LayerFormat{.name = "svg-layers",
+                .extension = "",
+                .summary = "a folder with one SVG picture per layer; coordinates to 0.001 mm",
+                .open = open_svg_layers,
+                .directory = true,
+                .rounding = text_rounding},
+    LayerFormat{.name = "png",
+                .extension = "",
+                .summary = "a folder with one PNG picture per layer; as fine as its pixels",
+                .open = open_picture_folder,
+                .directory = true,
+                .picture = true},
+    LayerFormat{.name = "png-zip",
+                .extension = ".zip",
+                .summary = "the same pictures in a zip archive",
+                .open = open_picture_archive,
+                .picture = true},
+    LayerFormat{.name = "sl1",
+                .extension = ".sl1",
+                .summary = "a job for the resin printer Original Prusa SL1; as fine as its pixels",
+                .open = open_sl1,
+                .picture = true,
+                .exposure = true},
+    LayerFormat{.name = "sl1s",
+                .extension = ".sl1s",
+                .summary = "the same for the SL1S",
+                .open = open_sl1s,
+                .picture = true,
+                .exposure = true},
 };
 
 std::string names() {
@@ -80,42 +161,6 @@ void check_info(const LayerFileInfo& info) {
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
 
-std::unique_ptr<LayerWriter> open_unlimited(const std::string& path, const LayerFormat& format,
-                                            const LayerFileInfo& info, const LayerWriteOptions& options) {
-    if (format.name == "cli")
-        return open_common_layer_binary(path, info, options);
-    if (format.name == "cli-ascii")
-        return open_common_layer_ascii(path, info, options);
-    if (format.name == "svg")
-        return open_layered_svg(path, info, options);
-    if (format.name == "slc")
-        return open_slc(path, info);
-    if (format.name == "3mf")
-        return open_slices_3mf(path, info);
-    if (format.name == "dxf")
-        return open_dxf(path, info);
-    if (format.name == "geojson")
-        return open_geojson(path, info);
-    if (format.name == "wkt")
-        return open_wkt(path, info);
-    if (format.name == "json")
-        return open_layers_json(path, info);
-    if (format.name == "npz")
-        return open_npz(path, info);
-    if (format.name == "html")
-        return open_layer_page(path, info, options.page);
-    if (format.name == "svg-layers")
-        return open_svg_layers(path, info);
-    if (format.name == "png")
-        return open_picture_folder(path, info, options);
-    if (format.name == "png-zip")
-        return open_picture_archive(path, info, options);
-    if (format.name == "sl1" || format.name == "sl1s")
-        return open_sl1(path, info, options, format.name);
-    throw Error(ErrorKind::usage,
-                fmt::format("there is no format '{}'; choose from {}", format.name, names()));
-}
-
 } // namespace
 
 std::span<const LayerFormat> layer_formats() noexcept {
@@ -124,10 +169,10 @@ std::span<const LayerFormat> layer_formats() noexcept {
 
 const LayerFormat& layer_format(std::string_view name, const std::string& path) {
     const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-    for (const LayerFormat& format : formats) {
-        if (name.empty() ? !extension.empty() && format.extension == extension : format.name == name)
-            return format;
-    }
+    const auto found = name.empty() ? std::ranges::find(formats, extension, &LayerFormat::extension)
+                                    : std::ranges::find(formats, name, &LayerFormat::name);
+    if (found != formats.end() && (!name.empty() || !extension.empty()))
+        return *found;
     if (!name.empty())
         throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
     if (path == "-")
@@ -144,7 +189,7 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
     if (format.directory && path == "-")
         throw Error(ErrorKind::usage,
                     fmt::format("{} writes a folder and standard output is none; give a path", format.name));
-    std::unique_ptr<LayerWriter> writer = open_unlimited(path, format, info, options);
+    std::unique_ptr<LayerWriter> writer = format.open(path, info, options);
     return options.most_bytes == 0 ? std::move(writer) : limited(std::move(writer), path, options.most_bytes);
 }
 

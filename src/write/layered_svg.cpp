@@ -258,7 +258,8 @@ std::unique_ptr<LayerWriter> open_layered_svg(const std::string& path, const Lay
     return std::make_unique<LayeredSvgWriter>(path, info, options);
 }
 
-std::unique_ptr<LayerWriter> open_svg_layers(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_svg_layers(const std::string& path, const LayerFileInfo& info,
+                                             const LayerWriteOptions& /*options*/) {
     return std::make_unique<SvgLayersWriter>(path, info);
 }
 

@@ -13,7 +13,7 @@ namespace lamella {
 open_layered_svg(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options);
 
 /// A folder with `layer_00000.svg` and so on, numbered by Layer::index.
-[[nodiscard]] std::unique_ptr<LayerWriter> open_svg_layers(const std::string& path,
-                                                           const LayerFileInfo& info);
+[[nodiscard]] std::unique_ptr<LayerWriter> open_svg_layers(const std::string& path, const LayerFileInfo& info,
+                                                           const LayerWriteOptions& options);
 
 } // namespace lamella

@@ -89,7 +89,8 @@ class LayersJsonWriter final : public SequentialWriter {
 
 } // namespace
 
-std::unique_ptr<LayerWriter> open_layers_json(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_layers_json(const std::string& path, const LayerFileInfo& info,
+                                              const LayerWriteOptions& /*options*/) {
     return std::make_unique<LayersJsonWriter>(path, info);
 }
 

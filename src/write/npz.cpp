@@ -256,7 +256,8 @@ class NpzWriter final : public LayerWriter {
 
 } // namespace
 
-std::unique_ptr<LayerWriter> open_npz(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_npz(const std::string& path, const LayerFileInfo& info,
+                                      const LayerWriteOptions& /*options*/) {
     return std::make_unique<NpzWriter>(path, info);
 }
 

@@ -243,8 +243,13 @@ class Sl1Writer final : public LayerWriter {
 } // namespace
 
 std::unique_ptr<LayerWriter> open_sl1(const std::string& path, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options, std::string_view printer) {
-    return std::make_unique<Sl1Writer>(path, info, options, printer == "sl1s" ? speed_sl1s : original_sl1);
+                                      const LayerWriteOptions& options) {
+    return std::make_unique<Sl1Writer>(path, info, options, original_sl1);
+}
+
+std::unique_ptr<LayerWriter> open_sl1s(const std::string& path, const LayerFileInfo& info,
+                                       const LayerWriteOptions& options) {
+    return std::make_unique<Sl1Writer>(path, info, options, speed_sl1s);
 }
 
 } // namespace lamella

@@ -6,13 +6,12 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 
 namespace lamella {
 
-/// `printer` is "sl1" or "sl1s".
 [[nodiscard]] std::unique_ptr<LayerWriter> open_sl1(const std::string& path, const LayerFileInfo& info,
-                                                    const LayerWriteOptions& options,
-                                                    std::string_view printer);
+                                                    const LayerWriteOptions& options);
+[[nodiscard]] std::unique_ptr<LayerWriter> open_sl1s(const std::string& path, const LayerFileInfo& info,
+                                                     const LayerWriteOptions& options);
 
 } // namespace lamella

@@ -132,7 +132,8 @@ class SlcWriter final : public SequentialWriter {
 
 } // namespace
 
-std::unique_ptr<LayerWriter> open_slc(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_slc(const std::string& path, const LayerFileInfo& info,
+                                      const LayerWriteOptions& /*options*/) {
     return std::make_unique<SlcWriter>(path, info);
 }
 

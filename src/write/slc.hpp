@@ -9,6 +9,7 @@
 
 namespace lamella {
 
-[[nodiscard]] std::unique_ptr<LayerWriter> open_slc(const std::string& path, const LayerFileInfo& info);
+[[nodiscard]] std::unique_ptr<LayerWriter> open_slc(const std::string& path, const LayerFileInfo& info,
+                                                    const LayerWriteOptions& options);
 
 } // namespace lamella

@@ -248,7 +248,8 @@ class Slices3mfWriter final : public LayerWriter {
 
 } // namespace
 
-std::unique_ptr<LayerWriter> open_slices_3mf(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_slices_3mf(const std::string& path, const LayerFileInfo& info,
+                                             const LayerWriteOptions& /*options*/) {
     return std::make_unique<Slices3mfWriter>(path, info);
 }
 

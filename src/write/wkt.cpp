@@ -86,7 +86,8 @@ class WktWriter final : public SequentialWriter {
 
 } // namespace
 
-std::unique_ptr<LayerWriter> open_wkt(const std::string& path, const LayerFileInfo& info) {
+std::unique_ptr<LayerWriter> open_wkt(const std::string& path, const LayerFileInfo& info,
+                                      const LayerWriteOptions& /*options*/) {
     return std::make_unique<WktWriter>(path, info);
 }
 

@@ -174,6 +174,25 @@ TEST(SliceFormats, ComeBackAtTheirResolution) {
     }
 }
 
+TEST(SliceFormats, AreReadWithTheRoundingThatTheyAreWrittenWith) {
+    const auto original = random_parts(3, 1, 2);
+    for (const Resolution& format : readable())
+        EXPECT_TRUE(read(written(format.format, original)).rounding ==
+                    layer_format(format.format, "").rounding)
+            << format.format;
+}
+
+TEST(SliceFormats, KeepTheRuleOfThePlaneWhereTheyKeepTheCut) {
+    const auto original = random_parts(3, 2, 2);
+    for (const Resolution& format : readable()) {
+        const std::string_view name = format.format;
+        const bool keeps_cuts = name == "json" || name == "npz" || name == "svg";
+        const std::string below = written(format.format, original, nullptr, PlaneRule::section_below);
+        EXPECT_EQ(read(below).rule, keeps_cuts ? PlaneRule::section_below : PlaneRule::section_above) << name;
+        EXPECT_EQ(read(written(format.format, original)).rule, PlaneRule::section_above) << name;
+    }
+}
+
 TEST(SliceFormats, KeepTheLabelsOfParts) {
     const auto parts = random_parts(3, 2, 2);
     for (const char* format : {"svg", "3mf", "json", "npz"}) {

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -78,12 +79,29 @@ struct LayerWriteOptions {
     PageOptions page = {};
 };
 
+class LayerWriter;
+
+/// All there is to say of a format. Its row is in src/write/layer_writer.cpp.
 struct LayerFormat {
     std::string_view name;      ///< as in `--format`
     std::string_view extension; ///< with the dot; "" when the format is only chosen by name
     std::string_view summary;   ///< one line for help texts, quantisation included
-    bool directory = false;     ///< writes one file per layer into a directory
-    bool pieces = false;        ///< can be written piece by piece
+    /// Called by open_layer_writer.
+    std::unique_ptr<LayerWriter> (*open)(const std::string& path, const LayerFileInfo& info,
+                                         const LayerWriteOptions& options) = nullptr;
+    /// Of files that get their names from a program, where it is not `extension`.
+    std::string_view file_extension = extension;
+    bool directory = false; ///< writes one file per layer into a directory
+    bool pieces = false;    ///< can be written piece by piece
+    bool joins = false;     ///< files of consecutive layers can be put together as they are
+    /// Of coordinates, with the options as they are by default; none where contours are not kept as such.
+    std::optional<Rounding> rounding = {};
+
+    // What of LayerWriteOptions it takes.
+    bool units = false;
+    bool short_form = false;
+    bool picture = false;
+    bool exposure = false;
 };
 
 /// All formats, in the order in which help lists them.
