@@ -27,6 +27,7 @@ struct ConvertArguments {
     LayerOutputOptions writing;
     LayerStepOptions making;
     std::string label;
+    bool strict = false;
     ReadLimits limits;
     RunOptions run;
 };
@@ -35,6 +36,8 @@ OptionGroup output_options(ConvertArguments& target) {
     OptionGroup group{"What is written", layer_output_options(target.writing)};
     group.options.push_back(
         text("label", "TEXT", "name of the only part inside the slice file", target.label));
+    group.options.push_back(
+        flag("strict", "make an error of whatever would be lost, and write nothing", target.strict));
     return group;
 }
 
@@ -42,6 +45,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     check_distinct(arguments.input, arguments.output);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
     LayerWriteOptions options = arguments.writing.write_options(format);
+    options.strict = arguments.strict;
     const Execution execution = arguments.run.execution(context);
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);

@@ -287,6 +287,7 @@ FileJob make_job(const SliceArguments& arguments) {
     job.format = arguments.writing.format;
     if (!job.output.empty())
         job.write = arguments.writing.write_options(layer_format(job.format, job.output));
+    job.write.strict = job.strict;
     job.write.page.title = title_of(job.inputs.front().path);
     if (!arguments.report.empty())
         job.report = {.path = arguments.report,

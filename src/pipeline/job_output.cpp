@@ -7,6 +7,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -153,10 +154,15 @@ JobOutput::Written JobOutput::finish_file() {
         written.bytes = shared_ ? 0 : writer_->bytes();
         written.warnings = writer_->warnings();
     });
-    if (shared_)
+    if (shared_) {
+        const std::string mine = fmt::format("{}", fmt::join(std::exchange(written.warnings, {}), "\n"));
+        for (std::string& warning : processes_.gather(mine))
+            if (!warning.empty())
+                written.warnings.push_back(std::move(warning));
         written.bytes = write_shared();
-    else
+    } else {
         processes_.sum(std::span(&written.bytes, 1)); // those that did not write have 0
+    }
     return written;
 }
 

@@ -377,13 +377,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     if (!job.output.empty())
         static_cast<void>(layer_format(job.format, job.output));
     if (!job.z.empty())
-<<<<<<< HEAD
         static_cast<void>(plan_listed(job.z, job.layers.slice_at, job.layers.layer_height));
     result.engine = engine.name;
-=======
-        plan = plan_listed(job.z, job.layers.slice_at, job.layers.layer_height);
-    result.engine = with.name;
->>>>>>> 7ed9ed7 (Give the layer of a single listed cut a thickness)
     result.threads = thread_count(execution);
 
     const Stopwatch reading;

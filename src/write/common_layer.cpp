@@ -128,7 +128,7 @@ class AsciiWriter final : public SequentialWriter {
                            header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
                                position_text(info.bottom, options.units_mm) + '\n',
                            holds),
-          units_(options.units_mm), grid_(options.units_mm) {}
+          units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
     std::string layer_head(const Place& place) override {
@@ -220,20 +220,31 @@ char* put_hatches_head(char* out, int part, std::size_t hatches, std::uint64_t l
 class LongWriter final : public SequentialWriter {
   public:
     LongWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : SequentialWriter(
-              path, info,
-              header("BINARY", info, options.units_mm) + layer_start(info.bottom, options.units_mm), holds),
-          units_(options.units_mm), floats_(1 / options.units_mm) {}
+        : SequentialWriter(path, info,
+                           header("BINARY", info, options.units_mm) +
+                               layer_start(height_of(info.bottom, options.units_mm)),
+                           holds),
+          units_(options.units_mm), floats_(1 / options.units_mm, &rounding_loss()) {}
 
   private:
-    static std::string layer_start(double z, double units) {
+    static float height_of(double z, double units) { return static_cast<float>(z / units) + 0.0F; }
+
+    static std::string layer_start(float height) {
         std::array<char, 6> bytes{};
-        put_value(put_value(bytes.data(), CommonLayerCommand::layer_long),
-                  static_cast<float>(z / units) + 0.0F);
+        put_value(put_value(bytes.data(), CommonLayerCommand::layer_long), height);
         return {bytes.data(), bytes.size()};
     }
 
-    std::string layer_head(const Place& place) override { return layer_start(place.top, units_); }
+    std::string layer_head(const Place& place) override {
+        const float height = height_of(place.top, units_);
+        if (!(height > last_height_))
+            throw Error(ErrorKind::usage,
+                        fmt::format("layer {} is so thin that its top, z = {} mm, is that of the layer "
+                                    "before in single precision",
+                                    place.index, place.top));
+        last_height_ = height;
+        return layer_start(height);
+    }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for_each_part(parts, [&](const Layer& layer, int part) {
@@ -269,6 +280,7 @@ class LongWriter final : public SequentialWriter {
 
     double units_;
     FloatContours floats_;
+    float last_height_ = -std::numeric_limits<float>::infinity();
 };
 
 // 16-bit numbers are unsigned by the standard and signed in some readers and writers: only those that mean
@@ -294,7 +306,8 @@ class ShortWriter final : public SequentialWriter {
   public:
     ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : SequentialWriter(path, info, checked_head(info, options.units_mm), holds), units_(options.units_mm),
-          grid_(options.units_mm), last_height_(whole_units(info.bottom, options.units_mm)) {}
+          grid_(options.units_mm, &rounding_loss()),
+          last_height_(whole_units(info.bottom, options.units_mm)) {}
 
   private:
     // What does not fit is better said before an hour of slicing than after it.

@@ -160,25 +160,46 @@ void check_range(const Rounded& rounded, std::uint64_t layer) {
                     fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
 }
 
+// Twice how far a coordinate can have moved, in what is written.
+double last_place(const Rounded& rounded) {
+    const auto& [least, most, area, repeats] = rounded;
+    const double largest = std::max({-double{least.x}, -double{least.y}, double{most.x}, double{most.y}});
+    return largest * double{std::numeric_limits<float>::epsilon()};
+}
+
+double largest_move(std::span<const Point2> points, double per_mm) {
+    double largest = 0;
+    for (const Point2& p : points)
+        for (const double mm : {p.x, p.y})
+            largest = std::max(largest, std::abs(double{static_cast<float>(mm * per_mm)} / per_mm - mm));
+    return largest;
+}
+
 // A bound on how much rounding has changed the area of a ring, in squares of what is written. Each point
 // moves by half a unit in the last place at most, and a term of the area with it by that times the lengths of
 // its two edges. Twice is for the rounding of this and of the area itself.
 double moved_area(const Rounded& rounded, std::size_t points) {
     const auto& [least, most, area, repeats] = rounded;
     const double extent = (double{most.x} - double{least.x}) + (double{most.y} - double{least.y});
-    const double largest = std::max({-double{least.x}, -double{least.y}, double{most.x}, double{most.y}});
-    const double moved = largest * double{std::numeric_limits<float>::epsilon()};
+    const double moved = last_place(rounded);
     return 2 * static_cast<double>(points) * moved * (extent + moved);
 }
 
 } // namespace
+
+bool FloatContours::is_noticed(double moved) const {
+    return loss_ != nullptr && moved > RoundingLoss::unnoticed_mm * per_mm_;
+}
 
 FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, std::uint64_t layer,
                                 char* out) const {
     const Rounded rounded = round_points(contour, per_mm_, out);
     check_range(rounded, layer);
     const std::size_t count = without_repeats(out, contour.size(), rounded.repeats, closed);
-    if (count < (closed ? 3U : 2U))
+    const bool lost = count < (closed ? 3U : 2U);
+    if (is_noticed(last_place(rounded) / 2))
+        loss_->add({largest_move(contour, per_mm_), contour.size() - count, lost}, layer);
+    if (lost)
         return {};
     if (!closed)
         return {count, 0};
@@ -191,8 +212,12 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
 }
 
 void FloatContours::put_points(std::span<const Point2> points, std::uint64_t layer, char* out) const {
-    if (!points.empty())
-        check_range(round_points(points, per_mm_, out), layer);
+    if (points.empty())
+        return;
+    const Rounded rounded = round_points(points, per_mm_, out);
+    check_range(rounded, layer);
+    if (is_noticed(last_place(rounded) / 2))
+        loss_->add({.moved_mm = largest_move(points, per_mm_)}, layer);
 }
 
 } // namespace lamella

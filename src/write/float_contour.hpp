@@ -4,6 +4,8 @@
 
 #include "lamella/core/point.hpp"
 
+#include "write/rounding_loss.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,8 +23,9 @@ struct FloatContour {
 /// Millimetres to numbers in single precision, x and y in turn.
 class FloatContours {
   public:
-    /// Coordinates are multiplied by `per_mm`.
-    explicit FloatContours(double per_mm) : per_mm_(per_mm) {}
+    /// Coordinates are multiplied by `per_mm`. What rounding loses of contours goes to `loss`, which must
+    /// outlive this.
+    explicit FloatContours(double per_mm, RoundingLoss* loss = nullptr) : per_mm_(per_mm), loss_(loss) {}
 
     /// Writes a contour, each coordinate rounded to the nearest single; a ring ends with its first point once
     /// more. There must be room for one point more than the contour has. Points that fall together with the
@@ -37,7 +40,11 @@ class FloatContours {
     void put_points(std::span<const Point2> points, std::uint64_t layer, char* out) const;
 
   private:
+    /// Whether anybody could miss what a move by so much, in what is written, loses.
+    [[nodiscard]] bool is_noticed(double moved) const;
+
     double per_mm_;
+    RoundingLoss* loss_;
 };
 
 } // namespace lamella

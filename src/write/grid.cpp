@@ -38,7 +38,9 @@ double grid_area(std::span<const GridPoint> ring) noexcept {
     return 0.5 * twice;
 }
 
-Grid::Grid(double step_mm) : step_(step_mm), per_step_(1 / step_mm) {}
+Grid::Grid(double step_mm, RoundingLoss* loss)
+    : step_(step_mm), per_step_(1 / step_mm),
+      loss_(step_mm / 2 > RoundingLoss::unnoticed_mm ? loss : nullptr) {}
 
 void Grid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const {
     std::size_t beyond = 0;
@@ -59,6 +61,14 @@ void Grid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint*
                                 layer, step_));
 }
 
+double Grid::largest_move(std::span<const Point2> points, const GridPoint* rounded) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        largest = std::max({largest, std::abs(static_cast<double>(rounded[i].x) * step_ - points[i].x),
+                            std::abs(static_cast<double>(rounded[i].y) * step_ - points[i].y)});
+    return largest;
+}
+
 std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool closed, double area,
                                       std::uint64_t layer, std::vector<GridPoint>& scratch) const {
     if (scratch.size() < contour.size())
@@ -66,10 +76,15 @@ std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool clos
     GridPoint* const points = scratch.data();
     round(contour, layer, points);
 
+    const double moved = loss_ != nullptr ? largest_move(contour, points) : 0;
+
     GridPoint* end = std::unique(points, points + contour.size());
     while (closed && end - points > 1 && end[-1] == points[0])
         --end;
-    if (end - points < (closed ? 3 : 2))
+    const bool lost = end - points < (closed ? 3 : 2);
+    if (loss_ != nullptr)
+        loss_->add({moved, contour.size() - static_cast<std::size_t>(end - points), lost}, layer);
+    if (lost)
         return {};
     const std::span<GridPoint> kept(points, end);
     if (closed && area * grid_area(kept) < 0)
@@ -80,6 +95,8 @@ std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool clos
 std::vector<GridPoint> Grid::snap_points(std::span<const Point2> points, std::uint64_t layer) const {
     std::vector<GridPoint> snapped(points.size());
     round(points, layer, snapped.data());
+    if (loss_ != nullptr)
+        loss_->add({.moved_mm = largest_move(points, snapped.data())}, layer);
     return snapped;
 }
 

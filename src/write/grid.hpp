@@ -5,6 +5,8 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/point.hpp"
 
+#include "write/rounding_loss.hpp"
+
 #include <cstdint>
 #include <span>
 #include <string>
@@ -26,8 +28,9 @@ inline constexpr double text_step_mm = text_rounding.step_mm;
 
 class Grid {
   public:
-    /// Points at whole multiples of `step_mm`.
-    explicit Grid(double step_mm);
+    /// Points at whole multiples of `step_mm`. What that loses of contours goes to `loss`, which must outlive
+    /// the grid.
+    explicit Grid(double step_mm, RoundingLoss* loss = nullptr);
 
     /// The nearest point for each of a contour, half-way cases to the even one. Points that fall together
     /// with the one before are dropped; what is left of a ring of fewer than three, or of a chain of fewer
@@ -46,8 +49,11 @@ class Grid {
   private:
     void round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const;
 
+    [[nodiscard]] double largest_move(std::span<const Point2> points, const GridPoint* rounded) const;
+
     double step_;
     double per_step_;
+    RoundingLoss* loss_; ///< null where nobody would miss anything
 };
 
 } // namespace lamella

@@ -16,6 +16,7 @@
 #include "write/sl1.hpp"
 #include "write/slc.hpp"
 #include "write/slices_3mf.hpp"
+#include "write/strict_writer.hpp"
 #include "write/wkt.hpp"
 
 #include <fmt/format.h>
@@ -190,7 +191,9 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
         throw Error(ErrorKind::usage,
                     fmt::format("{} writes a folder and standard output is none; give a path", format.name));
     std::unique_ptr<LayerWriter> writer = format.open(path, info, options);
-    return options.most_bytes == 0 ? std::move(writer) : limited(std::move(writer), path, options.most_bytes);
+    if (options.most_bytes != 0)
+        writer = limited(std::move(writer), path, options.most_bytes);
+    return options.strict ? strict(std::move(writer), path) : std::move(writer);
 }
 
 void write_planes(LayerWriter& writer, std::size_t planes,

@@ -24,7 +24,7 @@ void LeftOut::note(const PlaneExtras& plane) {
 }
 
 std::vector<std::string> LeftOut::warnings() const {
-    std::vector<std::string> lines;
+    std::vector<std::string> lines = rounding_.warnings();
     const auto say = [&](std::uint64_t count, const char* one, const char* many, double z) {
         if (count != 0)
             lines.push_back(fmt::format("{} {} left out, the lowest at z = {:.6g} mm: the format has "

@@ -4,6 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "write/rounding_loss.hpp"
+
 #include <cstdint>
 #include <span>
 #include <string>
@@ -32,6 +34,8 @@ class LeftOut {
     explicit LeftOut(Holds holds) : holds_(holds) {}
 
     void note(const PlaneExtras& plane);
+    /// For what rounds.
+    [[nodiscard]] RoundingLoss& rounding() noexcept { return rounding_; }
     /// One line for each kind.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
@@ -39,6 +43,7 @@ class LeftOut {
     Holds holds_;
     PlaneExtras chains_; ///< all of them, and the lowest plane that has some
     PlaneExtras hatches_;
+    RoundingLoss rounding_;
 };
 
 } // namespace lamella

@@ -75,6 +75,9 @@ class SequentialWriter : public LayerWriter {
     /// Creates the file and writes `head`.
     SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head, Holds holds);
 
+    /// For the members that round.
+    [[nodiscard]] RoundingLoss& rounding_loss() noexcept { return left_out_.rounding(); }
+
     /// What stands before the contours of a layer. Called in order.
     [[nodiscard]] virtual std::string layer_head(const Place& place) = 0;
     /// Appends the contours of a layer, part by part, and what stands after them. Called from any threads.

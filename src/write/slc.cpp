@@ -123,7 +123,7 @@ class SlcWriter final : public SequentialWriter {
 
     static constexpr std::size_t boundary_head = 2 * sizeof(std::uint32_t);
 
-    FloatContours floats_{1.0};
+    FloatContours floats_{1.0, &rounding_loss()};
     double bottom_;
     double top_;
     float last_ = 0;

@@ -238,7 +238,7 @@ class Slices3mfWriter final : public LayerWriter {
     ZipWriter zip_;
     LayerOrder order_;
     LeftOut left_out_{{.open_chains = false, .hatches = false}};
-    Grid grid_{text_step_mm};
+    Grid grid_{text_step_mm, &left_out_.rounding()};
     Compression compression_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
     /// The stacks of all parts but the first, which wait for the end of the first one.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace lamella {
@@ -53,6 +54,28 @@ TEST(FloatContours, RoundEveryPointOfContoursOfAnySize) {
         contour.push_back(contour.front());
         EXPECT_EQ(ring.numbers, nearest_singles(contour, per_mm)) << n;
     }
+}
+
+TEST(FloatContours, CountWhatRoundingLosesWhereSinglePrecisionIsCoarse) {
+    const auto warnings = [](double far) {
+        RoundingLoss loss;
+        const FloatContours floats(1000, &loss);
+        char bytes[5 * float_point_size];
+        for (const double width : {1e-4, 3.0}) {
+            const std::vector<Point2> ring{
+                {far, far}, {far + width, far}, {far + width, far + 1e-4}, {far + width, far + 3}};
+            floats.put(ring, true, width > 1 ? 7 : 9, bytes);
+        }
+        return loss.warnings();
+    };
+    EXPECT_TRUE(warnings(1e3).empty());
+    EXPECT_TRUE(warnings(1e5).empty());
+    const std::vector<std::string> far = warnings(1e7);
+    ASSERT_EQ(far.size(), 1U);
+    // Beyond 2^23 mm, 2^33 units of a micrometre, neighbours are 1.024 mm apart.
+    EXPECT_TRUE(far[0].starts_with("rounding moved points by up to 0.")) << far[0];
+    EXPECT_NE(far[0].find("merged 3 of them"), std::string::npos) << far[0];
+    EXPECT_NE(far[0].find("left out 1 contour, first in layer 7;"), std::string::npos) << far[0];
 }
 
 TEST(FloatContours, HaveNoMinusZero) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace lamella {
@@ -42,6 +43,25 @@ TEST(Grid, DropsPointsThatFallTogetherAlsoAcrossTheEnd) {
     EXPECT_EQ(snapped(1, ring), (std::vector<GridPoint>{{0, 0}, {4, 0}, {4, 4}}));
     const std::vector<Point2> chain{{0, 0}, {0.1, 0}, {4, 0}, {0, 0}};
     EXPECT_EQ(snapped(1, chain, false), (std::vector<GridPoint>{{0, 0}, {4, 0}, {0, 0}}));
+}
+
+TEST(Grid, CountsWhatACoarseStepLoses) {
+    const auto warnings = [](double step) {
+        RoundingLoss loss;
+        const Grid grid(step, &loss);
+        std::vector<GridPoint> scratch;
+        const std::vector<Point2> small{{0, 0}, {0.01, 0}, {0, 0.01}};
+        const std::vector<Point2> large{{0, 0}, {5, 0}, {5.04, 0}, {5, 5}};
+        static_cast<void>(grid.snap(large, true, 12, 3, scratch));
+        static_cast<void>(grid.snap(small, true, 1, 4, scratch));
+        return loss.warnings();
+    };
+    EXPECT_TRUE(warnings(0.001).empty());
+    EXPECT_TRUE(warnings(0.02).empty());
+    EXPECT_EQ(warnings(0.1), (std::vector<std::string>{
+                                 "rounding moved points by up to 0.04 mm, merged 3 of them with the one "
+                                 "before and left out 1 contour, first in layer 3; smaller units, or a "
+                                 "part nearer to the origin, lose less"}));
 }
 
 TEST(Grid, ForgetsContoursThatShrinkToAPointOrALine) {

@@ -64,6 +64,8 @@ struct LayerWriteOptions {
     /// Error{limit} where the layers take more than so many bytes; 0 is no limit. What ends a file, such as
     /// the directory of an archive, does not count.
     std::uint64_t most_bytes = 0;
+    /// Error{defect} in place of a file that would have warnings (LayerWriter::warnings).
+    bool strict = false;
     /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
     /// the ASCII and the short binary form; the long binary form keeps single precision.
     double units_mm = 0.001;
@@ -137,7 +139,8 @@ class LayerWriter {
     /// Bytes written so far.
     [[nodiscard]] virtual std::uint64_t bytes() const noexcept = 0;
 
-    /// What the format had no place for, one line each. To be asked after `finish`.
+    /// What the format had no place for, and what its rounding lost where it moves points by more than 0.01
+    /// mm, one line each. To be asked once all layers are written.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
