@@ -57,6 +57,13 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
         part.layers = take_steps(arguments.making.steps(), std::move(part.layers), of_part, execution);
         changes += of_part;
     }
+    if (changes.hatches_dropped > 0) {
+        const std::string lost = fmt::format("{}: {} left out: the contours that they fill were changed",
+                                             file.path, counted(changes.hatches_dropped, "hatch line"));
+        if (arguments.strict)
+            throw Error(ErrorKind::defect, lost);
+        context.messages.warn(lost);
+    }
     LayerFileInfo info = info_of(file);
     if (!arguments.label.empty()) {
         if (file.parts.size() > 1)

@@ -301,10 +301,13 @@ OptionGroup layer_step_options(LayerStepOptions& target) {
 }
 
 std::string changes_text(const LayerChanges& changes, std::string_view than) {
-    return fmt::format("{} other {}: {} united, {} turned, {} dropped, {} left out",
-                       counted(changes.changed_layers, "layer"), than, counted(changes.rings_united, "ring"),
-                       changes.rings_reversed, changes.rings_dropped,
-                       counted(changes.points_dropped, "point"));
+    std::string text =
+        fmt::format("{} other {}: {} united, {} turned, {} dropped, {} left out",
+                    counted(changes.changed_layers, "layer"), than, counted(changes.rings_united, "ring"),
+                    changes.rings_reversed, changes.rings_dropped, counted(changes.points_dropped, "point"));
+    if (changes.rings_vanished > 0)
+        text += fmt::format(", {} vanished", counted(changes.rings_vanished, "ring"));
+    return text;
 }
 
 const std::vector<std::string>& slice_at_names() {

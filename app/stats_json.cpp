@@ -60,10 +60,10 @@ Json matching_json(const MatchingCounts& counts) {
 }
 
 Json changes_json(const LayerChanges& changes) {
-    return {{"groups_united", changes.groups_united},   {"rings_united", changes.rings_united},
-            {"rings_reversed", changes.rings_reversed}, {"rings_dropped", changes.rings_dropped},
-            {"points_dropped", changes.points_dropped}, {"area_before_mm2", changes.area_before_mm2},
-            {"area_after_mm2", changes.area_after_mm2}};
+    return {{"groups_united", changes.groups_united},     {"rings_united", changes.rings_united},
+            {"rings_reversed", changes.rings_reversed},   {"rings_dropped", changes.rings_dropped},
+            {"rings_vanished", changes.rings_vanished},   {"points_dropped", changes.points_dropped},
+            {"area_before_mm2", changes.area_before_mm2}, {"area_after_mm2", changes.area_after_mm2}};
 }
 
 Json layers_json(const FileResult& result) {

@@ -31,7 +31,9 @@ LayerChanges& LayerChanges::operator+=(const LayerChanges& other) noexcept {
     rings_united += other.rings_united;
     rings_reversed += other.rings_reversed;
     rings_dropped += other.rings_dropped;
+    rings_vanished += other.rings_vanished;
     points_dropped += other.points_dropped;
+    hatches_dropped += other.hatches_dropped;
     area_before_mm2 += other.area_before_mm2;
     area_after_mm2 += other.area_after_mm2;
     return *this;
@@ -54,7 +56,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
             layer = std::move(filled.layer);
     }
     if (steps.offset_mm != 0 && layer.rings > 0) {
-        layer = offset(layer, steps.offset_mm);
+        layer = offset(layer, steps.offset_mm, &changes.rings_vanished);
         changed = true;
     }
     const auto select = [&](Layer selected) {
@@ -73,7 +75,9 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
         layer = std::move(simplified);
     }
     if (changed) {
+        layer.hatches = {};
         changes.changed_layers = 1;
+        changes.hatches_dropped = before.hatches.size() / 2;
         changes.area_before_mm2 = area(before);
         changes.area_after_mm2 = area(layer);
     }

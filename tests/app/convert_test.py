@@ -50,6 +50,35 @@ class Convert(ProgramTest):
                 told = self.succeed("convert", "open.json", "out." + name).err
                 self.assertEqual(told.count("left out"), lost, told)
 
+    HATCHED = """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}],
+        "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 4, 0, 0, 4]],
+                    "hatches": [0, 0, 1, 1, 0, 1, 1, 2]}]}]}"""
+
+    def test_steps_that_change_contours_tell_of_their_hatches(self):
+        self.write("hatched.json", self.HATCHED)
+        told = self.succeed("convert", "hatched.json", "out.json", "--offset", "0.1").err
+        self.assertRegex(told, r"warning: hatched\.json: 2 hatch lines left out")
+        self.fail_with(4, "2 hatch lines left out", "convert", "hatched.json", "no.json", "--offset", "0.1", "--strict")
+        self.assertEqual(self.succeed("convert", "hatched.json", "out.json", "--min-area", "1", "--strict").err, "")
+
+    def test_contours_that_vanish_are_counted(self):
+        layers = self.succeed("info", "torus.cli", "--json").json()
+        text = self.succeed("convert", "torus.cli", "out.cli", "--offset=-100").text
+        self.assertIn(f", {layers['contours']} rings vanished", text)
+
+    def test_what_rounding_loses_is_told(self):
+        self.succeed("convert", "torus.cli", "exact.json")
+        self.assertEqual(self.succeed("convert", "exact.json", "near.cli", "--strict").err, "")
+        told = self.succeed("convert", "exact.json", "coarse.cli", "--format", "cli-ascii", "--units-mm", "1").err
+        self.assertRegex(told, r"warning: coarse\.cli: rounding moved points by up to 0\.\d+ mm, merged \d+ of them")
+        self.fail_with(4, "rounding moved", "convert", "exact.json", "no.cli", "--format", "cli-ascii", "--units-mm", "1",
+                       "--strict")
+        self.fail_with(4, "open contour was left out", "convert", self.open_layer(), "no.slc", "--strict")
+
+    def open_layer(self):
+        self.write("open.json", self.HATCHED.replace('"hatches"', '"chains": [[5, 5, 6, 6]], "hatches"'))
+        return "open.json"
+
     def test_what_is_made_of_the_layers_is_told(self):
         self.write("two.json", """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}, {"label": "b"}],
             "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [

@@ -42,6 +42,36 @@ TEST(LayerSteps, AreTakenInOrderAndToldAbout) {
     EXPECT_DOUBLE_EQ(sum.area_after_mm2, 96);
 }
 
+TEST(LayerSteps, TellHowManyRingsAnOffsetLeavesNothingOf) {
+    const Layer frame = normal_form(
+        layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(1, 1, 9, 9)), rectangle(20, 0, 30, 10)}));
+    const auto vanished = [&](double distance) {
+        LayerChanges changes;
+        static_cast<void>(take_steps({.offset_mm = distance}, frame, changes));
+        return changes.rings_vanished;
+    };
+    EXPECT_EQ(vanished(0.4), 0U);
+    EXPECT_EQ(vanished(-0.4), 0U);
+    EXPECT_EQ(vanished(4.1), 1U) << "growing closes the hole";
+    EXPECT_EQ(vanished(-0.6), 2U) << "walls of 1 mm are gone, with the hole within them";
+    EXPECT_EQ(vanished(-100), 3U);
+}
+
+TEST(LayerSteps, ALayerThatIsChangedLosesItsHatchesAndSaysSo) {
+    Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(20, 0, 22, 2)}));
+    layer.hatches = PointArray({{0, 1}, {4, 1}, {0, 2}, {4, 2}});
+    LayerChanges changes;
+    EXPECT_EQ(take_steps({.min_area_mm2 = 1}, layer, changes).hatches.size(), 4U);
+    EXPECT_EQ(changes.hatches_dropped, 0U);
+    for (const LayerSteps& steps :
+         {LayerSteps{.offset_mm = 1}, LayerSteps{.largest_only = true}, LayerSteps{.min_area_mm2 = 5}}) {
+        EXPECT_EQ(take_steps(steps, layer, changes).hatches.size(), 0U);
+        EXPECT_EQ(changes.hatches_dropped, 2U);
+    }
+    changes += changes;
+    EXPECT_EQ(changes.hatches_dropped, 4U);
+}
+
 TEST(LayerSteps, SmallRingsAreDroppedWhenAskedFor) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), reversed(rectangle(1, 1, 2, 2))}));
     LayerSteps steps;

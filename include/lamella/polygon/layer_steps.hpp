@@ -29,19 +29,22 @@ struct LayerSteps {
 /// What the steps did to a layer, or to several in all.
 struct LayerChanges {
     std::uint64_t changed_layers = 0;
-    std::uint64_t groups_united = 0;  ///< by `fill`: groups of rings that overlapped
-    std::uint64_t rings_united = 0;   ///< the rings of these groups
-    std::uint64_t rings_reversed = 0; ///< by `fill`
-    std::uint64_t rings_dropped = 0;  ///< by `fill`, `largest_body` and `without_small_rings`
-    std::uint64_t points_dropped = 0; ///< by `simplify`
-    double area_before_mm2 = 0;       ///< of the layers that were changed
+    std::uint64_t groups_united = 0;   ///< by `fill`: groups of rings that overlapped
+    std::uint64_t rings_united = 0;    ///< the rings of these groups
+    std::uint64_t rings_reversed = 0;  ///< by `fill`
+    std::uint64_t rings_dropped = 0;   ///< by `fill`, `largest_body` and `without_small_rings`
+    std::uint64_t rings_vanished = 0;  ///< by `offset`: it left nothing of them
+    std::uint64_t points_dropped = 0;  ///< by `simplify`
+    std::uint64_t hatches_dropped = 0; ///< lines that filled the contours of the layers that were changed
+    double area_before_mm2 = 0;        ///< of the layers that were changed
     double area_after_mm2 = 0;
 
     LayerChanges& operator+=(const LayerChanges& other) noexcept;
 };
 
-/// Takes the steps. A layer that none of them changes is passed through, bit for bit; the result is in normal
-/// form when the layer was. Throws what the steps throw.
+/// Takes the steps. A layer that none of them changes is passed through, bit for bit; one that they change
+/// has no hatches any more, as these filled other contours. The result is in normal form when the layer was.
+/// Throws what the steps throw.
 [[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes);
 
 /// The same for all layers of a stack, in parallel; `each` are the changes of every layer.

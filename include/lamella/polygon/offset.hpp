@@ -4,6 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include <cstdint>
+
 namespace lamella {
 
 /// The layer with its material grown by `distance` mm on all sides, or shrunk by a negative one: outer rings
@@ -15,7 +17,9 @@ namespace lamella {
 /// cut off at right angles to its bisector. Points are off by at most about 2^-35 of the layer's extent.
 ///
 /// Open chains stay as they are. A distance of 0 gives the layer itself, bit for bit. Costs what the clipping
-/// library takes, some microseconds a point. Throws Error{usage} for a distance that is not finite.
-[[nodiscard]] Layer offset(const Layer& layer, double distance);
+/// library takes, some microseconds a point. `vanished`, where given, becomes the number of rings that
+/// nothing is left of: those of bodies that are too thin to be shrunk so far, and holes that growing closes.
+/// Throws Error{usage} for a distance that is not finite.
+[[nodiscard]] Layer offset(const Layer& layer, double distance, std::uint64_t* vanished = nullptr);
 
 } // namespace lamella
