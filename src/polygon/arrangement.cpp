@@ -2,13 +2,16 @@
 
 #include "lamella/polygon/crossings.hpp"
 
+#include "polygon/grid.hpp"
 #include "polygon/orientation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -75,64 +78,48 @@ bool passes_by(const Segment& s, const Point2& p) noexcept {
     return 2 * std::abs(across) < std::abs(dx) + std::abs(dy) && along > 0 && along < dx * dx + dy * dy;
 }
 
-/// The ends of sides, row by row.
+/// The ends of sides, sorted into cells.
 class Ends {
   public:
-    explicit Ends(std::span<const Side> sides) {
-        for (const Side& side : sides)
-            ends_.insert(ends_.end(), {side.line.lo, side.line.hi});
-        double high = -std::numeric_limits<double>::infinity();
-        low_ = -high;
-        for (const Point2& p : ends_) {
-            low_ = std::min(low_, p.y);
-            high = std::max(high, p.y);
-        }
-        height_ = std::max(1.0, std::ceil((high - low_) / std::sqrt(static_cast<double>(ends_.size()))));
-        std::sort(ends_.begin(), ends_.end(), [this](const Point2& a, const Point2& b) {
-            return std::pair(row(a.y), a) < std::pair(row(b.y), b);
-        });
-        ends_.erase(std::unique(ends_.begin(), ends_.end()), ends_.end());
-        begins_.resize(row(high) + 2, 0);
-        for (const Point2& p : ends_)
-            ++begins_[row(p.y) + 1];
-        std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+    explicit Ends(std::span<const Side> sides) : ends_(ends_of(sides)), cells_(cells_for(ends_)) {
+        const auto numbers = std::views::iota(0U, static_cast<std::uint32_t>(ends_.size()));
+        [[maybe_unused]] const bool sorted =
+            cells_.sort(numbers, ends_.size(),
+                        [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(ends_[i])); });
+        assert(sorted); // each end is in one cell
     }
 
     /// Calls visit(end) for the ends within the reach of the segment, but for its own.
     template <class Visit>
-    void for_ends_on(const Segment& s, Reach reach, Visit visit) const {
-        const double beside = reach == Reach::on_it ? 0 : 1;
-        const double dx = s.hi.x - s.lo.x;
-        const double dy = s.hi.y - s.lo.y;
-        const auto x_at = [&](double y) {
-            return s.lo.x + std::clamp((y - s.lo.y) / dy, 0.0, 1.0) * dx;
-        };
-        const std::size_t last = std::min(row(std::max(s.lo.y, s.hi.y) + beside), begins_.size() - 2);
-        for (std::size_t r = row(std::max(std::min(s.lo.y, s.hi.y) - beside, low_)); r <= last; ++r) {
-            double x0 = s.lo.x;
-            double x1 = s.hi.x;
-            if (dy != 0) {
-                const double bottom = low_ + static_cast<double>(r) * height_;
-                std::tie(x0, x1) = std::minmax({x_at(bottom - beside), x_at(bottom + height_ + beside)});
+    void for_ends_on(const Segment& s, Reach reach, const Visit& visit) const {
+        cells_.for_cells_along(s, [&](std::size_t cell) {
+            for (const std::uint32_t i : cells_.in_cell(cell)) {
+                const Point2& p = ends_[i];
+                if (s.lo < p && p < s.hi && (reach == Reach::on_it ? side(s, p) == 0 : passes_by(s, p)))
+                    visit(p);
             }
-            const auto end = ends_.begin() + begins_[r + 1];
-            for (auto p = std::partition_point(ends_.begin() + begins_[r], end,
-                                               [&](const Point2& q) { return q.x < x0 - 1; });
-                 p != end && p->x <= x1 + 1; ++p)
-                if (s.lo < *p && *p < s.hi && (reach == Reach::on_it ? side(s, *p) == 0 : passes_by(s, *p)))
-                    visit(*p);
-        }
+        });
     }
 
   private:
-    [[nodiscard]] std::size_t row(double y) const noexcept {
-        return static_cast<std::size_t>((y - low_) / height_);
+    static std::vector<Point2> ends_of(std::span<const Side> sides) {
+        std::vector<Point2> ends;
+        ends.reserve(2 * sides.size());
+        for (const Side& side : sides)
+            ends.insert(ends.end(), {side.line.lo, side.line.hi});
+        std::sort(ends.begin(), ends.end());
+        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+        return ends;
+    }
+
+    /// Cells so large that a segment's margin covers the unit squares into which it comes.
+    static Grid cells_for(std::span<const Point2> ends) {
+        const Box2 box = box_of(ends);
+        return {box, std::max(1 / Grid::margin, Grid::cell_size(box, static_cast<double>(ends.size()), 0))};
     }
 
     std::vector<Point2> ends_;
-    std::vector<std::ptrdiff_t> begins_; // of the rows
-    double low_ = 0;
-    double height_ = 1;
+    Grid cells_;
 };
 
 struct Cut {

@@ -1,6 +1,9 @@
 #include "polygon/chain_grid.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <ranges>
 
 namespace lamella {
 
@@ -9,9 +12,8 @@ std::optional<ChainGrid> ChainGrid::of(const MonotoneChains& chains) {
         return std::nullopt;
     std::optional<ChainGrid> grid(ChainGrid{chains});
     grid->take_rings();
-    if (!grid->lay_out())
+    if (!grid->sort())
         return std::nullopt;
-    grid->fill();
     return grid;
 }
 
@@ -29,13 +31,13 @@ void ChainGrid::take_rings() {
     pieces_.reserve(expected + expected / 4);
     boxes_.reserve(pieces_.capacity());
     const double longest =
-        4 * std::max(all_.x1 - all_.x0, all_.y1 - all_.y0) / std::sqrt(static_cast<double>(expected));
+        4 * std::max(all_.width(), all_.height()) / std::sqrt(static_cast<double>(expected));
     for (std::uint32_t ring = 0; ring < chains.rings(); ++ring) {
         const std::span<const Chain> here = chains.of_ring(ring);
         if (here.empty())
             continue;
-        const ChainBox& box = chains.box(ring);
-        if (here.size() <= few_chains && std::max(box.x1 - box.x0, box.y1 - box.y0) <= longest) {
+        const Box2& box = chains.box(ring);
+        if (here.size() <= few_chains && std::max(box.width(), box.height()) <= longest) {
             pieces_.push_back({here.front().first, ring, 0, way::all, {}, {}});
             boxes_.push_back(box);
         } else {
@@ -47,8 +49,8 @@ void ChainGrid::take_rings() {
 }
 
 void ChainGrid::take(const Chain& chain, double longest) {
-    const ChainBox box = chain.box();
-    if (chain.segments > 1 && std::max(box.x1 - box.x0, box.y1 - box.y0) > longest) {
+    const Box2 box = chain.box();
+    if (chain.segments > 1 && std::max(box.width(), box.height()) > longest) {
         const std::uint32_t half = chain.segments / 2;
         const Point2& middle = all_chains_->point(chain, half);
         take({chain.first, chain.ring, half, chain.ways, chain.front, middle}, longest);
@@ -61,10 +63,10 @@ void ChainGrid::take(const Chain& chain, double longest) {
 }
 
 bool ChainGrid::surrounded(const Point2& p, std::uint32_t ring) const noexcept {
-    const auto around = [&](const ChainBox& box) {
+    const auto around = [&](const Box2& box) {
         return box.x0 <= p.x && p.x <= box.x1 && box.y0 <= p.y && p.y <= box.y1;
     };
-    const auto here = in_cell(cell(p.x, p.y));
+    const auto here = cells_->in_cell(cells_->cell(p));
     return large_rings_.size() > few_large_rings ||
            std::ranges::any_of(large_rings_,
                                [&](std::uint32_t i) { return i != ring && around(all_chains_->box(i)); }) ||
@@ -72,52 +74,28 @@ bool ChainGrid::surrounded(const Point2& p, std::uint32_t ring) const noexcept {
                                [&](std::uint32_t i) { return pieces_[i].ring != ring && around(boxes_[i]); });
 }
 
-/// False where the pieces reach into too many cells.
-bool ChainGrid::lay_out() {
-    double sides = 0;
-    for (const ChainBox& box : boxes_)
-        sides += (box.x1 - box.x0) + (box.y1 - box.y0);
-    const double width = all_.x1 - all_.x0;
-    const double height = all_.y1 - all_.y0;
-    const auto count = static_cast<double>(pieces_.size());
-    const double size = std::max({sides / (2 * count), std::sqrt(width * height / count),
-                                  (width + height) / count, std::max(width, height) / 0x1p15});
-    scale_ = 1 / size;
-    if (!(size > 0 && std::isfinite(width) && std::isfinite(height) && std::isfinite(scale_) &&
-          std::isfinite(width * scale_) && std::isfinite(height * scale_)))
+/// False where the pieces reach into too many cells, or extents are beyond numbers.
+bool ChainGrid::sort() {
+    double extents = 0;
+    for (const Box2& box : boxes_)
+        extents += box.width() + box.height();
+    const double size = Grid::cell_size(all_, static_cast<double>(pieces_.size()), extents);
+    if (!(size > 0 && std::isfinite(1 / size) && std::isfinite(all_.width()) && std::isfinite(all_.height())))
         return false;
-    columns_ = static_cast<std::size_t>(width * scale_) + 1;
-    rows_ = static_cast<std::size_t>(height * scale_) + 1;
-    std::size_t entries = 0;
-    for (const ChainBox& box : boxes_) {
-        entries += (column(box.x1) - column(box.x0) + 1) * (row(box.y1) - row(box.y0) + 1);
-        if (entries > 16 * pieces_.size() + 4096)
-            return false;
-    }
-    return true;
+    cells_.emplace(all_, size);
+    const auto numbers = std::views::iota(0U, static_cast<std::uint32_t>(pieces_.size()));
+    return cells_->sort(numbers, 16 * pieces_.size() + 4096, [this](std::uint32_t piece, const auto& visit) {
+        cells_->for_cells(boxes_[piece], visit);
+    });
 }
 
-void ChainGrid::fill() {
-    ends_.assign(columns_ * rows_ + 1, 0);
-    for (const ChainBox& box : boxes_)
-        for_cells(box, [&](std::size_t i) { ++ends_[i]; });
-    std::uint32_t sum = 0;
-    for (std::uint32_t& end : ends_) {
-        pairs_ += std::uint64_t{end} * end;
-        end = sum += end;
+bool ChainGrid::crowded() const noexcept {
+    std::uint64_t pairs = 0; // of pieces in a cell, over all cells
+    for (std::size_t cell = 0; cell < cells_->cells(); ++cell) {
+        const std::uint64_t here = cells_->in_cell(cell).size();
+        pairs += here * here;
     }
-    sorted_.resize(sum);
-    for (std::size_t k = pieces_.size(); k-- > 0;)
-        for_cells(boxes_[k], [&](std::size_t i) { sorted_[--ends_[i]] = static_cast<std::uint32_t>(k); });
-}
-
-template <class Visit>
-void ChainGrid::for_cells(const ChainBox& box, Visit visit) const {
-    const std::size_t i1 = column(box.x1);
-    const std::size_t j1 = row(box.y1);
-    for (std::size_t j = row(box.y0); j <= j1; ++j)
-        for (std::size_t i = column(box.x0); i <= i1; ++i)
-            visit(cell_at(i, j));
+    return pairs > 256 * pieces_.size() + 65536;
 }
 
 } // namespace lamella

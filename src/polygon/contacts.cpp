@@ -32,10 +32,6 @@ bool meet(const Segment& s, const Segment& t) noexcept {
     return s.lo <= t.hi && t.lo <= s.hi;
 }
 
-Segment ascending(const Point2& a, const Point2& b) noexcept {
-    return a < b ? Segment{a, b} : Segment{b, a};
-}
-
 /// Disjoint sets of rings; a set is marked once a contact was found in it.
 class Groups {
   public:
@@ -83,8 +79,8 @@ class ContactSearch {
         : layer_(layer), all_(chains), groups_(layer.rings) {}
 
     Contacts run(const ChainGrid* grid) && {
-        const bool told = grid != nullptr && search(*grid);
-        if (!told && !all_.all().empty() && (found_ || !free_of_contacts()))
+        const bool searched = grid != nullptr && search(*grid);
+        if (!searched && !all_.all().empty() && (found_ || !free_of_contacts()))
             group_by_boxes();
         return groups_.contacts();
     }
@@ -96,8 +92,9 @@ class ContactSearch {
         for (const Chain& piece : grid.pieces())
             if (ChainGrid::whole_ring(piece))
                 look_into(piece.ring);
-        for (std::size_t i = 0; i < grid.cells(); ++i) {
-            const std::span<const std::uint32_t> here = grid.in_cell(i);
+        const Grid& cells = grid.cells();
+        for (std::size_t i = 0; i < cells.cells(); ++i) {
+            const std::span<const std::uint32_t> here = cells.in_cell(i);
             if (no_news_among(grid, here))
                 continue;
             const std::uint64_t pairs = here.size() * here.size() / 16;
@@ -110,10 +107,10 @@ class ContactSearch {
                     break;
                 news = groups_.news();
                 for (std::size_t b = a + 1; b < here.size(); ++b) {
-                    const ChainBox& s = grid.box(here[a]);
-                    const ChainBox& t = grid.box(here[b]);
+                    const Box2& s = grid.box(here[a]);
+                    const Box2& t = grid.box(here[b]);
                     // Boxes may meet in many cells: one of them will do.
-                    if (s.meets(t) && i == grid.cell(std::max(s.x0, t.x0), std::max(s.y0, t.y0)))
+                    if (s.meets(t) && i == cells.cell({std::max(s.x0, t.x0), std::max(s.y0, t.y0)}))
                         look_into(grid, here[a], here[b]);
                 }
             }
@@ -203,8 +200,8 @@ class ContactSearch {
     bool in_contact(const Chain& a, std::uint32_t a0, std::uint32_t a1, const Chain& b, std::uint32_t b0,
                     std::uint32_t b1) {
         patience_ -= patience_ > 0 ? 1 : 0;
-        if (!ChainBox::of(all_.point(a, a0), all_.point(a, a1))
-                 .meets(ChainBox::of(all_.point(b, b0), all_.point(b, b1))))
+        if (!Box2::of(all_.point(a, a0), all_.point(a, a1))
+                 .meets(Box2::of(all_.point(b, b0), all_.point(b, b1))))
             return false;
         if (a1 - a0 == 1 && b1 - b0 == 1)
             return in_contact(a.ring, static_cast<std::uint32_t>(a.first + a0), b.ring,
@@ -232,7 +229,7 @@ class ContactSearch {
             if (follows(ring_a, j, i))
                 return folds(b0, b1, a1);
         }
-        return meet(ascending(a0, a1), ascending(b0, b1));
+        return meet(segment_between(a0, a1), segment_between(b0, b1));
     }
 
     [[nodiscard]] std::uint32_t following(std::uint32_t ring, std::uint32_t i) const noexcept {
@@ -279,7 +276,7 @@ class ContactSearch {
                 if (a == b)
                     continue;
                 const auto number = static_cast<std::uint32_t>(lines.size());
-                lines.push_back({ascending(a, b), ring, i});
+                lines.push_back({segment_between(a, b), ring, i});
                 events.push_back({lines.back().line.lo, false, number});
                 events.push_back({lines.back().line.hi, true, number});
             }

@@ -4,11 +4,13 @@
 
 #include "polygon/chain_grid.hpp"
 #include "polygon/contacts.hpp"
+#include "polygon/grid.hpp"
 #include "polygon/line_tree.hpp"
 #include "polygon/monotone_chains.hpp"
 #include "polygon/orientation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -24,18 +26,6 @@ namespace {
 
 using SegmentId = std::uint32_t; // the number of its first point in the layer
 
-/// The part of a layer that a search looks at: half-open, in local coordinates (see Frame).
-struct Cell {
-    double x0;
-    double y0;
-    double x1;
-    double y1;
-
-    [[nodiscard]] bool contains(const Point2& p) const noexcept {
-        return x0 <= p.x && p.x < x1 && y0 <= p.y && p.y < y1;
-    }
-};
-
 /// Local coordinates: measured from the lower left corner of the layer, in a unit that makes them at most 4,
 /// so that nothing overflows and a part far from the origin loses no digits. They only decide in which cell
 /// something is looked for; whether segments cross is decided on the points as they are.
@@ -44,18 +34,13 @@ struct Frame {
     Point2 origin;   ///< in that unit
     Point2 corner;   ///< the upper right one
 
-    explicit Frame(std::span<const Point2> points) {
-        Point2 min = points.front();
-        Point2 max = points.front();
-        for (const Point2& p : points) {
-            min = {std::min(min.x, p.x), std::min(min.y, p.y)};
-            max = {std::max(max.x, p.x), std::max(max.y, p.y)};
-        }
-        const double largest = std::max({std::abs(min.x), std::abs(min.y), std::abs(max.x), std::abs(max.y)});
+    explicit Frame(const Box2& box) {
+        const double largest = box.largest_coordinate();
         if (largest > 0)
-            unit = std::ldexp(1, std::clamp(-std::ilogb(largest), -1000, 1000));
-        origin = {min.x * unit, min.y * unit};
-        corner = local(max);
+            unit = std::ldexp(1, std::min(-std::ilogb(largest), 1000));
+        origin = {box.x0 * unit, box.y0 * unit};
+        corner = local({box.x1, box.y1});
+        assert(corner.x <= 4 && corner.y <= 4);
     }
 
     [[nodiscard]] Point2 local(const Point2& p) const noexcept {
@@ -63,89 +48,6 @@ struct Frame {
     }
 };
 
-/// A grid of square cells over a cell of the level above.
-class Grid {
-  public:
-    /// For `count` segments of the total length `length` within the cell: about as many cells as segments,
-    /// but none shorter than half the mean segment, so that there are a few entries per segment.
-    Grid(const Cell& whole, double count, double length) : whole_(whole) {
-        const double width = whole.x1 - whole.x0;
-        const double height = whole.y1 - whole.y0;
-        size_ = std::max({length / (2 * count), std::sqrt(width * height / (2 * count)),
-                          (width + height) / count, std::max(width, height) / largest_side});
-        if (size_ > 0) { // rounding can leave cells without any extent
-            columns_ = static_cast<std::size_t>(width / size_) + 1;
-            rows_ = static_cast<std::size_t>(height / size_) + 1;
-        }
-    }
-
-    [[nodiscard]] std::size_t cells() const noexcept { return columns_ * rows_; }
-    [[nodiscard]] double cell_size() const noexcept { return size_; }
-
-    [[nodiscard]] Cell cell(std::size_t i) const noexcept {
-        const std::size_t column = i % columns_;
-        const std::size_t row = i / columns_;
-        // Neighbours compute their common border from the same numbers, so cells neither overlap nor gape.
-        const auto border = [this](double first, double last, std::size_t k, std::size_t n) {
-            return k == 0 ? first : k == n ? last : std::min(last, first + static_cast<double>(k) * size_);
-        };
-        return {border(whole_.x0, whole_.x1, column, columns_), border(whole_.y0, whole_.y1, row, rows_),
-                border(whole_.x0, whole_.x1, column + 1, columns_),
-                border(whole_.y0, whole_.y1, row + 1, rows_)};
-    }
-
-    /// Calls visit(i) for every cell i that the segment (in local coordinates) meets or comes close to,
-    /// closer than all rounding errors.
-    template <class Visit>
-    void for_cells_along(const Segment& s, Visit visit) const {
-        double u0 = (s.lo.x - whole_.x0) / size_;
-        double v0 = (s.lo.y - whole_.y0) / size_;
-        double u1 = (s.hi.x - whole_.x0) / size_;
-        double v1 = (s.hi.y - whole_.y0) / size_;
-        if (v0 > v1) {
-            std::swap(u0, u1);
-            std::swap(v0, v1);
-        }
-        const double first_u = std::max(0.0, std::floor(std::min(u0, u1) - margin));
-        const double last_u =
-            std::min(static_cast<double>(columns_ - 1), std::floor(std::max(u0, u1) + margin));
-        const double first_v = std::max(0.0, std::floor(v0 - margin));
-        const double last_v = std::min(static_cast<double>(rows_ - 1), std::floor(v1 + margin));
-        if (first_u > last_u || first_v > last_v)
-            return;
-        // A flat segment meets at most two rows; a slope computed from a small height could be far off.
-        const bool whole_rows = first_v == last_v || first_u == last_u || v1 - v0 < 0.25;
-        const double slope = whole_rows ? 0 : (u1 - u0) / (v1 - v0);
-        for (double v = first_v; v <= last_v; ++v) {
-            double from = first_u;
-            double to = last_u;
-            if (!whole_rows) {
-                const double enter = u0 + (std::max(v - margin, v0) - v0) * slope;
-                const double leave = u0 + (std::min(v + 1 + margin, v1) - v0) * slope;
-                from = std::max(from, std::floor(std::min(enter, leave) - margin));
-                to = std::min(to, std::floor(std::max(enter, leave) + margin));
-            }
-            const std::size_t row = static_cast<std::size_t>(v) * columns_;
-            for (double u = from; u <= to; ++u)
-                visit(row + static_cast<std::size_t>(u));
-        }
-    }
-
-    /// Below this share of the layer's extent, cells are not divided: positions have 2^-52 of it, and slopes
-    /// within a row may magnify that by some 2^20.
-    static constexpr double smallest_cell = 0x1p-24;
-
-  private:
-    static constexpr double margin = 0x1p-6; // in cells
-    static constexpr double largest_side = 0x1p15;
-
-    Cell whole_;
-    double size_;
-    std::size_t columns_ = 1;
-    std::size_t rows_ = 1;
-};
-
-/// The first and last point of a pair's segments in common is a touch at most.
 bool share_an_end(const Segment& s, const Segment& t) noexcept {
     return s.lo == t.lo || s.hi == t.hi || s.lo == t.hi || s.hi == t.lo;
 }
@@ -156,22 +58,23 @@ bool cross(const Segment& s, const Segment& t) noexcept {
     const auto [s_min, s_max] = std::minmax(s.lo.y, s.hi.y);
     const auto [t_min, t_max] = std::minmax(t.lo.y, t.hi.y);
     if (s_min >= t_max || t_min >= s_max || share_an_end(s, t))
-        return false;
+        return false; // a touch at most
     return side(s, t.lo) * side(s, t.hi) < 0 && side(t, s.lo) * side(t, s.hi) < 0;
 }
 
 /// All proper crossings of a layer. A grid divides the segments into cells with a few of them; cells with
 /// many are divided again. Where most segments are long for their cell no grid parts them (many walls side by
 /// side, aslant); there a sweep finds in O(m log m) that nothing crosses, or a few segments that have a part
-/// in every crossing.
+/// in every crossing. Those are tested against the segments beside them (`LineTree`).
 ///
-/// Two segments can meet in several cells: a crossing counts in the one cell that holds its computed place.
+/// Two segments can meet in several cells: a crossing counts in the one cell, half open, that holds its
+/// computed place.
 class CrossingSearch {
   public:
-    /// Among the contours that chosen(c) says.
+    /// Only contours for which chosen(c) is true.
     template <class Chosen>
     CrossingSearch(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough)
-        : layer_(layer), keep_(keep), enough_(enough), frame_(layer.points.span()) {
+        : layer_(layer), keep_(keep), enough_(enough), frame_(box_of(layer.points.span())) {
         segments_.resize(layer.points.size());
         ids_.reserve(layer.points.size());
         for (std::size_t c = 0; c < layer.contours(); ++c) {
@@ -184,7 +87,7 @@ class CrossingSearch {
                     break;
                 const Point2& a = layer.points[i];
                 const Point2& b = layer.points[i + 1 == end ? begin : i + 1];
-                segments_[i] = a < b ? Segment{a, b} : Segment{b, a};
+                segments_[i] = segment_between(a, b);
                 if (a != b)
                     ids_.push_back(static_cast<SegmentId>(i));
             }
@@ -196,6 +99,7 @@ class CrossingSearch {
             return std::nextafter(x, std::numeric_limits<double>::infinity());
         };
         search({0, 0, beyond(frame_.corner.x), beyond(frame_.corner.y)}, ids_);
+        assert(first_.size() == std::min<std::uint64_t>(keep_, count_));
         Crossings result;
         result.count = count_;
         for (const Pair& pair : first_)
@@ -212,63 +116,64 @@ class CrossingSearch {
     };
 
     /// Finds the crossings in `cell` among the segments that meet it.
-    void search(const Cell& cell, std::span<const SegmentId> ids) {
+    void search(const Box2& cell, std::span<const SegmentId> ids) {
         if (count_ >= enough_)
             return;
         if (ids.size() <= few) {
             search_all_pairs(cell, ids);
             return;
         }
-        const double width = cell.x1 - cell.x0;
-        const double height = cell.y1 - cell.y0;
+        const double sides = std::max(cell.width(), cell.height());
         double length = 0;
         std::size_t long_ones = 0;
         for (const SegmentId id : ids) {
             const auto [a, b] = local(segments_[id]);
-            const double within = std::max(std::min(width, b.x - a.x), std::min(height, std::abs(b.y - a.y)));
+            const double within =
+                std::max(std::min(cell.width(), b.x - a.x), std::min(cell.height(), std::abs(b.y - a.y)));
             length += within;
-            long_ones += within > std::max(width, height) / 4 ? 1 : 0;
+            long_ones += within > sides / 4 ? 1 : 0;
         }
-        const Grid grid(cell, static_cast<double>(ids.size()), length);
-        const bool too_small =
-            grid.cell_size() < Grid::smallest_cell * std::max(frame_.corner.x, frame_.corner.y);
-        if (too_small || 4 * long_ones > 3 * ids.size()) {
+        const double size = Grid::cell_size(cell, static_cast<double>(ids.size()), length);
+        const bool too_small = size < smallest_cell * std::max(frame_.corner.x, frame_.corner.y);
+        if (too_small || 4 * long_ones > 3 * ids.size() || !search_by_grid(cell, size, ids)) {
             if (ids.size() <= few_for_a_sweep)
                 search_all_pairs(cell, ids);
             else
                 search_by_sweep(cell, ids);
-            return;
         }
-        std::vector<std::size_t> ends(grid.cells() + 1, 0);
-        for (const SegmentId id : ids)
-            grid.for_cells_along(local(segments_[id]), [&](std::size_t i) { ++ends[i]; });
-        std::size_t entries = 0;
-        for (std::size_t& end : ends)
-            end = entries += end;
-        std::vector<SegmentId> sorted(entries);
-        for (std::size_t k = ids.size(); k-- > 0;) // backwards, so that each cell lists them in order
-            grid.for_cells_along(local(segments_[ids[k]]),
-                                 [&](std::size_t i) { sorted[--ends[i]] = ids[k]; });
+    }
+
+    /// False where the segments reach into too many cells.
+    bool search_by_grid(const Box2& whole, double size, std::span<const SegmentId> ids) {
+        Grid grid(whole, size);
+        const bool sorted =
+            grid.sort(ids, std::numeric_limits<std::uint32_t>::max(), [&](SegmentId id, const auto& visit) {
+                grid.for_cells_along(local(segments_[id]), visit);
+            });
+        if (!sorted)
+            return false;
         for (std::size_t i = 0; i < grid.cells(); ++i)
-            if (ends[i + 1] - ends[i] > 1)
-                search(grid.cell(i), std::span(sorted).subspan(ends[i], ends[i + 1] - ends[i]));
+            if (const std::span<const SegmentId> here = grid.in_cell(i); here.size() > 1)
+                search(grid.box(i), here);
+        return true;
     }
 
     [[nodiscard]] Segment local(const Segment& s) const noexcept {
         return {frame_.local(s.lo), frame_.local(s.hi)};
     }
 
-    void search_all_pairs(const Cell& cell, std::span<const SegmentId> ids) {
+    void search_all_pairs(const Box2& cell, std::span<const SegmentId> ids) {
         for (std::size_t i = 0; i < ids.size() && count_ < enough_; ++i)
             for (std::size_t j = i + 1; j < ids.size(); ++j)
                 test(cell, ids[i], ids[j]);
     }
 
-    void test(const Cell& cell, SegmentId a, SegmentId b) {
+    void test(const Box2& cell, SegmentId a, SegmentId b) {
         if (!cross(segments_[a], segments_[b]))
             return;
         const Pair pair{std::min(a, b), std::max(a, b)};
-        if (cell.contains(place(pair)))
+        const Point2 at = place(pair);
+        if (cell.x0 <= at.x && at.x < cell.x1 && cell.y0 <= at.y && at.y < cell.y1)
             found(pair);
     }
 
@@ -312,7 +217,7 @@ class CrossingSearch {
     /// has one of those that left. They are at most twice as many as the fewest segments without which there
     /// would be no crossing, so that one stray segment through a thousand walls costs two rounds, not a
     /// thousand.
-    void search_by_sweep(const Cell& cell, std::span<const SegmentId> ids) {
+    void search_by_sweep(const Box2& cell, std::span<const SegmentId> ids) {
         struct Event {
             Point2 at;
             bool starts;
@@ -381,12 +286,10 @@ class CrossingSearch {
     }
 
     /// Tests those that left against all others that may reach them.
-    void search_side_by_side(const Cell& cell, std::span<const SegmentId> ids,
+    void search_side_by_side(const Box2& cell, std::span<const SegmentId> ids,
                              const std::vector<bool>& has_left) {
         const auto turned = [](const Segment& s) {
-            const Point2 a{s.lo.y, s.lo.x};
-            const Point2 b{s.hi.y, s.hi.x};
-            return a < b ? Segment{a, b} : Segment{b, a};
+            return segment_between({s.lo.y, s.lo.x}, {s.hi.y, s.hi.x});
         };
         std::vector<LineTree::Item> flat;
         std::vector<LineTree::Item> steep;
@@ -429,6 +332,9 @@ class CrossingSearch {
 
     static constexpr std::size_t few = 24;
     static constexpr std::size_t few_for_a_sweep = 128;
+    /// Below this share of the layer's extent, cells are not divided: positions have 2^-52 of it, and slopes
+    /// within a row may magnify that by some 2^20.
+    static constexpr double smallest_cell = 0x1p-24;
 
     const Layer& layer_;
     std::size_t keep_;

@@ -29,12 +29,13 @@ std::optional<EdgeBelow> edge_below(const Point2& p, std::uint32_t own, const Mo
                                     const ChainGrid& grid) {
     std::optional<EdgeBelow> found;
     Segment highest{};
-    const auto reaches = [&p](const ChainBox& box) {
+    const auto reaches = [&p](const Box2& box) {
         return box.x0 <= p.x && p.x < box.x1 && box.y0 <= p.y;
     };
-    const std::size_t column = grid.column(p.x);
-    for (std::size_t row = grid.row(p.y) + 1; row-- > 0;) {
-        for (const std::uint32_t i : grid.in_cell(grid.cell_at(column, row))) {
+    const Grid& cells = grid.cells();
+    const std::size_t column = cells.column(p.x);
+    for (std::size_t row = cells.row(p.y) + 1; row-- > 0;) {
+        for (const std::uint32_t i : cells.in_cell(cells.cell_at(column, row))) {
             if (!reaches(grid.box(i)) || grid.pieces()[i].ring == own)
                 continue;
             for (const Chain& chain : grid.chains(grid.pieces()[i])) {
@@ -48,7 +49,7 @@ std::optional<EdgeBelow> edge_below(const Point2& p, std::uint32_t own, const Mo
             }
         }
         // What was not seen yet lies in lower rows from end to end.
-        if (found && grid.row(std::min(highest.lo.y, highest.hi.y)) >= row)
+        if (found && cells.row(std::min(highest.lo.y, highest.hi.y)) >= row)
             break;
     }
     return found;

@@ -172,7 +172,7 @@ Filled fill(const Layer& layer, FillRule rule) {
 }
 
 bool winds_once(std::span<const Layer> parts) {
-    std::vector<ChainBox> boxes;
+    std::vector<Box2> boxes;
     for (const Layer& layer : parts) {
         if (layer.rings == 0)
             continue;
@@ -181,12 +181,12 @@ bool winds_once(std::span<const Layer> parts) {
         const Look look(layer);
         if (!look.clean())
             return false;
-        ChainBox box = look.chains.box(0);
+        Box2 box = look.chains.box(0);
         for (std::size_t i = 1; i < layer.rings; ++i)
             box.add(look.chains.box(i));
         boxes.push_back(box);
     }
-    std::ranges::sort(boxes, {}, &ChainBox::x0);
+    std::ranges::sort(boxes, {}, &Box2::x0);
     for (std::size_t i = 0; i < boxes.size(); ++i)
         for (std::size_t j = i + 1; j < boxes.size() && boxes[j].x0 <= boxes[i].x1; ++j)
             if (boxes[i].meets(boxes[j]))

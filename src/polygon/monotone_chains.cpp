@@ -86,12 +86,12 @@ void MonotoneChains::cut(std::uint32_t ring) {
     if (end - begin < 2)
         return;
     Chain chain{begin, ring, 0, 0, points[begin], {}};
-    ChainBox box = ChainBox::of(points[begin], points[begin]);
+    Box2 box = Box2::of(points[begin]);
     const auto begin_anew = [&](std::uint64_t first) {
         chain.back = points[first];
         chains_.push_back(chain);
         chain = {first, ring, 0, 0, points[first], {}};
-        box.add(ChainBox::of(points[first], points[first])); // every end of a chain is a beginning
+        box.add(Box2::of(points[first])); // every end of a chain is a beginning
     };
     std::uint64_t i = begin;
     while (i + 1 < end) {

@@ -4,7 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
-#include <algorithm>
+#include "polygon/box2.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,26 +33,6 @@ constexpr unsigned all = right | left | up | down;
 }
 } // namespace way
 
-struct ChainBox {
-    double x0;
-    double y0;
-    double x1;
-    double y1;
-
-    static ChainBox of(const Point2& a, const Point2& b) noexcept {
-        return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
-    }
-    void add(const ChainBox& other) noexcept {
-        x0 = std::min(x0, other.x0);
-        y0 = std::min(y0, other.y0);
-        x1 = std::max(x1, other.x1);
-        y1 = std::max(y1, other.y1);
-    }
-    [[nodiscard]] bool meets(const ChainBox& other) const noexcept {
-        return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
-    }
-};
-
 /// A piece of a ring that goes one way in x and one way in y: its box is that of its ends, and it does not
 /// meet itself.
 struct Chain {
@@ -62,7 +43,7 @@ struct Chain {
     Point2 front; ///< its first point and its last one: whoever looks for chains need not touch the layer
     Point2 back;
 
-    [[nodiscard]] ChainBox box() const noexcept { return ChainBox::of(front, back); }
+    [[nodiscard]] Box2 box() const noexcept { return Box2::of(front, back); }
 };
 
 /// The chains of a layer's rings, in the order of the rings. Open chains of the layer do not count, nor do
@@ -81,7 +62,7 @@ class MonotoneChains {
         return all().subspan(starts_[ring], starts_[ring + 1] - starts_[ring]);
     }
     /// The box of a ring that has chains.
-    [[nodiscard]] const ChainBox& box(std::size_t ring) const noexcept { return boxes_[ring]; }
+    [[nodiscard]] const Box2& box(std::size_t ring) const noexcept { return boxes_[ring]; }
 
     /// Point i of a chain, 0 <= i <= segments.
     [[nodiscard]] const Point2& point(const Chain& chain, std::uint32_t i) const noexcept {
@@ -95,7 +76,7 @@ class MonotoneChains {
     const Layer* layer_;
     std::vector<Chain> chains_;
     std::vector<std::uint32_t> starts_; ///< of each ring, and the end
-    std::vector<ChainBox> boxes_;       ///< of each ring
+    std::vector<Box2> boxes_;           ///< of each ring
 };
 
 } // namespace lamella

@@ -14,6 +14,10 @@ struct Segment {
     Point2 hi;
 };
 
+[[nodiscard]] inline Segment segment_between(const Point2& a, const Point2& b) noexcept {
+    return a < b ? Segment{a, b} : Segment{b, a};
+}
+
 /// +1 when p lies above the line of s, -1 below, 0 on it. (For a vertical segment "above" is to its left.)
 [[nodiscard]] inline int side(const Segment& s, const Point2& p) noexcept {
     return orientation(s.lo, s.hi, p);
