@@ -4,15 +4,14 @@
 
 #include "polygon/grid.hpp"
 #include "polygon/orientation.hpp"
+#include "polygon/segment_sweep.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <ranges>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -188,43 +187,40 @@ bool cut(std::vector<Side>& sides, Reach reach) {
     return true;
 }
 
-/// Tells the winding number below each side, by a sweep from left to right. The sides meet in their ends
+/// Finds the winding number below each side, by a sweep from left to right. The sides meet in their ends
 /// only.
 void wind(std::vector<Side>& sides, std::int64_t around) {
-    const auto lower = [&](std::size_t i, std::size_t j) {
-        const Segment& s = sides[i].line;
-        const Segment& t = sides[j].line;
-        const bool s_starts_later = t.lo < s.lo;
-        int s_side = s_starts_later ? side(t, s.lo) : -side(s, t.lo);
-        if (s_side == 0)
-            s_side = s_starts_later ? side(t, s.hi) : -side(s, t.hi);
-        return s_side != 0 ? s_side < 0 : i < j;
-    };
-    using Status = std::set<std::size_t, decltype(lower)>;
-    Status status(lower);
-    std::vector<Status::iterator> places(sides.size(), status.end());
-    std::vector<std::size_t> ending(sides.size());
-    std::iota(ending.begin(), ending.end(), std::size_t{0});
-    std::sort(ending.begin(), ending.end(),
-              [&](std::size_t i, std::size_t j) { return sides[i].line.hi < sides[j].line.hi; });
-    auto next_ending = ending.begin();
-    // Sides are in the order of their beginnings; those that begin in one point are placed together, for each
-    // takes its number from the one below.
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-        const Point2& at = sides[begin].line.lo;
-        for (; sides[*next_ending].line.hi <= at; ++next_ending)
-            status.erase(places[*next_ending]);
-        for (end = begin; end < sides.size() && sides[end].line.lo == at; ++end)
-            places[end] = status.insert(end).first;
-        auto first = places[begin];
-        while (first != status.begin() && sides[*std::prev(first)].line.lo == at)
-            --first;
-        std::int64_t below = first == status.begin() ? around : sides[*std::prev(first)].above();
-        for (auto place = first; place != status.end() && sides[*place].line.lo == at; ++place) {
-            sides[*place].below = below;
-            below = sides[*place].above();
+    std::vector<Segment> lines;
+    lines.reserve(sides.size());
+    for (const Side& side : sides)
+        lines.push_back(side.line);
+    SweepStatus status(lines);
+    const std::vector<SweepEvent> events = sweep_events(lines, SweepOrder::ends_first);
+    for (auto event = events.begin(); event != events.end();) {
+        if (!event->begins) {
+            status.erase(event->segment);
+            ++event;
+            continue;
         }
+        // Sides that begin in one point are placed together, for each takes its number from the one below.
+        const Point2 at = event->at;
+        std::uint32_t side = event->segment;
+        for (; event != events.end() && event->begins && event->at == at; ++event)
+            status.insert(event->segment);
+        const auto begins_here = [&](std::uint32_t i) {
+            return i != SweepStatus::none && lines[i].lo == at;
+        };
+        while (begins_here(status.below(side)))
+            side = status.below(side);
+        const std::uint32_t next_below = status.below(side);
+        std::int64_t below = next_below == SweepStatus::none ? around : sides[next_below].above();
+        for (; begins_here(side); side = status.above(side)) {
+            sides[side].below = below;
+            below = sides[side].above();
+        }
+        assert(side == SweepStatus::none ? below == around : below == sides[side].below);
     }
+    assert(status.empty());
 }
 
 std::vector<Side> arrangement(std::span<const std::span<const Point2>> rings, std::int64_t around,

@@ -3,8 +3,10 @@
 #include "lamella/core/error.hpp"
 
 #include "polygon/orientation.hpp"
+#include "polygon/segment_sweep.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -253,21 +255,14 @@ class ContactSearch {
         return orientation(a, b, c) == 0 && (a < b) == (c < b);
     }
 
-    /// A sweep from left to right (Shamos and Hoey): if any two segments are in contact, two that are
-    /// neighbours on the line of the sweep are found to be.
+    /// If any two segments are in contact, two that are neighbours on the line of a sweep are found to be.
     [[nodiscard]] bool free_of_contacts() const {
-        struct Line {
-            Segment line;
+        std::vector<Segment> segments;
+        struct Origin {
             std::uint32_t ring;
             std::uint32_t first;
         };
-        struct Event {
-            Point2 at;
-            bool ends;
-            std::uint32_t i;
-        };
-        std::vector<Line> lines;
-        std::vector<Event> events;
+        std::vector<Origin> origins;
         for (std::uint32_t ring = 0; ring < layer_.rings; ++ring)
             for (auto i = static_cast<std::uint32_t>(layer_.offsets[ring]); i < layer_.offsets[ring + 1];
                  ++i) {
@@ -275,45 +270,30 @@ class ContactSearch {
                 const Point2& b = layer_.points[following(ring, i)];
                 if (a == b)
                     continue;
-                const auto number = static_cast<std::uint32_t>(lines.size());
-                lines.push_back({segment_between(a, b), ring, i});
-                events.push_back({lines.back().line.lo, false, number});
-                events.push_back({lines.back().line.hi, true, number});
+                segments.push_back(segment_between(a, b));
+                origins.push_back({ring, i});
             }
+        SweepStatus status(segments);
+        const auto neighbours_in_contact = [&](std::uint32_t lower, std::uint32_t upper) {
+            return lower != SweepStatus::none && upper != SweepStatus::none &&
+                   in_contact(origins[lower].ring, origins[lower].first, origins[upper].ring,
+                              origins[upper].first);
+        };
         // Beginnings first: what begins where another one ends is in contact with it.
-        std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
-            return std::tie(a.at, a.ends, a.i) < std::tie(b.at, b.ends, b.i);
-        });
-        const auto lower = [&](std::uint32_t i, std::uint32_t j) {
-            const Segment& s = lines[i].line;
-            const Segment& t = lines[j].line;
-            const bool s_starts_later = t.lo < s.lo;
-            int s_side = s_starts_later ? side(t, s.lo) : -side(s, t.lo);
-            if (s_side == 0)
-                s_side = s_starts_later ? side(t, s.hi) : -side(s, t.hi);
-            return s_side != 0 ? s_side < 0 : i < j;
-        };
-        using Status = std::set<std::uint32_t, decltype(lower)>;
-        Status status(lower);
-        std::vector<Status::iterator> places(lines.size(), status.end());
-        const auto contact_below = [&](Status::iterator above) {
-            if (above == status.begin() || above == status.end())
-                return false;
-            const Line& s = lines[*std::prev(above)];
-            const Line& t = lines[*above];
-            return in_contact(s.ring, s.first, t.ring, t.first);
-        };
-        for (const Event& event : events) {
-            if (event.ends) {
-                if (contact_below(status.erase(places[event.i])))
+        for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::begins_first)) {
+            if (begins) {
+                status.insert(i);
+                if (neighbours_in_contact(status.below(i), i) || neighbours_in_contact(i, status.above(i)))
                     return false;
             } else {
-                const auto place = status.insert(event.i).first;
-                places[event.i] = place;
-                if (contact_below(place) || contact_below(std::next(place)))
+                const std::uint32_t below = status.below(i);
+                const std::uint32_t above = status.above(i);
+                status.erase(i);
+                if (neighbours_in_contact(below, above))
                     return false;
             }
         }
+        assert(status.empty());
         return true;
     }
 

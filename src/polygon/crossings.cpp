@@ -8,6 +8,7 @@
 #include "polygon/line_tree.hpp"
 #include "polygon/monotone_chains.hpp"
 #include "polygon/orientation.hpp"
+#include "polygon/segment_sweep.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -17,7 +18,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <tuple>
 #include <utility>
 
 namespace lamella {
@@ -213,75 +213,49 @@ class CrossingSearch {
                 within(s.lo.y + share * (s.hi.y - s.lo.y), s.lo.y, s.hi.y, t.lo.y, t.hi.y)};
     }
 
-    /// Shamos and Hoey's sweep from left to right. When two neighbours cross, both leave it: every crossing
-    /// has one of those that left. They are at most twice as many as the fewest segments without which there
-    /// would be no crossing, so that one stray segment through a thousand walls costs two rounds, not a
-    /// thousand.
+    /// When two neighbours on the line of a sweep cross, both leave it: every crossing has one of those that
+    /// left. They are at most twice as many as the fewest segments without which there would be no crossing,
+    /// so that one stray segment through a thousand walls costs two rounds, not a thousand.
     void search_by_sweep(const Box2& cell, std::span<const SegmentId> ids) {
-        struct Event {
-            Point2 at;
-            bool starts;
-            std::uint32_t i;
-        };
-        std::vector<Event> events;
-        events.reserve(2 * ids.size());
-        for (std::uint32_t i = 0; i < ids.size(); ++i) {
-            events.push_back({segments_[ids[i]].lo, true, i});
-            events.push_back({segments_[ids[i]].hi, false, i});
-        }
-        std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
-            return std::tie(a.at, a.starts, a.i) < std::tie(b.at, b.starts, b.i);
-        });
-
-        const auto segment = [&](std::uint32_t i) -> const Segment& {
-            return segments_[ids[i]];
-        };
-        const auto lower = [&](std::uint32_t i, std::uint32_t j) {
-            const Segment& s = segment(i);
-            const Segment& t = segment(j);
-            const bool s_starts_later = t.lo < s.lo;
-            int s_side = s_starts_later ? side(t, s.lo) : -side(s, t.lo);
-            if (s_side == 0)
-                s_side = s_starts_later ? side(t, s.hi) : -side(s, t.hi);
-            return s_side != 0 ? s_side < 0 : i < j;
-        };
-        using Status = std::set<std::uint32_t, decltype(lower)>;
-        Status status(lower);
-        std::vector<Status::iterator> places(ids.size(), status.end());
-        std::vector<std::uint32_t> left;
+        std::vector<Segment> segments;
+        segments.reserve(ids.size());
+        for (const SegmentId id : ids)
+            segments.push_back(segments_[id]);
+        SweepStatus status(segments);
         std::vector<bool> has_left(ids.size(), false);
-        const auto leave = [&](std::uint32_t i) {
-            status.erase(places[i]);
-            has_left[i] = true;
-            left.push_back(i);
-        };
-        // Tests the neighbours on both sides of a gap, and of the gap that they leave.
-        const auto close_gap = [&](Status::iterator above) {
-            while (above != status.begin() && above != status.end()) {
-                const std::uint32_t lower_one = *std::prev(above);
-                const std::uint32_t upper_one = *above;
-                if (!cross(segment(lower_one), segment(upper_one)))
-                    return;
-                above = std::next(above);
-                leave(lower_one);
-                leave(upper_one);
+        bool any_left = false;
+        // Tests two neighbours, and then those on both sides of the gap that they leave.
+        const auto test_neighbours = [&](std::uint32_t lower, std::uint32_t upper) {
+            while (lower != SweepStatus::none && upper != SweepStatus::none &&
+                   cross(segments[lower], segments[upper])) {
+                const std::uint32_t below = status.below(lower);
+                const std::uint32_t above = status.above(upper);
+                for (const std::uint32_t i : {lower, upper}) {
+                    status.erase(i);
+                    has_left[i] = true;
+                }
+                any_left = true;
+                lower = below;
+                upper = above;
             }
         };
-        for (const Event& event : events) {
-            if (has_left[event.i])
+        for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::ends_first)) {
+            if (has_left[i])
                 continue;
-            if (event.starts) {
-                const Status::iterator it = status.insert(event.i).first;
-                places[event.i] = it;
-                close_gap(it);
-                if (!has_left[event.i])
-                    close_gap(std::next(it));
+            if (begins) {
+                status.insert(i);
+                test_neighbours(status.below(i), i);
+                if (!has_left[i])
+                    test_neighbours(i, status.above(i));
             } else {
-                close_gap(status.erase(places[event.i]));
+                const std::uint32_t below = status.below(i);
+                const std::uint32_t above = status.above(i);
+                status.erase(i);
+                test_neighbours(below, above);
             }
         }
-
-        if (!left.empty())
+        assert(status.empty());
+        if (any_left)
             search_side_by_side(cell, ids, has_left);
     }
 

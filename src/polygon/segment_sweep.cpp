@@ -1,0 +1,69 @@
+#include "polygon/segment_sweep.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <iterator>
+#include <tuple>
+
+namespace lamella {
+
+std::vector<SweepEvent> sweep_events(std::span<const Segment> segments, SweepOrder order) {
+    assert(segments.size() < SweepStatus::none);
+    const bool begins_first = order == SweepOrder::begins_first;
+    const auto before = [begins_first](const SweepEvent& a, const SweepEvent& b) {
+        if (a.at != b.at)
+            return a.at < b.at;
+        return a.begins != b.begins ? a.begins == begins_first : a.segment < b.segment;
+    };
+    std::vector<SweepEvent> events;
+    events.reserve(2 * segments.size());
+    for (std::uint32_t i = 0; i < segments.size(); ++i) {
+        assert(segments[i].lo < segments[i].hi);
+        events.push_back({segments[i].lo, i, true});
+        events.push_back({segments[i].hi, i, false});
+    }
+    std::sort(events.begin(), events.end(), before);
+    return events;
+}
+
+bool SweepStatus::Lower::operator()(std::uint32_t i, std::uint32_t j) const noexcept {
+    const Segment& s = segments[i];
+    const Segment& t = segments[j];
+    const bool s_starts_later = t.lo < s.lo;
+    int s_side = s_starts_later ? side(t, s.lo) : -side(s, t.lo);
+    if (s_side == 0)
+        s_side = s_starts_later ? side(t, s.hi) : -side(s, t.hi);
+    return s_side != 0 ? s_side < 0 : i < j;
+}
+
+SweepStatus::SweepStatus(std::span<const Segment> segments)
+    : order_(Lower{segments}), places_(segments.size(), order_.end()) {}
+
+void SweepStatus::insert(std::uint32_t segment) {
+    assert(places_[segment] == order_.end());
+    [[maybe_unused]] const auto [place, inserted] = order_.insert(segment);
+    assert(inserted);
+    assert(place == order_.begin() || order_.key_comp()(*std::prev(place), segment));
+    assert(std::next(place) == order_.end() || order_.key_comp()(segment, *std::next(place)));
+    places_[segment] = place;
+}
+
+void SweepStatus::erase(std::uint32_t segment) {
+    assert(places_[segment] != order_.end() && *places_[segment] == segment);
+    order_.erase(places_[segment]);
+    places_[segment] = order_.end();
+}
+
+std::uint32_t SweepStatus::below(std::uint32_t segment) const noexcept {
+    const auto place = places_[segment];
+    assert(place != order_.end());
+    return place == order_.begin() ? none : *std::prev(place);
+}
+
+std::uint32_t SweepStatus::above(std::uint32_t segment) const noexcept {
+    assert(places_[segment] != order_.end());
+    const auto next = std::next(places_[segment]);
+    return next == order_.end() ? none : *next;
+}
+
+} // namespace lamella
