@@ -1,0 +1,36 @@
+#pragma once
+
+// Rings that bound the same place.
+
+#include "lamella/contour/layer.hpp"
+
+#include "polygon/left_end.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// Rings that bound the same place, in either direction: the first of them represents all. Points on the line
+/// between those beside them do not count.
+class RingCopies {
+  public:
+    /// `apart`: no two rings have a point in common, so there are none. Otherwise O(n log n) for n points in
+    /// rings that begin in one point.
+    RingCopies(const Layer& layer, std::span<const LeftEnd> ends, bool apart);
+
+    [[nodiscard]] std::uint32_t representative(std::uint32_t ring) const noexcept {
+        return representative_[ring];
+    }
+    /// The next copy of a ring, in ascending order, or Nesting::none.
+    [[nodiscard]] std::uint32_t next(std::uint32_t ring) const noexcept { return next_[ring]; }
+
+  private:
+    void find_among(const Layer& layer, std::span<const std::uint32_t> rings);
+
+    std::vector<std::uint32_t> representative_;
+    std::vector<std::uint32_t> next_;
+};
+
+} // namespace lamella

@@ -1,0 +1,59 @@
+#pragma once
+
+// The nesting of a layer, put together ring by ring.
+
+#include "lamella/polygon/nesting.hpp"
+
+#include "polygon/left_end.hpp"
+#include "polygon/ring_copies.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// Takes rings in the order of Nesting::order and says of each what it is and what it bounds.
+class RingPlacement {
+  public:
+    /// `ends` and `copies` are to outlive the placement.
+    RingPlacement(std::span<const LeftEnd> ends, const RingCopies& copies);
+
+    /// A ring without points.
+    void place_empty(std::uint32_t ring) { result_.order.push_back(ring); }
+    /// A ring and its copies, one within the other. `ring` represents them, `parent` was placed before or is
+    /// Nesting::none, `winding` is w just outside of their left end.
+    void place(std::uint32_t ring, std::uint32_t parent, std::int32_t winding);
+
+    /// Of those that were placed: the ring around all copies of a ring, and the innermost one of its copies.
+    [[nodiscard]] std::uint32_t outside(std::uint32_t ring) const noexcept { return outside_[ring]; }
+    [[nodiscard]] std::uint32_t innermost(std::uint32_t ring) const noexcept { return innermost_[ring]; }
+    [[nodiscard]] std::int32_t winding(std::uint32_t ring) const noexcept { return result_.winding[ring]; }
+    [[nodiscard]] std::int32_t winding_inside(std::uint32_t ring) const noexcept {
+        return result_.winding_inside[ring];
+    }
+
+    /// After all rings were placed.
+    [[nodiscard]] Nesting result() &&;
+
+  private:
+    /// What the bodies are of which a place within a ring has material.
+    struct Inside {
+        std::uint32_t body = Nesting::none; ///< the innermost one
+        std::uint32_t missing = 0;          ///< how many clockwise rings are too many
+    };
+
+    void place_one(std::uint32_t ring, std::uint32_t parent, std::int32_t winding, RingKind kind);
+    void find_body(std::uint32_t ring, Inside& inside);
+    [[nodiscard]] std::uint32_t next_copy(std::uint32_t ring, bool counter_clockwise) const noexcept;
+
+    std::span<const LeftEnd> ends_;
+    const RingCopies& copies_;
+    Nesting result_;
+    std::vector<Inside> inside_;
+    std::vector<std::uint32_t> around_;    ///< of a body: the body in which it lies
+    std::vector<std::uint32_t> outside_;   ///< of a representative: the parent of the first of its copies
+    std::vector<std::uint32_t> innermost_; ///< of a representative: the last of its copies
+};
+
+} // namespace lamella

@@ -1,0 +1,112 @@
+#include "polygon/surroundings.hpp"
+
+#include "lamella/polygon/nesting.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+std::vector<double> abscissae_of(std::span<const LeftEnd> ends, std::span<const std::uint32_t> rings) {
+    std::vector<double> abscissae;
+    abscissae.reserve(rings.size());
+    for (const std::uint32_t ring : rings)
+        abscissae.push_back(ends[ring].line.lo.x);
+    return abscissae;
+}
+
+RingEdge opposite(RingEdge edge) noexcept {
+    edge.order = -edge.order - 1;
+    return edge;
+}
+
+} // namespace
+
+SurroundingsSearch::SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends,
+                                       const RingCopies& copies,
+                                       std::span<const std::uint32_t> representatives,
+                                       std::span<const std::uint32_t> by_area)
+    : chains_(chains), ends_(ends), copies_(copies), by_area_(by_area),
+      edges_(abscissae_of(ends, representatives)) {
+    std::size_t near = 0;
+    for (const std::uint32_t ring : representatives) {
+        if (ends_[ring].flat)
+            continue;
+        const std::int32_t net = net_winding(ring);
+        for (const Chain& chain : chains_.of_ring(ring)) {
+            const std::size_t from = edges_.leaf(chain.front.x, near);
+            near = edges_.leaf(chain.back.x, from);
+            if (from != near) // others reach over no left end
+                add_edges(chain, net, from);
+        }
+    }
+    edges_.order();
+}
+
+/// The edges of a chain that reach over left ends. `net`: of its ring; `leaf`: of its first point.
+void SurroundingsSearch::add_edges(const Chain& chain, std::int32_t net, std::size_t leaf) {
+    assert(!way::turns(chain.ways));
+    const std::uint32_t ring = chain.ring;
+    const bool rightwards = (chain.ways & way::right) != 0;
+    const bool inside_above = rightwards == ends_[ring].rightwards;
+    const std::int32_t step = inside_above ? net : -net;
+    const std::int64_t order = place_in_order(ring, inside_above);
+    for (std::uint32_t i = 0; i < chain.segments; ++i) {
+        const Point2& a = chains_.point(chain, i);
+        const Point2& b = chains_.point(chain, i + 1);
+        const std::size_t next = edges_.leaf(b.x, leaf);
+        if (next != leaf)
+            edges_.add({rightwards ? Segment{a, b} : Segment{b, a}, ring, step, order}, std::min(leaf, next),
+                       std::max(leaf, next));
+        leaf = next;
+    }
+}
+
+std::int64_t SurroundingsSearch::place_in_order(std::uint32_t ring, bool inside_above) const noexcept {
+    const auto place = static_cast<std::int64_t>(by_area_[ring]);
+    return inside_above ? place : -place - 1;
+}
+
+/// How often the copies of a ring wind around its inside.
+std::int32_t SurroundingsSearch::net_winding(std::uint32_t ring) const noexcept {
+    std::int32_t net = 0;
+    for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
+        net += ends_[copy].rightwards ? 1 : -1;
+    return net;
+}
+
+std::int64_t SurroundingsSearch::count_equal(double x, const RingEdge& edge) const {
+    std::int64_t n = 0;
+    edges_.for_columns_at(x, [&](const EdgeColumn& column) { n += column.count_equal(x, edge); });
+    return n;
+}
+
+/// An edge that runs there and back bounds nothing on its own: it is passed over on the way down.
+Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
+    assert(copies_.representative(ring) == ring);
+    const RingEdge left_edge{ends_[ring].line, ring, ends_[ring].flat ? 0 : net_winding(ring),
+                             place_in_order(ring, true)};
+    const double x = left_edge.line.lo.x;
+    Surroundings result;
+    edges_.for_columns_at(
+        x, [&](const EdgeColumn& column) { result.winding += column.winding_below(x, left_edge); });
+    // Edges of the ring itself that run back on its lowest one come before it in the order.
+    result.winding += left_edge.step * count_equal(x, opposite(left_edge));
+    RingEdge from = left_edge;
+    while (true) {
+        const RingEdge* below = nullptr;
+        edges_.for_columns_at(x, [&](const EdgeColumn& column) { column.raise(x, from, below); });
+        if (below == nullptr)
+            return result;
+        if (below->ring != ring && count_equal(x, *below) > count_equal(x, opposite(*below))) {
+            result.below = below;
+            return result;
+        }
+        from = *below;
+    }
+}
+
+} // namespace lamella

@@ -1,0 +1,49 @@
+#pragma once
+
+// What lies around the left ends of rings, in any layer: also where rings touch, coincide and cross.
+
+#include "polygon/edges_by_abscissa.hpp"
+#include "polygon/left_end.hpp"
+#include "polygon/monotone_chains.hpp"
+#include "polygon/ring_copies.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// What is found at the left end of a ring.
+struct Surroundings {
+    std::int64_t winding = 0;
+    const RingEdge* below = nullptr; ///< the next edge below that bounds something, of another ring
+};
+
+/// Finds the surroundings of rings that are given by their representatives. Edges that reach over no left end
+/// are left out, chain by chain. Exact but for `below` where edges cross.
+class SurroundingsSearch {
+  public:
+    /// `by_area`: of representatives, how many of them are larger. All arguments are to outlive the search.
+    /// O(n log c) for n edges that reach over left ends of c rings.
+    SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends, const RingCopies& copies,
+                       std::span<const std::uint32_t> representatives,
+                       std::span<const std::uint32_t> by_area);
+
+    /// The result lives as long as the search. O(log n log c), and more where edges cross or fold.
+    [[nodiscard]] Surroundings find(std::uint32_t ring) const;
+
+  private:
+    void add_edges(const Chain& chain, std::int32_t net, std::size_t leaf);
+    [[nodiscard]] std::int64_t place_in_order(std::uint32_t ring, bool inside_above) const noexcept;
+    [[nodiscard]] std::int32_t net_winding(std::uint32_t ring) const noexcept;
+    [[nodiscard]] std::int64_t count_equal(double x, const RingEdge& edge) const;
+
+    const MonotoneChains& chains_;
+    std::span<const LeftEnd> ends_;
+    const RingCopies& copies_;
+    std::span<const std::uint32_t> by_area_;
+    EdgesByAbscissa edges_;
+};
+
+} // namespace lamella
