@@ -281,6 +281,7 @@ std::vector<Ring> joined(std::vector<Directed> sides) {
                     (next == sides.size() ||
                      clockwise_before(v, sides[at].from, sides[i].to, sides[next].to)))
                     next = i;
+            assert(next != sides.size()); // as many sides begin in a point as end there
             if (next == start || next == sides.size())
                 break;
             at = next;

@@ -63,6 +63,7 @@ class Groups {
         result.group.assign(parent_.size(), Contacts::none);
         for (std::uint32_t i = 0; i < parent_.size(); ++i) {
             const std::uint32_t first = find(i);
+            assert(first <= i);
             if (marked_[first])
                 result.group[i] = first == i ? result.groups++ : result.group[first];
         }

@@ -3,6 +3,7 @@
 #include "polygon/orientation.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace lamella {
 
@@ -20,7 +21,9 @@ Segment edge_over(double x, const MonotoneChains& chains, const Chain& chain) {
     }
     const Point2& a = chains.point(chain, low);
     const Point2& b = chains.point(chain, high);
-    return rightwards ? Segment{a, b} : Segment{b, a};
+    const Segment edge = rightwards ? Segment{a, b} : Segment{b, a};
+    assert(edge.lo.x <= x && x < edge.hi.x);
+    return edge;
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include "polygon/monotone_chains.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdlib>
 #include <optional>
@@ -55,6 +56,7 @@ class Filler {
   public:
     Filler(const Layer& layer, FillRule rule, const Contacts& contacts, const Nesting& nest)
         : layer_(layer), rule_(rule), nest_(nest), groups_(contacts.groups), fates_(layer.rings) {
+        assert(contacts.group.size() == layer.rings && nest.order.size() == layer.rings);
         for (const std::uint32_t ring : nest.order) {
             const std::uint32_t group = contacts.group[ring];
             if (group != Contacts::none)

@@ -1,6 +1,7 @@
 #include "polygon/line_tree.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -21,8 +22,10 @@ double at(double left, double right, double share) noexcept {
 LineTree::LineTree(double x0, double x1, std::span<const Item> items)
     : x0_(x0), width_(std::max(x1 - x0, 0x1p-40)) {
     lines_.reserve(items.size());
-    for (const Item& item : items)
+    for (const Item& item : items) {
+        assert(std::abs(item.line.hi.y - item.line.lo.y) <= item.line.hi.x - item.line.lo.x);
         lines_.push_back(line_of(item.line, item.number));
+    }
     if (!lines_.empty())
         build(0, static_cast<std::uint32_t>(lines_.size()));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstring>
 
 namespace lamella {
@@ -89,6 +90,7 @@ void MonotoneChains::cut(std::uint32_t ring) {
     Box2 box = Box2::of(points[begin]);
     const auto begin_anew = [&](std::uint64_t first) {
         chain.back = points[first];
+        assert(chain.segments > 0 && !way::turns(chain.ways));
         chains_.push_back(chain);
         chain = {first, ring, 0, 0, points[first], {}};
         box.add(Box2::of(points[first])); // every end of a chain is a beginning
@@ -119,6 +121,7 @@ void MonotoneChains::cut(std::uint32_t ring) {
     chain.ways |= closing;
     ++chain.segments;
     chain.back = points[begin];
+    assert(!way::turns(chain.ways) && chain.first + chain.segments == end);
     chains_.push_back(chain);
     boxes_[ring] = box;
 }

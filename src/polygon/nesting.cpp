@@ -72,7 +72,9 @@ class NestingSearch {
             if (below)
                 parent = below->rightwards == ends_[below->ring].rightwards ? below->ring
                                                                             : placement_.outside(below->ring);
-            placement_.place(ring, parent, parent == Nesting::none ? 0 : placement_.winding_inside(parent));
+            const std::int32_t winding = parent == Nesting::none ? 0 : placement_.winding_inside(parent);
+            assert(!below || below->ring == parent || placement_.winding(below->ring) == winding);
+            placement_.place(ring, parent, winding);
         }
     }
 

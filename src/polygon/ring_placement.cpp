@@ -5,6 +5,23 @@
 
 namespace lamella {
 
+namespace {
+
+/// Whether every ring comes after its parent and lies one deeper.
+[[maybe_unused]] bool parents_come_first(const Nesting& nesting) {
+    std::vector<bool> seen(nesting.rings(), false);
+    for (const std::uint32_t ring : nesting.order) {
+        const std::uint32_t parent = nesting.parent[ring];
+        if (seen[ring] || (parent != Nesting::none && !seen[parent]) ||
+            nesting.depth[ring] != (parent == Nesting::none ? 0 : nesting.depth[parent] + 1))
+            return false;
+        seen[ring] = true;
+    }
+    return true;
+}
+
+} // namespace
+
 RingPlacement::RingPlacement(std::span<const LeftEnd> ends, const RingCopies& copies)
     : ends_(ends), copies_(copies), inside_(ends.size()), around_(ends.size(), Nesting::none),
       outside_(ends.size(), Nesting::none), innermost_(ends.size(), Nesting::none) {
@@ -91,6 +108,7 @@ void RingPlacement::find_body(std::uint32_t ring, Inside& inside) {
 
 Nesting RingPlacement::result() && {
     assert(result_.order.size() == ends_.size());
+    assert(parents_come_first(result_));
     return std::move(result_);
 }
 
