@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <span>
 #include <tuple>
@@ -140,6 +141,7 @@ class Rows {
         }
     }
     [[nodiscard]] std::size_t row(double y) const noexcept {
+        assert(y >= low_ && height_ > 0);
         return static_cast<std::size_t>((y - low_) / height_);
     }
 
@@ -170,6 +172,7 @@ class Joined {
     [[nodiscard]] double length(std::size_t chain) const { return length_[first_[chain]]; }
 
     void join(const Candidate& join) {
+        assert(free(join));
         next_[join.chain] = join.next;
         continued_[join.next] = true;
         if (makes_ring(join))
@@ -206,6 +209,7 @@ class Joined {
         for (std::size_t c = layer_.rings; c < layer_.contours(); ++c)
             if (!done[c])
                 follow(c);
+        assert(std::ranges::count(done, true) == static_cast<std::ptrdiff_t>(layer_.open_chains()));
     }
 
     /// Points that a ring of the chains in a row ending with this one would have.
@@ -274,6 +278,8 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
         add(layer.contour(c), true);
     joined.for_each(add);
     result.layer = builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+    // Each join makes one chain of two, or a ring of one.
+    assert(result.layer.open_chains() + result.joins.size() == layer.open_chains());
     result.layer.hatches = layer.hatches;
     return result;
 }

@@ -7,6 +7,7 @@
 #include "core/vectors.hpp"
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <span>
 
@@ -24,6 +25,7 @@ class FanArea {
 
     /// The triangles of points i to i + 3, each with the one before it; i is `first`, then 4 more each time.
     [[gnu::always_inline]] void add_four(std::span<const Point2> ring, std::size_t i) {
+        assert(i >= first && i + 4 <= ring.size());
         const Four a01 = at<4>(&ring[i - 1].x).v - origin_;
         const Four a23 = at<4>(&ring[i + 1].x).v - origin_;
         const Four b01 = at<4>(&ring[i].x).v - origin_;
@@ -37,6 +39,7 @@ class FanArea {
 
     /// The area, with the triangles from point i on that are left, fewer than four.
     [[gnu::always_inline]] [[nodiscard]] double end(std::span<const Point2> ring, std::size_t i) const {
+        assert(ring.size() < i + 4);
         std::array<double, 4> sums{sums_[0], sums_[2], sums_[1], sums_[3]};
         for (std::size_t k = 0; k < 3; ++k) {
             if (i + k >= ring.size())

@@ -3,6 +3,7 @@
 #include "lamella/contour/normal_form.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace lamella {
@@ -23,6 +24,7 @@ Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double 
     const std::vector<End> ends = std::exchange(ends_, {});
     std::vector<Point2> points = std::exchange(points_, {});
     points.resize(ends.empty() ? 0 : ends.back().offset); // a contour that was never ended is none
+    assert(bottom <= top);
 
     Layer layer{.index = index, .z = z, .bottom = bottom, .top = top};
     layer.offsets.reserve(ends.size() + 1);
@@ -49,11 +51,13 @@ Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double 
         }
         points = std::move(sorted);
     }
+    assert(layer.contours() == ends.size() && layer.offsets.back() == points.size());
     layer.points = PointArray(std::move(points));
     return normal_form(std::move(layer));
 }
 
 Layer merged(std::span<const Layer> layers) {
+    assert(!layers.empty());
     LayerBuilder builder;
     std::vector<Point2> hatches;
     for (const Layer& layer : layers) {

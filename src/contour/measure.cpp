@@ -4,6 +4,7 @@
 #include "core/vector_clones.hpp"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace lamella {
@@ -45,6 +46,7 @@ void LayerMeasure::add(const LayerMeasure& other) noexcept {
 }
 
 LayerMeasure measure(const Layer& layer) noexcept {
+    assert(layer.offsets.back() == layer.points.size() && layer.rings <= layer.contours());
     LayerMeasure result{
         .contours = layer.contours(), .open_chains = layer.open_chains(), .points = layer.points.size()};
     for (std::size_t i = 0; i < layer.contours(); ++i) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstring>
 #include <numeric>
 #include <utility>
@@ -37,6 +38,7 @@ bool same(const Point2& a, const Point2& b) {
 std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::size_t first,
                                            std::size_t second) {
     const std::size_t n = ring.size();
+    assert(first < second && second < n && same(ring[first], ring[second]));
     const auto at = [&](std::size_t i) -> const Point2& {
         return ring[i < n ? i : i - n];
     };
@@ -58,6 +60,7 @@ std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::si
         }
         k = 0;
     }
+    assert(i < n);
     return i;
 }
 
@@ -155,8 +158,10 @@ Layer normal_form(Layer layer) {
         end = rotated(p).copy_to(end);
         offsets.push_back(static_cast<std::uint64_t>(end - points->data()));
     }
+    assert(offsets.back() == layer.points.size()); // every point has its place
     layer.points = PointArray(points, points->data(), offsets.back());
     layer.offsets = std::move(offsets);
+    assert(in_normal_form(layer));
     return layer;
 }
 
@@ -169,6 +174,7 @@ bool same_contours(const Layer& a, const Layer& b) noexcept {
 }
 
 std::uint64_t content_hash(const Layer& layer) noexcept {
+    assert(layer.offsets.front() == 0 && layer.offsets.back() == layer.points.size());
     XXH3_state_t state;
     XXH3_64bits_reset(&state);
     const std::array<std::uint64_t, 2> counts{layer.contours(), layer.rings};

@@ -3,6 +3,7 @@
 #include "contour/distance.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -43,6 +44,7 @@ class NearestPoints {
     }
 
     void remove(std::size_t number) {
+        assert(number < points_.size() && !gone_[number]);
         Range range{0, order_.size()};
         for (;; range = place_[number] < range.middle() ? range.before() : range.after()) {
             --nodes_[range.middle()].left;
@@ -179,6 +181,7 @@ class Matching {
                     propose(gap.from);
                 continue;
             }
+            assert(!matched_[gap.from]);
             taken_[gap.to] = matched_[gap.from] = true;
             starts_.remove(gap.to);
             visit(chains_[gap.from].back(), chains_[gap.to].front());
@@ -188,6 +191,7 @@ class Matching {
                 continue;
             while (taken_[to])
                 ++to;
+            assert(to < chains_.size()); // as many starts are left as ends
             visit(chains_[from].back(), chains_[to++].front());
         }
     }
@@ -230,10 +234,12 @@ OpenGaps open_gaps(const Layer& layer) {
             chains.push_back(layer.contour(c));
     if (chains.empty())
         return all;
+    [[maybe_unused]] const std::size_t ends = chains.size();
     Matching(std::move(chains)).for_each_gap([&](const Point2& from, const Point2& to) {
         const double length = distance(from, to);
         all += {.count = 1, .longest_mm = length, .total_mm = length, .from = from, .to = to};
     });
+    assert(all.count == ends);
     return all;
 }
 
