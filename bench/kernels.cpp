@@ -1,9 +1,9 @@
 // The kernels one by one (Google Benchmark): rank, weld, link, walk, run, format.
 
 #include "core/executor.hpp"
-#include "slicing/cut_graph.hpp"
-#include "slicing/point_kernels.hpp"
 #include "slicing/ranks.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+#include "slicing/sweep/point_kernels.hpp"
 
 #include <benchmark/benchmark.h>
 #include <lamella/lamella.hpp>

@@ -47,10 +47,6 @@ THIRD_PARTY_ANYWHERE = {"fmt"}
 # Of the programs.
 THIRD_PARTY_OF_CONSUMERS = {"mpi.h": "app/mpi_processes.cpp"}
 
-# One file pair per engine in src/slicing. Only the table of engines knows them.
-ENGINES = ["sweep", "conventional", "ecc", "ecc_edge_match", "eecc"]
-ENGINE_TABLE = "src/slicing/engines.cpp"
-
 # The one consumer that opens private headers: it times the kernels alone.
 KERNEL_BENCHMARK = "bench/kernels.cpp"
 
@@ -174,7 +170,7 @@ class House:
                 return f"a public header may not include the private {target}"
             if used != user and used not in ROOMS[user]:
                 return f"{user} may not include {target}: {used} is not below it"
-            return self.judge_engine(name, target)
+            return self.judge_folder(name, target)
         if public or not target.startswith("src/") or name == KERNEL_BENCHMARK:
             return None
         if parts[0] == "tests" and user in ROOMS:
@@ -183,12 +179,11 @@ class House:
             return f"tests of {user} may not open {target}: {used} is not below it"
         return f"only public headers may be included here, not {target}"
 
-    def judge_engine(self, name, target):
-        if not target.startswith("src/slicing/"):
-            return None
-        used, user = Path(target).stem, Path(name).stem
-        if used in ENGINES and used != user and name != ENGINE_TABLE:
-            return f"only {ENGINE_TABLE} may include the engine {target}"
+    def judge_folder(self, name, target):
+        """What lies in a folder of a room is known there only: engines of different folders do not know each other."""
+        folder = Path(target).parent
+        if target.startswith("src/") and len(folder.parts) > 2 and Path(name).parent != folder:
+            return f"only sources of {folder.as_posix()} may include {target}"
         return None
 
 

@@ -1,12 +1,6 @@
 #include "lamella/core/error.hpp"
 #include "lamella/slicing/slice.hpp"
 
-#include "slicing/conventional.hpp"
-#include "slicing/ecc.hpp"
-#include "slicing/ecc_edge_match.hpp"
-#include "slicing/eecc.hpp"
-#include "slicing/sweep.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -14,19 +8,28 @@
 
 namespace lamella {
 
+// Each is defined in the source that is named after it, which needs no header: nobody else calls it.
+using SliceFunction = void(const SliceJob& job);
+SliceFunction slice_by_sweep;
+SliceFunction slice_by_conventional;
+SliceFunction slice_by_ecc;
+SliceFunction slice_by_ecc_edge_match;
+SliceFunction slice_by_eecc;
+
 namespace {
 
-// One row for each engine: help texts, the benchmarks and the tests of agreement all read this table.
+// One row for each engine. Help texts, manuals, Python and the tests of all engines read this table.
 constexpr std::array table{
-    Engine{"sweep", "links every cut edge once, then writes contours at memory speed", "", false, run_sweep},
+    Engine{"sweep", "links every cut edge once, then writes contours at memory speed", "", false,
+           slice_by_sweep},
     Engine{"conventional", "sorts the segments of each plane by their end points",
-           "King, Rennie, Bennett 2021, Fig. 1", true, run_conventional},
+           "King, Rennie, Bennett 2021, Fig. 1", true, slice_by_conventional},
     Engine{"ecc", "efficient contour construction: inserts intersections into lists by their edges",
-           "Zhang, Joshi 2015", true, run_ecc},
+           "Zhang, Joshi 2015", true, slice_by_ecc},
     Engine{"ecc-edge-match", "ecc that searches only once on each pair of edges",
-           "King, Rennie, Bennett 2021, section 3.2", true, run_ecc_edge_match},
+           "King, Rennie, Bennett 2021, section 3.2", true, slice_by_ecc_edge_match},
     Engine{"eecc", "enhanced efficient contour construction: ecc-edge-match without completed lists",
-           "King, Rennie, Bennett 2021", true, run_eecc},
+           "King, Rennie, Bennett 2021", true, slice_by_eecc},
 };
 
 } // namespace

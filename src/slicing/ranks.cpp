@@ -1,11 +1,15 @@
 #include "slicing/ranks.hpp"
 
+#include "slicing/stacking.hpp"
+
+#include <cassert>
 #include <cmath>
 #include <limits>
 
 namespace lamella {
 
 Ranks::Ranks(const Plan& plan) : rule_(plan.rule) {
+    assert(plan.layers.size() <= max_layers && is_ascending(plan));
     constexpr double infinity = std::numeric_limits<double>::infinity();
     z_.reserve(plan.layers.size());
     bounds_.reserve(plan.layers.size());
@@ -39,6 +43,10 @@ Ranks::Ranks(const Plan& plan) : rule_(plan.rule) {
     }
     for (std::size_t c = 1; c < cells_.size(); ++c)
         cells_[c].below = cells_[c - 1].below + cells_[c - 1].planes;
+    assert(cells_.back().below + cells_.back().planes == count());
+    // A vertex on a plane is above it or below it, as the rule says.
+    for ([[maybe_unused]] std::uint32_t plane = 0; plane < count(); ++plane)
+        assert((*this)(z_[plane]) == plane + (rule_ == PlaneRule::section_below ? 1 : 0));
 }
 
 } // namespace lamella

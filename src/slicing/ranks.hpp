@@ -5,6 +5,7 @@
 #include "lamella/slicing/plan.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -34,7 +35,10 @@ class Ranks {
 
     /// How many planes there are.
     [[nodiscard]] std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(z_.size()); }
-    [[nodiscard]] double z(std::uint32_t plane) const noexcept { return z_[plane]; }
+    [[nodiscard]] double z(std::uint32_t plane) const noexcept {
+        assert(plane < count());
+        return z_[plane];
+    }
     [[nodiscard]] PlaneRule rule() const noexcept { return rule_; }
 
   private:

@@ -3,7 +3,6 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
-#include "slicing/cut_graph.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/tallies.hpp"
 
@@ -11,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -57,11 +57,13 @@ void count(const Mesh& mesh, const Ranks& ranks, std::uint64_t begin, std::uint6
 } // namespace
 
 Plan part_of(const Plan& plan, PlaneRange slab) {
+    assert(slab.begin <= slab.end && slab.end <= plan.layers.size());
     const auto begin = plan.layers.begin();
     return {{begin + slab.begin, begin + slab.end}, plan.rule};
 }
 
 void PlaneCounts::add(const PlaneCounts& other) noexcept {
+    assert(planes_ == other.planes_);
     for (std::size_t i = 0; i < counts_.size(); ++i)
         counts_[i] += other.counts_[i];
 }
@@ -141,6 +143,7 @@ SlabSurvey::SlabSurvey(const PlaneCounts& counts) {
         begun_before_[p + 1] = begun_before_[p] + counts.begins(p);
         ended_before_[p + 1] = ended_before_[p] + counts.ends(p + 1);
         turned_before_[p + 1] = turned_before_[p] + counts.turns(p);
+        assert(begun_before_[p + 1] >= ended_before_[p]); // none ends that has not begun
         points_before_[p + 1] = points_before_[p] + (begun_before_[p + 1] - ended_before_[p]);
     }
 }
@@ -153,6 +156,7 @@ SlabNeeds SlabSurvey::needs(PlaneRange slab) const noexcept {
 }
 
 SlabNeeds SlabSurvey::needs(PlaneRange slab, std::uint64_t most_points) const noexcept {
+    assert(slab.end <= planes());
     if (slab.begin >= slab.end)
         return {};
     SlabNeeds needs;
@@ -172,20 +176,6 @@ std::uint64_t SlabSurvey::work(PlaneRange slab) const noexcept {
         return 0;
     return points_before_[slab.end] - points_before_[slab.begin] + triangle_cost * triangles(slab) +
            plane_cost * slab.size();
-}
-
-std::uint64_t SlabMemory::bytes(const SlabNeeds& slab) const noexcept {
-    // While nodes are joined, each has its hash and a record beside it; afterwards its place in the order of
-    // starts, and each worker marks in an array of all nodes where it has been.
-    constexpr std::uint64_t joining = sizeof(std::uint64_t) + 12;
-    const std::uint64_t walking = 4 + 4 * std::uint64_t{threads};
-    const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +
-                               sizeof(PlaneSpan) + std::max(joining, walking);
-    // A point, and the text that a sink makes of it.
-    constexpr std::uint64_t point = sizeof(Point2) + 40;
-    const std::uint64_t flying =
-        std::min(std::max(points_in_flight, 2 * slab.most_points), slab.points + slab.most_points);
-    return sizeof(Triangle3f) * slab.triangles + node * slab.edges + point * flying;
 }
 
 // ---------------------------------------------------------------------------------------------- divide
@@ -221,6 +211,7 @@ std::vector<PlaneRange> fill(const SlabSurvey& survey, std::uint64_t most_work, 
 template <class Fits>
 std::vector<PlaneRange> level(const SlabSurvey& survey, std::uint32_t least, std::size_t most,
                               const Fits& fits) {
+    assert(least <= most);
     std::uint64_t low = 0;
     std::uint64_t high = survey.work({0, survey.planes()});
     while (low < high) {
@@ -274,6 +265,8 @@ struct SlabFinder::State {
 
 SlabFinder::SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs) {
     auto state = std::make_unique<State>(plan);
+    assert(std::is_sorted(slabs.begin(), slabs.end(),
+                          [](PlaneRange a, PlaneRange b) { return a.begin < b.end; }));
     const std::uint32_t planes = state->ranks.count();
     std::uint32_t ended = 0;
     std::uint32_t begun = 0;
@@ -296,7 +289,7 @@ void SlabFinder::find(const TriangleSoup& triangles, std::vector<Touched>& touch
               [&](std::uint64_t i, const std::array<std::uint32_t, 3>& rank) {
                   const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
                   const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
-                  // Between two slabs, or between two planes, the first one ends behind the last one.
+                  // A triangle between two slabs, or between two planes, gives begin > end: clamp it.
                   const std::uint32_t begin = state_->first[low];
                   touched[i] = {begin, low == high ? begin : std::max(begin, state_->behind[high])};
               });

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 
 namespace lamella {
 
@@ -48,13 +49,17 @@ namespace {
 // Some 56 MB of points for each thread.
 constexpr std::uint64_t points_in_flight_per_thread = (std::uint64_t{56} << 20) / sizeof(Point2);
 
-void run(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution,
-         std::uint64_t points_in_flight, SliceReport* report, const Engine& with) {
+/// Slices with the engine, and fills in what of the report is the same for all engines.
+void slice_and_count(const Engine& engine, const LayerSink& sink, const Mesh& mesh, const Plan& plan,
+                     const Execution& execution, std::uint64_t points_in_flight, SliceReport* report) {
     SliceReport ours;
+    std::atomic<std::uint64_t> layers{0};
     std::atomic<std::uint64_t> contours{0};
     std::atomic<std::uint64_t> open_chains{0};
     std::atomic<std::uint64_t> points{0};
     const LayerSink counting = [&](Layer&& layer) {
+        assert(layer.offsets.back() == layer.points.size());
+        layers.fetch_add(1, std::memory_order_relaxed);
         contours.fetch_add(layer.contours(), std::memory_order_relaxed);
         open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
         points.fetch_add(layer.points.size(), std::memory_order_relaxed);
@@ -63,9 +68,10 @@ void run(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execut
     const Stopwatch joining;
     const Mesh joined = mesh.with_joined_vertices(execution);
     const double join_seconds = mesh.indexed() != nullptr ? joining.seconds() : 0;
-    with.run({joined, plan, counting, execution, points_in_flight, ours});
+    engine.slice({joined, plan, counting, execution, points_in_flight, ours});
     ours.weld_seconds += join_seconds;
-    ours.layers = plan.layers.size();
+    assert(layers == plan.layers.size());
+    ours.layers = layers;
     ours.contours = contours;
     ours.open_chains = open_chains;
     ours.points = points;
@@ -76,7 +82,7 @@ void run(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execut
 } // namespace
 
 LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution, SliceReport* report,
-                 const Engine& with) {
+                 const Engine& engine) {
     LayerStack stack;
     stack.reserve(plan.layers.size());
     const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
@@ -84,15 +90,16 @@ LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution,
             stack.push_back(std::move(kept));
         };
     };
-    run(keep, mesh, plan, execution, 0, report, with);
+    slice_and_count(engine, keep, mesh, plan, execution, 0, report);
     return stack;
 }
 
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution,
-              SliceReport* report, const Engine& with, std::uint64_t points_in_flight) {
+              SliceReport* report, const Engine& engine, std::uint64_t points_in_flight) {
+    assert(sink);
     if (points_in_flight == 0)
         points_in_flight = points_in_flight_per_thread * thread_count(execution);
-    run(sink, mesh, plan, execution, points_in_flight, report, with);
+    slice_and_count(engine, sink, mesh, plan, execution, points_in_flight, report);
 }
 
 } // namespace lamella

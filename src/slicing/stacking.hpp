@@ -4,7 +4,10 @@
 
 #include "lamella/slicing/plan.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace lamella {
 
@@ -16,6 +19,16 @@ inline constexpr double negligible = 1e-3;
 /// Where in its thickness a layer is cut, from 0 (bottom) to 1 (top).
 [[nodiscard]] constexpr double fraction(SliceAt at) noexcept {
     return at == SliceAt::bottom ? 0.0 : at == SliceAt::top ? 1.0 : 0.5;
+}
+
+/// Whether planes are in strictly ascending z, all of them finite, as in every plan.
+[[nodiscard]] inline bool is_ascending(const Plan& plan) noexcept {
+    const auto out_of_order = [](const PlannedLayer& a, const PlannedLayer& b) {
+        return !(a.z < b.z);
+    };
+    const std::vector<PlannedLayer>& layers = plan.layers;
+    return std::adjacent_find(layers.begin(), layers.end(), out_of_order) == layers.end() &&
+           (layers.empty() || (std::isfinite(layers.front().z) && std::isfinite(layers.back().z)));
 }
 
 [[nodiscard]] constexpr PlaneRule rule_for(SliceAt at) noexcept {

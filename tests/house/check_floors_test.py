@@ -23,6 +23,8 @@ SOUND = {
     "src/slicing/sweep.cpp": '#include "sweep.hpp"\n',
     "src/slicing/engines.cpp": '#include "slicing/sweep.hpp"\n',
     "src/slicing/cut_graph.hpp": "",
+    "src/slicing/sweep/walk.hpp": "",
+    "src/slicing/sweep/walk.cpp": '#include "slicing/sweep/walk.hpp"\n',
     "src/polygon/grid.hpp": "",
     "app/main.cpp": "#include <lamella/lamella.hpp>\n#include <CLI/CLI.hpp>\n",
     "bench/kernels.cpp": '#include "slicing/sweep.hpp"\n',
@@ -97,9 +99,13 @@ class CheckFloors(unittest.TestCase):
         self.assert_found({"src/polygon/a.cpp": "#include <clipper2/clipper.h>\n"}, "src/polygon/a.cpp:1:",
                           "no library")
 
-    def test_finds_an_engine_that_includes_another(self):
-        self.assert_found({"src/slicing/eecc.cpp": '#include "slicing/sweep.hpp"\n'}, "src/slicing/eecc.cpp:1:",
-                          "engines.cpp may include the engine")
+    def test_finds_a_source_that_looks_into_a_folder_of_its_room(self):
+        for name in ("src/slicing/paper/eecc.cpp", "src/slicing/engines.cpp"):
+            self.assert_found({name: '#include "slicing/sweep/walk.hpp"\n'}, f"{name}:1:",
+                              "only sources of src/slicing/sweep may include")
+
+    def test_passes_a_test_that_opens_a_folder_of_its_room(self):
+        self.assertEqual(self.findings({"tests/slicing/sweep/walk_test.cpp": '#include "slicing/sweep/walk.hpp"\n'}), [])
 
     def test_finds_a_room_that_walks_through_the_door(self):
         self.assert_found({"src/slicing/a.cpp": '#include "lamella/lamella.hpp"\n'}, "src/slicing/a.cpp:1:", "door")

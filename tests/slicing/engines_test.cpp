@@ -2,7 +2,7 @@
 
 #include "expect_error.hpp"
 #include "fixtures/named_solids.hpp"
-#include "paper_engines.hpp"
+#include "slicing/paper/paper_engines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(Engines, HaveDifferentNamesAndSayWhatTheyAre) {
         EXPECT_TRUE(names.insert(one.name).second) << one.name;
         EXPECT_FALSE(one.summary.empty()) << one.name;
         EXPECT_EQ(one.summary.find('\n'), std::string_view::npos) << one.name;
-        EXPECT_NE(one.run, nullptr) << one.name;
+        EXPECT_NE(one.slice, nullptr) << one.name;
         EXPECT_EQ(&engine(one.name), &one);
     }
 }

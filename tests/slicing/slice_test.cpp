@@ -148,7 +148,7 @@ TEST(SliceTo, BoundsThePointsInFlight) {
             const LayerSink sink = flight.sink();
             SliceReport report;
             const Execution execution{.threads = threads};
-            engines().front().run({soup, plan, sink, execution, bound, report});
+            engines().front().slice({soup, plan, sink, execution, bound, report});
             EXPECT_LE(flight.most_points(), bound + 2 * threads * largest) << threads << " threads";
             EXPECT_EQ(flight.points_left(), 0U);
             EXPECT_EQ(flight.layers_left(), 0U) << "someone still holds a layer";
@@ -170,7 +170,7 @@ TEST(SliceTo, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
             };
             SliceReport report;
             const Execution execution{.threads = threads};
-            engines().front().run({soup, plan, sink, execution, bound, report});
+            engines().front().slice({soup, plan, sink, execution, bound, report});
             expect_same(stack, expected);
         }
     }

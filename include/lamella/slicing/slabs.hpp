@@ -1,6 +1,6 @@
 #pragma once
 
-// Slabs: runs of planes that are sliced on their own, because one memory or one machine is not enough for
+// Slabs: ranges of planes that are sliced on their own, because one memory or one machine is not enough for
 // all.
 //
 //     count      what the triangles bring to each plane: one pass over them, in any number of shares
@@ -22,7 +22,7 @@
 
 namespace lamella {
 
-/// A slab: the planes [begin, end) of a plan, by their positions in it.
+/// The planes [begin, end) of a plan, by their positions in it; those of a slab, for example.
 struct PlaneRange {
     std::uint32_t begin = 0;
     std::uint32_t end = 0;
@@ -151,8 +151,8 @@ struct SlabMemory {
 /// Error{usage} when there are fewer planes, or none are asked for.
 [[nodiscard]] std::vector<PlaneRange> divide_evenly(const SlabSurvey& survey, std::uint32_t slabs);
 
-/// As few slabs as may be, `at_least` of them where there are so many planes, each of which takes no more
-/// than `most_bytes`; with the largest work as small as possible then. Throws Error{limit} when a single
+/// Fewest slabs, but no fewer than `at_least` where there are so many planes, each of which takes no more
+/// than `most_bytes`; among those, the division with the smallest largest work. Throws Error{limit} when a single
 /// plane takes more, saying where it lies and how much it takes.
 [[nodiscard]] std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan,
                                                     const SlabMemory& memory, std::uint64_t most_bytes,

@@ -50,7 +50,7 @@ struct MatchingCounts {
     MatchingCounts& operator+=(const MatchingCounts& other) noexcept;
 };
 
-/// What a slicing run did; the statistics of the program are made from it.
+/// What was sliced and how long it took; the statistics of the program are made from it.
 struct SliceReport {
     double weld_seconds = 0;  ///< joining vertices; and in engines that need an indexed mesh, welding a soup
     double link_seconds = 0;  ///< sweep: ranks and cut graph; the paper's: ranks, intersections and lists
@@ -89,7 +89,7 @@ struct Engine {
     std::string_view source;  ///< the publication it follows, or ""
     /// It works on an indexed mesh and welds a soup first: who has welded already gives it that mesh.
     bool welds;
-    void (*run)(const SliceJob& job);
+    void (*slice)(const SliceJob& job);
 };
 
 /// All engines; the first is the default.
@@ -106,13 +106,13 @@ struct Engine {
 /// for any number of threads and any order of the triangles. Throws Error{limit} beyond 2^32 / 3 triangles,
 /// Error{cancelled}, and what the progress function throws.
 [[nodiscard]] LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution = {},
-                               SliceReport* report = nullptr, const Engine& with = engines().front());
+                               SliceReport* report = nullptr, const Engine& engine = engines().front());
 
 /// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
 /// flight (some 56 MB per thread, or two layers per thread where single layers are larger). Layers that the
-/// sink has let go of take no memory. `points_in_flight`: so many instead, where they are not 0.
+/// sink has let go of take no memory. `points_in_flight` overrides this bound; 0 keeps it.
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
-              SliceReport* report = nullptr, const Engine& with = engines().front(),
+              SliceReport* report = nullptr, const Engine& engine = engines().front(),
               std::uint64_t points_in_flight = 0);
 
 /// The area of the section at each plane of the plan, in mm^2, straight from the triangles: no linking, no

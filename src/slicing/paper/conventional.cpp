@@ -1,0 +1,139 @@
+#include "slicing/paper/node_pool.hpp"
+#include "slicing/paper/serial_engine.hpp"
+#include "slicing/shrunken_contours.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+// Conventional slicing
+//
+// The flowchart of King, Rennie and Bennett (2021, Fig. 1), after Xu et al. (2016). For each plane: cut every
+// triangle of the mesh; then sort the segments end to end. The end of a contour is compared with both end
+// points of every segment that is left, one after the other, and the first one that coincides is appended,
+// until the contour is back at its beginning.
+//
+// Points say nothing about which triangles are neighbours. Where more than two segments meet in a point
+// (Fig. 2), the first one in the list is taken, and it may belong to another contour.
+
+namespace lamella {
+
+namespace {
+
+/// One triangle on one plane, in a doubly linked list.
+struct Segment {
+    Point2 from;
+    Point2 to;
+    Segment* next = nullptr;
+    Segment* previous = nullptr;
+};
+
+/// The segments of one plane that belong to no contour yet, in the order of the triangles.
+class SegmentList {
+  public:
+    void append(const Point2& from, const Point2& to) {
+        Segment* segment = memory_.make({from, to, nullptr, last_});
+        (last_ != nullptr ? last_->next : first_) = segment;
+        last_ = segment;
+    }
+    void remove(Segment* segment) {
+        (segment->previous != nullptr ? segment->previous->next : first_) = segment->next;
+        (segment->next != nullptr ? segment->next->previous : last_) = segment->previous;
+    }
+    void clear() {
+        memory_.clear();
+        first_ = last_ = nullptr;
+    }
+    [[nodiscard]] Segment* first() const noexcept { return first_; }
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return memory_.bytes(); }
+
+  private:
+    NodePool<Segment> memory_;
+    Segment* first_ = nullptr;
+    Segment* last_ = nullptr;
+};
+
+class Conventional {
+  public:
+    Conventional(const SerialEngine& engine, MatchingCounts& counts) : engine_(engine), counts_(counts) {
+        counts_.node_bytes = sizeof(Segment);
+    }
+
+    void slice_plane(std::uint32_t plane, LayerBuilder& layer) {
+        cut_triangles(plane);
+        counts_.bytes = std::max(counts_.bytes, segments_.bytes());
+        while (segments_.first() != nullptr)
+            sort_contour(layer);
+        segments_.clear();
+    }
+
+  private:
+    void cut_triangles(std::uint32_t plane) {
+        const double z = engine_.z(plane);
+        for (std::size_t triangle = 0; triangle < engine_.mesh().triangles.size(); ++triangle) {
+            for (const TriangleSection& section : engine_.sections(triangle)) {
+                if (plane < section.begin || plane >= section.end)
+                    continue;
+                const Point2 from = engine_.cut(section.from).at(z);
+                const Point2 to = engine_.cut(section.to).at(z);
+                if (!(from == to)) // a point would close a contour before it began
+                    segments_.append(from, to);
+            }
+        }
+    }
+
+    /// Takes one contour out of the list. It runs as its first segment does.
+    void sort_contour(LayerBuilder& layer) {
+        Segment* start = segments_.first();
+        segments_.remove(start);
+        ++counts_.inserted.new_list;
+        contour_.assign({start->from, start->to});
+        while (append_segment()) {
+            if (contour_.back() == contour_.front()) {
+                ++counts_.inserted.close;
+                contour_.pop_back();
+                add_contour(layer, contour_, true);
+                return;
+            }
+            ++counts_.inserted.back;
+        }
+        // It does not close: what comes before its beginning belongs to it, too.
+        std::reverse(contour_.begin(), contour_.end());
+        while (append_segment())
+            ++counts_.inserted.front;
+        std::reverse(contour_.begin(), contour_.end());
+        add_contour(layer, contour_, false);
+    }
+
+    /// Moves the first segment with an end point at the end of the contour from the list to the contour.
+    bool append_segment() {
+        engine_.check_cancelled();
+        ++counts_.searches;
+        const Point2 end = contour_.back();
+        for (Segment* segment = segments_.first(); segment != nullptr; segment = segment->next) {
+            ++counts_.comparisons;
+            const bool begins_here = segment->from == end;
+            if (!begins_here && !(segment->to == end))
+                continue;
+            contour_.push_back(begins_here ? segment->to : segment->from);
+            segments_.remove(segment);
+            return true;
+        }
+        return false;
+    }
+
+    const SerialEngine& engine_;
+    MatchingCounts& counts_;
+    SegmentList segments_;
+    std::vector<Point2> contour_;
+};
+
+} // namespace
+
+void slice_by_conventional(const SliceJob& job) {
+    SerialEngine engine(job);
+    Conventional conventional(engine, job.report.matching.emplace());
+    engine.deliver([&](std::uint32_t plane, LayerBuilder& layer) { conventional.slice_plane(plane, layer); });
+}
+
+} // namespace lamella

@@ -1,0 +1,156 @@
+#pragma once
+
+// What the engines of the EECC paper have in common around their own work. They run on one thread, walk the
+// triangles of an indexed mesh, and hand layers over in order.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "core/executor.hpp"
+#include "slicing/edge_cut.hpp"
+#include "slicing/ranks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// An edge is the addresses of its two vertices, the lower one first: edges are the same when these are.
+/// Coordinates are never compared.
+struct Edge {
+    const Point3* low;
+    const Point3* high;
+
+    friend bool operator==(const Edge&, const Edge&) = default;
+};
+
+/// The planes [begin, end) that cut a triangle in the same two edges. The section of the triangle leads from
+/// `from`, which runs downwards in the triangle, to `to`, which runs upwards: material is on the left.
+struct TriangleSection {
+    std::uint32_t begin;
+    std::uint32_t end;
+    Edge from;
+    Edge to;
+};
+
+/// The upper one first; one of them, or both, may have no planes.
+using TriangleSections = std::array<TriangleSection, 2>;
+
+class SerialEngine {
+  public:
+    /// Welds the mesh where it is a soup (that time is reported by itself), and ranks its vertices.
+    explicit SerialEngine(const SliceJob& job) : job_(job), executor_(job.execution), ranks_(job.plan) {
+        executor_.check_cancelled();
+        if (job.mesh.indexed() == nullptr) {
+            const auto start = Clock::now();
+            welded_ = weld(job.mesh, job.execution);
+            job.report.weld_seconds = seconds_since(start);
+        }
+        linking_ = Clock::now();
+        vertex_ranks_.reserve(mesh().vertices.size());
+        for (const Point3& vertex : mesh().vertices)
+            vertex_ranks_.push_back(ranks_(vertex.z));
+    }
+
+    [[nodiscard]] const IndexedMesh& mesh() const noexcept {
+        return job_.mesh.indexed() != nullptr ? *job_.mesh.indexed() : welded_;
+    }
+    [[nodiscard]] std::uint32_t planes() const noexcept { return ranks_.count(); }
+    [[nodiscard]] double z(std::uint32_t plane) const noexcept { return ranks_.z(plane); }
+
+    [[nodiscard]] EdgeCut cut(const Edge& edge) const noexcept {
+        return ranks_.rule() == PlaneRule::section_above ? EdgeCut(*edge.low, *edge.high)
+                                                         : EdgeCut(*edge.high, *edge.low);
+    }
+
+    /// Throws Error{cancelled} when a stop was requested. Cheap; to be called within every list search.
+    void check_cancelled() const { executor_.check_cancelled(); }
+
+    /// No planes at all where a triangle names a vertex twice: it has no area and its two cut edges are one.
+    [[nodiscard]] TriangleSections sections(std::size_t triangle) const noexcept {
+        const std::array<std::uint32_t, 3>& corners = mesh().triangles[triangle];
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+            return {};
+        std::array<std::size_t, 3> order{0, 1, 2}; // v_min, v_med, v_max of Fig. 3
+        const auto rank = [&](std::size_t k) {
+            return vertex_ranks_[corners[k]];
+        };
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+        const auto edge = [&](std::size_t low, std::size_t high) -> Edge {
+            return {&mesh().vertices[corners[low]], &mesh().vertices[corners[high]]};
+        };
+        const auto [min, med, max] = order;
+        assert(rank(min) <= rank(med) && rank(med) <= rank(max) && rank(max) <= planes());
+        const Edge longest = edge(min, max);
+        TriangleSections sections{{{rank(med), rank(max), longest, edge(med, max)},
+                                   {rank(min), rank(med), longest, edge(min, med)}}};
+        const bool longest_runs_downwards = (max + 1) % 3 == min;
+        if (!longest_runs_downwards)
+            for (TriangleSection& section : sections)
+                std::swap(section.from, section.to);
+        return sections;
+    }
+
+    /// body(triangle) for one triangle after the other, as the stage `link`.
+    template <class Body>
+    void for_triangles(const Body& body) {
+        const std::size_t n = mesh().triangles.size();
+        ProgressMeter progress(job_.execution, Stage::link, n);
+        for (std::size_t i = 0; i < n; ++i) {
+            executor_.check_cancelled();
+            body(i);
+            progress.add(1);
+        }
+        progress.finish();
+    }
+
+    /// fill(plane, layer) for one plane after the other, upwards, as the stage `slice`; each layer goes to
+    /// the sink at once. To be called last.
+    template <class Fill>
+    void deliver(const Fill& fill) {
+        job_.report.link_seconds = seconds_since(linking_);
+        const auto start = Clock::now();
+        ProgressMeter progress(job_.execution, Stage::slice, planes());
+        LayerBuilder layer;
+        for (std::uint32_t plane = 0; plane < planes(); ++plane) {
+            executor_.check_cancelled();
+            fill(plane, layer);
+            const PlannedLayer& planned = job_.plan.layers[plane];
+            const std::function<void()> action =
+                job_.sink(layer.finish(planned.index, planned.z, planned.bottom, planned.top));
+            if (action)
+                action();
+            progress.add(1);
+        }
+        executor_.check_cancelled();
+        progress.finish();
+        job_.report.slice_seconds = seconds_since(start);
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    static double seconds_since(Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    const SliceJob& job_;
+    Executor executor_;
+    Ranks ranks_;
+    IndexedMesh welded_;
+    std::vector<std::uint32_t> vertex_ranks_;
+    Clock::time_point linking_;
+};
+
+} // namespace lamella

@@ -1,0 +1,107 @@
+#pragma once
+
+// The edges of a run, laid out for the kernels.
+
+#include "core/pages.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+#include "slicing/sweep/cut_points.hpp"
+#include "slicing/sweep/point_kernels.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace lamella {
+
+/// What one worker computes with.
+struct Scratch {
+    const PointKernels& kernels = point_kernels();
+    CutPoints points;
+    PageArray<double> columns; ///< of a run whose edges have no room in the store
+
+    /// Room for the columns of so many edges, in place of what was there.
+    double* columns_for(std::size_t edges) {
+        const std::size_t size = EdgeColumns::columns * EdgeColumns::padded(edges);
+        if (columns.size() < size)
+            columns = PageArray<double>(2 * size);
+        return columns.data();
+    }
+};
+
+/// Keeps the columns of the first runs, as many as have room.
+class ColumnStore {
+  public:
+    static constexpr std::uint64_t not_kept = ~std::uint64_t{0};
+
+    /// Room for so many edges, a multiple of EdgeColumns::lanes.
+    explicit ColumnStore(std::uint64_t room) : room_(room), columns_(EdgeColumns::columns * room) {
+        assert(room % EdgeColumns::lanes == 0);
+    }
+
+    /// A place for so many edges, or not_kept where there is no room.
+    std::uint64_t reserve(std::size_t edges) {
+        const std::size_t stride = EdgeColumns::padded(edges);
+        if (room_ - used_ < stride)
+            return not_kept;
+        const std::uint64_t place = used_;
+        used_ += stride;
+        return place;
+    }
+
+    [[nodiscard]] double* at(std::uint64_t place) const noexcept {
+        assert(place < used_);
+        return columns_.data() + EdgeColumns::columns * place;
+    }
+
+    /// Takes back all places. What is still needed is moved to a new place before anything is reserved, in
+    /// ascending order of the old places.
+    void release() noexcept { used_ = 0; }
+    std::uint64_t move_down(std::uint64_t place, std::size_t edges) {
+        assert(place >= used_ && place + EdgeColumns::padded(edges) <= room_);
+        const double* from = columns_.data() + EdgeColumns::columns * place;
+        const std::uint64_t to = reserve(edges);
+        std::copy(from, from + EdgeColumns::columns * EdgeColumns::padded(edges), at(to));
+        return to;
+    }
+
+  private:
+    std::uint64_t room_;
+    std::uint64_t used_ = 0;
+    PageArray<double> columns_;
+};
+
+/// Prepares the edges of a run for being cut, in memory at `to` that has room for their columns.
+template <class Ends>
+EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, PlaneRule rule, std::span<const std::uint32_t> nodes,
+                          const PointKernels& kernels, double* to) {
+    assert(!nodes.empty());
+    const std::size_t stride = EdgeColumns::padded(nodes.size());
+    double* const z0 = to;
+    double* const far_z = z0 + stride;
+    double* const x0 = far_z + stride;
+    double* const far_x = x0 + stride;
+    double* const y0 = far_x + stride;
+    double* const far_y = y0 + stride;
+    const bool low_is_base = rule == PlaneRule::section_above;
+    constexpr std::size_t ahead = 12;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (i + ahead < nodes.size())
+            __builtin_prefetch(&graph.nodes[nodes[i + ahead]].ends);
+        const Ends& ends = graph.nodes[nodes[i]].ends;
+        const Point3 base = low_is_base ? graph.low(ends) : graph.high(ends);
+        const Point3 far = low_is_base ? graph.high(ends) : graph.low(ends);
+        z0[i] = base.z;
+        far_z[i] = far.z;
+        x0[i] = base.x;
+        far_x[i] = far.x;
+        y0[i] = base.y;
+        far_y[i] = far.y;
+    }
+    const EdgeColumns edges{to, nodes.size()};
+    kernels.prepare(edges);
+    return edges;
+}
+
+} // namespace lamella

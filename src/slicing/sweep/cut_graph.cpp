@@ -1,0 +1,497 @@
+#include "slicing/sweep/cut_graph.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/key_groups.hpp"
+#include "slicing/sweep/edge_hash.hpp"
+#include "slicing/sweep/pairing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+// How the graph is built
+//
+// Collect. Workers take chunks of consecutive triangles. An edge is looked up in a small table private to the
+// worker that stays in its second-level cache: most files have the two triangles of an edge close together.
+// Found: the node is complete. Not found: a new node, known from one side so far, takes the slot; whoever sat
+// there is left to the next step. No thread waits for another, and no memory access leaves the cache but to
+// append.
+//
+// Join. Nodes of equal ends are brought together by their hashes (core/key_groups.hpp). Two halves become one
+// node.
+//
+// Pair. Where more than two triangles met in an edge, or where hashes collide, the links are assigned anew
+// among the nodes that really have equal ends, by geometry (pairing.hpp).
+
+namespace lamella {
+
+namespace {
+
+/// Nodes by what is left of their edges' hashes beside the partition: its lower half. Together they are wide
+/// enough that edges which only have that in common are rare.
+using NodePartitions = KeyPartitions<std::uint32_t>;
+
+// What triangles are made of. Corner: what tells a corner from others, as bits: a vertex has the same ones in
+// all its triangles.
+
+struct FloatCorners {
+    using Ends = FloatEnds;
+    /// In two pieces that stay in registers and go to memory, and come from there, as they are.
+    struct Corner {
+        std::uint64_t xy;
+        std::uint32_t z;
+        friend bool operator==(const Corner&, const Corner&) = default;
+    };
+
+    FloatCorners(const TriangleSoup& soup, const Ranks& ranks)
+        : data_(soup.data()), stride_(soup.stride()), ranks_(ranks) {}
+
+    /// False when no plane cuts triangle i.
+    bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
+        const std::byte* const triangle = data_ + i * stride_;
+        std::array<float, 3> z;
+        for (std::size_t k = 0; k < 3; ++k)
+            std::memcpy(&z[k], triangle + 12 * k + 8, 4);
+        if (z[0] == z[1] && z[1] == z[2])
+            return false;
+        for (std::size_t k = 0; k < 3; ++k)
+            rank[k] = ranks_(z[k]);
+        if (rank[0] == rank[1] && rank[1] == rank[2])
+            return false;
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::array<float, 2> xy;
+            std::memcpy(&xy, triangle + 12 * k, 8);
+            xy = {xy[0] + 0.0F, xy[1] + 0.0F}; // -0 is +0
+            corners[k] = {std::bit_cast<std::uint64_t>(xy), std::bit_cast<std::uint32_t>(z[k] + 0.0F)};
+        }
+        return true;
+    }
+    [[nodiscard]] static std::uint64_t hash(const Corner& c) { return corner_hash(c.xy, c.z); }
+    [[nodiscard]] static bool is(const Point3f& stored, const Corner& c) {
+        std::uint64_t xy;
+        std::memcpy(&xy, &stored, sizeof xy);
+        return static_cast<int>(xy == c.xy) & static_cast<int>(std::bit_cast<std::uint32_t>(stored.z) == c.z);
+    }
+    static void store(const Corner& c, Point3f& to) {
+        std::memcpy(static_cast<void*>(&to), &c.xy, sizeof c.xy);
+        to.z = std::bit_cast<float>(c.z);
+    }
+
+  private:
+    const std::byte* data_;
+    std::size_t stride_;
+    const Ranks& ranks_;
+};
+
+struct PlacedCorners {
+    using Ends = DoubleEnds;
+    using Corner = Point3;
+
+    PlacedCorners(const TriangleSoup& soup, const Ranks& ranks) : soup_(soup), ranks_(ranks) {}
+
+    bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
+        corners = soup_.placed(i);
+        for (std::size_t k = 0; k < 3; ++k)
+            rank[k] = ranks_(corners[k].z);
+        return !(rank[0] == rank[1] && rank[1] == rank[2]);
+    }
+    [[nodiscard]] static std::uint64_t hash(const Corner& c) {
+        return mix(mix(std::bit_cast<std::uint64_t>(c.x), std::bit_cast<std::uint64_t>(c.y)),
+                   std::bit_cast<std::uint64_t>(c.z));
+    }
+    [[nodiscard]] static bool is(const Point3& stored, const Corner& c) { return stored == c; }
+    static void store(const Corner& c, Point3& to) { to = c; }
+
+  private:
+    const TriangleSoup& soup_;
+    const Ranks& ranks_;
+};
+
+struct IndexedCorners {
+    using Ends = IndexEnds;
+    using Corner = std::uint32_t;
+
+    IndexedCorners(const IndexedMesh& mesh, const PageArray<std::uint32_t>& vertex_ranks)
+        : mesh_(mesh), ranks_(vertex_ranks) {}
+
+    bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
+        corners = mesh_.triangles[i];
+        for (std::size_t k = 0; k < 3; ++k)
+            rank[k] = ranks_[corners[k]];
+        return !(rank[0] == rank[1] && rank[1] == rank[2]);
+    }
+    [[nodiscard]] static std::uint64_t hash(Corner vertex) { return vertex; }
+    [[nodiscard]] static bool is(std::uint32_t stored, Corner vertex) { return stored == vertex; }
+    static void store(Corner vertex, std::uint32_t& to) { to = vertex; }
+
+  private:
+    const IndexedMesh& mesh_;
+    const PageArray<std::uint32_t>& ranks_;
+};
+
+/// Node numbers come in blocks from one counter, so that workers number nodes without waiting and the numbers
+/// stay dense.
+class CutNodePool {
+  public:
+    CutNodePool(std::uint64_t capacity, std::uint32_t block) : capacity_(capacity), block_(block) {}
+
+    struct Block {
+        std::uint64_t number = 0;
+        std::uint32_t begin = 0;
+        std::uint32_t end = 0;
+    };
+
+    /// A block that nobody has.
+    Block take() {
+        const std::uint64_t begin = used_.fetch_add(block_, std::memory_order_relaxed);
+        return {begin / block_, static_cast<std::uint32_t>(begin),
+                static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + block_, capacity_))};
+    }
+    [[nodiscard]] std::uint32_t used() const {
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(used_.load(), capacity_));
+    }
+
+  private:
+    std::uint64_t capacity_;
+    std::uint32_t block_;
+    std::atomic<std::uint64_t> used_{0};
+};
+
+/// One worker's part in collecting. It has copies of what it reads all the time, in memory of its own, so
+/// that no other worker's writing nearby takes that out of its cache.
+template <class Corners>
+class alignas(128) Collector {
+    using Ends = typename Corners::Ends;
+    using Corner = typename Corners::Corner;
+    using Node = CutNode<Ends>;
+
+  public:
+    /// `table_size` is a power of two.
+    Collector(const Corners& corners, const CutGraph<Ends>& graph, const NodePartitions& partitions,
+              CutNodePool& pool, std::uint32_t block_size, std::size_t table_size)
+        : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), partitions_(partitions),
+          pool_(pool), hashes_(block_size), table_(table_size, Fill::zero) {}
+
+    /// Adds the triangles [begin, end).
+    void add(std::uint64_t begin, std::uint64_t end) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            add(i);
+    }
+
+    /// After the last triangle.
+    void finish() { put_hashes(); }
+
+  private:
+    /// The node last seen with this part of a hash, + 1, so that zero is empty.
+    struct Slot {
+        std::uint32_t tag;
+        std::uint32_t node;
+    };
+
+    void add(std::uint64_t i) {
+        std::array<Corner, 3> corner;
+        std::array<std::uint32_t, 3> rank;
+        if (!corners_.load(i, corner, rank))
+            return;
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
+            return; // no area and no effect on the topology: its two cut edges, if any, are one
+
+        const std::array<std::uint64_t, 3> hash{Corners::hash(corner[0]), Corners::hash(corner[1]),
+                                                Corners::hash(corner[2])};
+        const auto node_of = [&](std::size_t from, std::size_t to) {
+            if (rank[from] == rank[to])
+                return no_node;
+            const bool up = rank[from] < rank[to];
+            const std::size_t low = up ? from : to;
+            const std::size_t high = up ? to : from;
+            return find_or_add(corner[low], corner[high], edge_hash(hash[low], hash[high]),
+                               {rank[low], rank[high]}, up);
+        };
+        const std::uint32_t node01 = node_of(0, 1);
+        const std::uint32_t node12 = node_of(1, 2);
+        const std::uint32_t node20 = node_of(2, 0);
+
+        // Where an edge runs downwards, contours leave it through this triangle: below the third corner over
+        // the edge at the lower end, above it over the one at the upper end.
+        const auto link = [&](std::uint32_t from, std::uint32_t upper_rank, std::uint32_t lower_rank,
+                              std::uint32_t third_rank, std::uint32_t at_lower, std::uint32_t at_upper) {
+            if (upper_rank <= lower_rank)
+                return;
+            assert(from != no_node); // planes cut the edge
+            Node& leaving = nodes_[from];
+            const bool above_lower = lower_rank < third_rank;
+            const bool below_upper = third_rank < upper_rank;
+            leaving.next_low = above_lower ? at_lower : at_upper;
+            leaving.next_high = below_upper ? at_upper : at_lower;
+            leaving.split = above_lower && below_upper ? third_rank : lower_rank;
+            leaving.triangle = static_cast<std::uint32_t>(i);
+            assert(leaving.next_low != no_node && leaving.next_high != no_node);
+        };
+        link(node01, rank[0], rank[1], rank[2], node12, node20);
+        link(node12, rank[1], rank[2], rank[0], node20, node01);
+        link(node20, rank[2], rank[0], rank[1], node01, node12);
+    }
+
+    std::uint32_t find_or_add(const Corner& low, const Corner& high, std::uint64_t hash, PlaneSpan span,
+                              bool entered) {
+        const auto tag = static_cast<std::uint32_t>(hash >> 32);
+        Slot& slot = table_[hash & (table_.size() - 1)];
+        if (slot.node != 0 && slot.tag == tag) {
+            Node& node = nodes_[slot.node - 1];
+            const bool other_side = entered ? node.entered == 0 : !node.left();
+            if (other_side && Corners::is(node.ends.low, low) && Corners::is(node.ends.high, high)) {
+                const std::uint32_t found = slot.node - 1;
+                node.entered |= static_cast<unsigned>(entered);
+                slot.node = 0; // complete: a third triangle at this edge must make a node of its own
+                return found;
+            }
+        }
+        assert(span.first < span.last);
+        const std::uint32_t added = take_number();
+        Node& node = nodes_[added];
+        node.next_low = no_node;
+        node.next_high = no_node;
+        node.split = 0;
+        node.triangle = 0;
+        node.set_last(span.last);
+        node.entered = static_cast<unsigned>(entered);
+        Corners::store(low, node.ends.low);
+        Corners::store(high, node.ends.high);
+        spans_[added] = span;
+        hashes_[added - block_.begin] = hash;
+        slot = {tag, added + 1};
+        return added;
+    }
+
+    std::uint32_t take_number() {
+        if (next_ == block_.end) {
+            put_hashes();
+            block_ = pool_.take();
+            next_ = block_.begin;
+        }
+        assert(next_ < block_.end); // there are numbers for all nodes that these triangles can have
+        return next_++;
+    }
+
+    void put_hashes() {
+        if (next_ != block_.begin)
+            partitions_.put(
+                block_.number, next_ - block_.begin, [&](std::uint32_t i) { return hashes_[i]; },
+                [&](std::uint32_t i) {
+                    return NodePartitions::Record{static_cast<std::uint32_t>(hashes_[i]), block_.begin + i};
+                });
+    }
+
+    Corners corners_;
+    Node* nodes_;
+    PlaneSpan* spans_;
+    const NodePartitions& partitions_;
+    CutNodePool& pool_;
+    CutNodePool::Block block_;
+    std::uint32_t next_ = 0;          ///< number within the block
+    PageArray<std::uint64_t> hashes_; ///< of the block's nodes
+    PageArray<Slot> table_;
+};
+
+/// Whether every node in use leads on, on all planes that cut it, to nodes that these planes cut; or on none
+/// of them, where the mesh ends. And whether as many contours arrive as leave, which makes links one to one.
+template <class Ends>
+[[maybe_unused]] bool is_complete(const CutGraph<Ends>& graph) {
+    std::uint64_t leaving = 0;
+    std::uint64_t arriving = 0;
+    const auto leads_to = [&](std::uint32_t next, std::uint32_t first, std::uint32_t last) {
+        return first >= last || (next < graph.count && graph.nodes[next].entered &&
+                                 graph.spans[next].first <= first && last <= graph.spans[next].last);
+    };
+    for (std::uint32_t id = 0; id < graph.count; ++id) {
+        const CutNode<Ends>& node = graph.nodes[id];
+        const PlaneSpan span = graph.spans[id];
+        if (node.last != span.last || (node.in_use() && span.first >= span.last))
+            return false;
+        if (node.left()) {
+            leaving += span.last - span.first;
+            const std::uint32_t split = std::clamp(node.split, span.first, span.last);
+            if (!leads_to(node.next_low, span.first, split) || !leads_to(node.next_high, split, span.last))
+                return false;
+        }
+        if (node.entered)
+            arriving += span.last - span.first;
+    }
+    return leaving == arriving;
+}
+
+template <class Corners>
+class Builder {
+    using Ends = typename Corners::Ends;
+    using Node = CutNode<Ends>;
+
+  public:
+    Builder(const Corners& corners, std::uint64_t triangles, const Point3* vertices, Executor& executor,
+            ProgressMeter& progress)
+        : corners_(corners), triangles_(triangles), executor_(executor), progress_(progress),
+          workers_(executor.workers()), partitions_(triangles * 3 / 2) {
+        graph_.vertices = vertices;
+    }
+
+    CutGraph<Ends> build() {
+        // At most three nodes for each triangle, and one partly used block for each worker.
+        const auto block = static_cast<std::uint32_t>(
+            std::clamp<std::uint64_t>(3 * triangles_ / workers_ + 3, 3, partitions_.block_size()));
+        const std::uint64_t capacity = 3 * triangles_ + block * workers_;
+        if (capacity >= no_node)
+            throw Error(ErrorKind::limit,
+                        fmt::format("{} triangles are more than can be sliced at once in 32-bit "
+                                    "numbers ({})",
+                                    triangles_, no_node / 3));
+        graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
+        graph_.spans = PageArray<PlaneSpan>(capacity, Fill::zero);
+        partitions_.reserve(capacity / block + 1, block);
+        CutNodePool pool(capacity, block);
+
+        collect(pool, block);
+        graph_.count = pool.used();
+        join();
+        if (!crowded_.empty())
+            graph_.nonmanifold_edges = pair_crowded_edges(graph_, crowded_, executor_);
+        assert(is_complete(graph_));
+        return std::move(graph_);
+    }
+
+  private:
+    /// Two nodes of equal hash.
+    struct Meeting {
+        std::uint32_t first; ///< the same at each meeting of a group
+        std::uint32_t other;
+    };
+
+    struct Worker {
+        std::unique_ptr<Collector<Corners>> collector;
+        std::array<Meeting, 16> meetings; ///< under way, oldest at `met` modulo their number
+        std::size_t met = 0;
+        std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, repeated
+    };
+
+    void collect(CutNodePool& pool, std::uint32_t block) {
+        const std::uint64_t expected = triangles_ * 3 / 2;
+        const int table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
+        worker_.resize(workers_);
+        const std::uint64_t chunk =
+            std::clamp<std::uint64_t>(triangles_ / (std::uint64_t{workers_} * 8), 4096, 1U << 16);
+        executor_.for_chunks(triangles_, chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned w) {
+            std::unique_ptr<Collector<Corners>>& collector = worker_[w].collector;
+            if (!collector)
+                collector = std::make_unique<Collector<Corners>>(corners_, graph_, partitions_, pool, block,
+                                                                 std::size_t{1} << table_bits);
+            collector->add(begin, end);
+            progress_.add(end - begin);
+        });
+        for (const Worker& worker : worker_)
+            if (worker.collector)
+                worker.collector->finish();
+    }
+
+    void join() {
+        partitions_.join(
+            executor_, [](std::uint32_t hash) { return hash; },
+            [&](std::uint32_t first, std::uint32_t other, unsigned w) {
+                // The two nodes may lie anywhere: they are looked at a while after they are asked for.
+                Worker& worker = worker_[w];
+                __builtin_prefetch(&graph_.nodes[first], 1);
+                __builtin_prefetch(&graph_.nodes[other], 1);
+                Meeting& oldest = worker.meetings[worker.met % worker.meetings.size()];
+                if (worker.met >= worker.meetings.size())
+                    meet(oldest, worker.crowded);
+                oldest = {first, other};
+                ++worker.met;
+            });
+        for (Worker& worker : worker_) {
+            const std::size_t places = worker.meetings.size();
+            for (std::size_t i = worker.met < places ? 0 : worker.met - places; i < worker.met; ++i)
+                meet(worker.meetings[i % places], worker.crowded);
+            crowded_.insert(crowded_.end(), worker.crowded.begin(), worker.crowded.end());
+        }
+        // A half may have been in a crowd before it became part of another node, which then stands for it.
+        for (std::uint32_t& id : crowded_)
+            if (!graph_.nodes[id].in_use())
+                id = graph_.nodes[id].split;
+    }
+
+    void meet(const Meeting& meeting, std::vector<std::uint32_t>& crowded) {
+        Node& a = graph_.nodes[meeting.first];
+        Node& b = graph_.nodes[meeting.other];
+        if (!a.in_use()) {
+            // It is one node with another one already: three are a crowd.
+            crowded.insert(crowded.end(), {a.split, meeting.other});
+            return;
+        }
+        const bool halves = a.entered != b.entered && a.left() != b.left() && a.entered != a.left();
+        if (!halves || !(a.ends == b.ends)) {
+            crowded.insert(crowded.end(), {meeting.first, meeting.other});
+        } else if (a.entered) {
+            unite(meeting.first, meeting.other);
+        } else {
+            unite(meeting.other, meeting.first);
+        }
+    }
+
+    /// Nodes are known by the edges that lead to them, so the entered half stays and takes the other's links.
+    /// The other one is no longer in use; as its split it keeps the number of the node that it is part of.
+    void unite(std::uint32_t entered_half, std::uint32_t left_half) {
+        Node& entered = graph_.nodes[entered_half];
+        Node& left = graph_.nodes[left_half];
+        assert(entered.entered && !entered.left() && left.left() && !left.entered);
+        assert(entered.last == left.last);
+        entered.next_low = left.next_low;
+        entered.next_high = left.next_high;
+        entered.split = left.split;
+        entered.triangle = left.triangle;
+        left.next_low = left.next_high = no_node;
+        graph_.drop(left_half);
+        left.split = entered_half;
+    }
+
+    const Corners& corners_;
+    std::uint64_t triangles_;
+    Executor& executor_;
+    ProgressMeter& progress_;
+    unsigned workers_;
+    std::vector<Worker> worker_;
+    NodePartitions partitions_;
+    CutGraph<Ends> graph_;
+    std::vector<std::uint32_t> crowded_; // nodes that share their ends with others, in no order, repeated
+};
+
+} // namespace
+
+CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks, Executor& executor,
+                                    ProgressMeter& progress) {
+    const FloatCorners corners(unplaced, ranks);
+    return Builder<FloatCorners>(corners, unplaced.size(), nullptr, executor, progress).build();
+}
+
+CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks, Executor& executor,
+                                            ProgressMeter& progress) {
+    const PlacedCorners corners(soup, ranks);
+    return Builder<PlacedCorners>(corners, soup.size(), nullptr, executor, progress).build();
+}
+
+CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks, Executor& executor,
+                                    ProgressMeter& progress) {
+    PageArray<std::uint32_t> vertex_ranks(mesh.vertices.size());
+    executor.for_chunks(mesh.vertices.size(), 1U << 14,
+                        [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+                            for (std::uint64_t v = begin; v < end; ++v)
+                                vertex_ranks[v] = ranks(mesh.vertices[v].z);
+                        });
+    const IndexedCorners corners(mesh, vertex_ranks);
+    return Builder<IndexedCorners>(corners, mesh.triangles.size(), mesh.vertices.data(), executor, progress)
+        .build();
+}
+
+} // namespace lamella

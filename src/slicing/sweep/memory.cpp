@@ -1,0 +1,23 @@
+#include "lamella/slicing/slabs.hpp"
+
+#include "slicing/sweep/cut_graph.hpp"
+
+#include <algorithm>
+
+namespace lamella {
+
+std::uint64_t SlabMemory::bytes(const SlabNeeds& slab) const noexcept {
+    // While nodes are joined, each has its hash and a record beside it; afterwards its place in the order of
+    // starts, and each worker marks in an array of all nodes where it has been.
+    constexpr std::uint64_t joining = sizeof(std::uint64_t) + 12;
+    const std::uint64_t walking = 4 + 4 * std::uint64_t{threads};
+    const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +
+                               sizeof(PlaneSpan) + std::max(joining, walking);
+    // A point, and the text that a sink makes of it.
+    constexpr std::uint64_t point = sizeof(Point2) + 40;
+    const std::uint64_t in_flight =
+        std::min(std::max(points_in_flight, 2 * slab.most_points), slab.points + slab.most_points);
+    return sizeof(Triangle3f) * slab.triangles + node * slab.edges + point * in_flight;
+}
+
+} // namespace lamella

@@ -1,0 +1,82 @@
+#pragma once
+
+// How many nodes of the cut graph are alive on each plane, and how many begin there.
+
+#include "core/executor.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lamella {
+
+/// A worker's fixed share of the nodes, and how many of them begin and end on each plane.
+struct NodeShare {
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::vector<std::uint32_t> begins; ///< per plane, and one more entry
+    std::vector<std::uint32_t> ends;   ///< likewise: on the plane behind the last one that cuts the node
+};
+
+struct PlaneLoads {
+    std::vector<std::uint64_t> points; ///< per plane: the nodes alive on it, each of which is a point there
+    std::vector<std::uint64_t> begun;  ///< per plane, and one more entry: nodes that begin before it
+    std::uint64_t most_points = 0;     ///< on one plane
+    std::uint64_t all_points = 0;      ///< on all planes
+
+    [[nodiscard]] std::uint32_t planes() const noexcept { return static_cast<std::uint32_t>(points.size()); }
+};
+
+/// Divides the nodes into as many shares as are worth a worker each, and counts.
+template <class Ends>
+std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor) {
+    constexpr std::uint64_t worth_a_thread = 1U << 15; // nodes
+    const std::uint64_t shares =
+        std::clamp<std::uint64_t>(graph.count / worth_a_thread, 1, executor.workers());
+    std::vector<NodeShare> result(shares);
+    executor.for_chunks(shares, 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
+        NodeShare& share = result[s];
+        share.begin = static_cast<std::uint32_t>(graph.count * s / shares);
+        share.end = static_cast<std::uint32_t>(graph.count * (s + 1) / shares);
+        share.begins.assign(planes + std::size_t{1}, 0);
+        share.ends.assign(planes + std::size_t{1}, 0);
+        for (std::uint32_t id = share.begin; id < share.end; ++id) {
+            const PlaneSpan span = graph.spans[id];
+            assert(span.last <= planes);
+            const bool used = span.last != 0;
+            share.begins[span.first] += used;
+            share.ends[span.last] += used;
+        }
+    });
+    return result;
+}
+
+/// Adds the shares up.
+inline PlaneLoads loads_of(const std::vector<NodeShare>& shares, std::uint32_t planes) {
+    PlaneLoads loads;
+    loads.points.resize(planes);
+    loads.begun.resize(planes + std::size_t{1});
+    std::uint64_t alive = 0;
+    for (std::uint32_t p = 0; p < planes; ++p) {
+        std::uint64_t begins = 0;
+        for (const NodeShare& share : shares) {
+            assert(share.begins.size() == planes + std::size_t{1} &&
+                   share.ends.size() == share.begins.size());
+            begins += share.begins[p];
+            alive += share.begins[p];
+            alive -= share.ends[p];
+        }
+        loads.points[p] = alive;
+        loads.most_points = std::max(loads.most_points, alive);
+        loads.all_points += alive;
+        loads.begun[p + 1] = loads.begun[p] + begins;
+    }
+    assert(loads.begun.front() == 0);
+    assert(planes == 0 || loads.points.front() == loads.begun[1]); // nothing is alive before it begins
+    return loads;
+}
+
+} // namespace lamella

@@ -1,0 +1,147 @@
+#pragma once
+
+// Runs: contours over the planes that one walk serves.
+//
+// A sequence of nodes stays valid up to the first event in it: a node that ends or turns to its other
+// successor. All planes up to there are a run.
+
+#include "lamella/core/point.hpp"
+#include "lamella/slicing/slabs.hpp"
+
+#include "slicing/sweep/columns.hpp"
+#include "slicing/sweep/walk.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// One contour over the planes [begin, end).
+struct Run {
+    std::uint32_t begin;
+    std::uint32_t end;
+    std::uint32_t size; ///< nodes
+    bool closed;
+    std::uint64_t nodes;   ///< where they start among those of all runs
+    std::uint64_t rings;   ///< its ring on plane p is rings[this + p - begin]
+    std::uint64_t columns; ///< where its edges are in the column store, or not_kept
+};
+
+/// One contour on one plane.
+struct Ring {
+    Point2 first;        ///< the point it starts at
+    std::uint32_t start; ///< the index of that point, after repeated points are dropped
+    std::uint32_t count; ///< points kept; 0 when the contour shrank to a point or a line
+    std::uint64_t place; ///< in the layer's array
+};
+
+/// The runs of a task that later planes, or planes not yet written, need. They are in the order in which they
+/// were found, and so are their nodes and their rings.
+class Runs {
+  public:
+    /// To be called before the first plane of a task, without any runs left of the one before.
+    void begin_task(PlaneRange planes) {
+        assert(runs_.empty() && nodes_.empty() && rings_.empty());
+        planes_ = planes;
+        ending_.assign(planes.size() + std::size_t{1}, 0);
+    }
+
+    void reserve_nodes(std::size_t nodes) { nodes_.reserve(nodes); }
+
+    /// A run from `plane` on, whose rings are not measured yet.
+    Run& add(std::uint32_t plane, const NodeSequence& sequence) {
+        assert(plane >= planes_.begin && plane < sequence.valid_until && sequence.valid_until <= planes_.end);
+        assert(runs_.empty() || runs_.back().begin <= plane);
+        const Run run{plane,
+                      sequence.valid_until,
+                      static_cast<std::uint32_t>(sequence.nodes.size()),
+                      sequence.closed,
+                      nodes_.size(),
+                      rings_.size(),
+                      ColumnStore::not_kept};
+        nodes_.insert(nodes_.end(), sequence.nodes.begin(), sequence.nodes.end());
+        rings_.resize(rings_.size() + (run.end - run.begin));
+        ending_[run.end - planes_.begin] += run.size;
+        return runs_.emplace_back(run);
+    }
+
+    [[nodiscard]] std::span<Run> all() noexcept { return runs_; }
+    [[nodiscard]] std::span<const std::uint32_t> nodes(const Run& run) const noexcept {
+        return std::span(nodes_).subspan(run.nodes, run.size);
+    }
+    /// The rings of a run on planes of its own.
+    [[nodiscard]] std::span<Ring> rings(const Run& run, PlaneRange planes) noexcept {
+        assert(run.begin <= planes.begin && planes.begin <= planes.end && planes.end <= run.end);
+        return std::span(rings_).subspan(index_of(run, planes.begin), planes.size());
+    }
+
+    /// The index of a ring among those of all runs, until runs are forgotten.
+    [[nodiscard]] static std::uint64_t index_of(const Run& run, std::uint32_t plane) noexcept {
+        return run.rings + plane - run.begin;
+    }
+    [[nodiscard]] Ring& ring(std::uint64_t index) noexcept {
+        assert(index < rings_.size());
+        return rings_[index];
+    }
+    [[nodiscard]] const Run& run_of(std::uint64_t ring) const noexcept {
+        const auto behind =
+            std::upper_bound(runs_.begin(), runs_.end(), ring,
+                             [](std::uint64_t index, const Run& run) { return index < run.rings; });
+        assert(behind != runs_.begin());
+        return *std::prev(behind);
+    }
+
+    /// To be called when all runs that begin on a plane are there. True when most of what is kept belongs to
+    /// runs that have ended, and it is so much that it is time to write what they have and to forget them.
+    [[nodiscard]] bool end_plane(std::uint32_t plane) noexcept {
+        constexpr std::uint64_t enough = 1U << 15; // nodes
+        stale_ += ending_[plane + 1 - planes_.begin];
+        return stale_ >= enough && stale_ >= alive_then_;
+    }
+
+    /// Forgets the runs that end before `plane` and moves the others together, as do their columns in the
+    /// store. No plane before is looked at again.
+    void forget_before(std::uint32_t plane, ColumnStore& store) {
+        std::vector<Run> runs;
+        std::vector<Ring> rings;
+        std::uint64_t nodes = 0;
+        store.release();
+        for (const Run& run : runs_) {
+            if (run.end <= plane)
+                continue;
+            Run kept = run;
+            kept.begin = std::max(run.begin, plane);
+            kept.nodes = nodes;
+            const auto first = nodes_.begin() + static_cast<std::ptrdiff_t>(run.nodes);
+            std::copy(first, first + run.size, nodes_.begin() + static_cast<std::ptrdiff_t>(nodes));
+            nodes += run.size;
+            if (run.columns != ColumnStore::not_kept)
+                kept.columns = store.move_down(run.columns, run.size);
+            kept.rings = rings.size();
+            const auto ring = rings_.begin() + static_cast<std::ptrdiff_t>(run.rings);
+            rings.insert(rings.end(), ring + (kept.begin - run.begin), ring + (run.end - run.begin));
+            runs.push_back(kept);
+        }
+        runs_ = std::move(runs);
+        rings_ = std::move(rings);
+        nodes_.resize(nodes);
+        alive_then_ = nodes;
+        stale_ = 0;
+    }
+
+  private:
+    PlaneRange planes_; // of the task
+    std::vector<Run> runs_;
+    std::vector<std::uint32_t> nodes_;
+    std::vector<Ring> rings_;
+    std::vector<std::uint64_t> ending_; ///< per plane of the task and behind it: nodes of runs that end there
+    std::uint64_t stale_ = 0;           ///< nodes of runs that have ended
+    std::uint64_t alive_then_ = 0;      ///< nodes when runs were forgotten last
+};
+
+} // namespace lamella

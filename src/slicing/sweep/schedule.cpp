@@ -1,0 +1,72 @@
+#include "slicing/sweep/schedule.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::uint64_t plane_cost = 64; // in points
+constexpr std::uint64_t worth_a_thread = 1U << 15;
+constexpr std::uint64_t worth_a_task = 32; // planes
+
+/// One task that all workers share.
+std::vector<SweepTask> one_for_all(std::uint32_t planes, unsigned workers, std::uint64_t group) {
+    return {{{0, planes}, static_cast<std::uint32_t>(std::min<std::uint64_t>(group, planes)), workers > 1}};
+}
+
+[[maybe_unused]] bool covers_every_plane_once(const std::vector<SweepTask>& tasks, std::uint32_t planes) {
+    std::uint32_t next = 0;
+    for (const SweepTask& task : tasks) {
+        if (task.planes.begin != next || (task.planes.end <= next && planes != 0))
+            return false;
+        next = task.planes.end;
+    }
+    return next == planes;
+}
+
+} // namespace
+
+std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::uint64_t points_in_flight) {
+    assert(workers > 0);
+    assert(loads.begun.size() == loads.points.size() + 1);
+    const std::uint32_t planes = loads.planes();
+    std::uint64_t work = 0;
+    for (const std::uint64_t p : loads.points)
+        work += p + plane_cost;
+    if (work < workers * worth_a_thread)
+        workers = 1;
+
+    const std::uint64_t per_task = points_in_flight / (workers + 1ULL); // one may wait for its turn
+    const std::uint64_t largest_layer = std::max<std::uint64_t>(1, loads.most_points);
+    if (points_in_flight != 0 && per_task / largest_layer < std::min<std::uint64_t>(planes, worth_a_task))
+        return one_for_all(planes, workers, std::max<std::uint64_t>(1, points_in_flight / largest_layer));
+
+    std::vector<SweepTask> tasks;
+    const std::uint64_t wanted =
+        workers == 1 ? 1 : workers * std::clamp<std::uint64_t>(planes / (workers * 32ULL), 1, 4);
+    std::uint64_t target = work / wanted + 1;
+    if (points_in_flight != 0)
+        target = std::min(target, per_task);
+    std::uint64_t filled = 0;
+    const std::uint64_t nodes = loads.begun.back();
+    std::uint64_t walked = nodes;
+    for (std::uint32_t p = 0; p < planes; ++p) {
+        const std::uint64_t cost = loads.points[p] + plane_cost;
+        if (tasks.empty() || filled + cost / 2 > target) {
+            tasks.push_back({{p, p}, planes});
+            filled = 0;
+            walked += loads.points[p] - (loads.begun[p + 1] - loads.begun[p]);
+        }
+        filled += cost;
+        tasks.back().planes.end = p + 1;
+    }
+    assert(covers_every_plane_once(tasks, planes));
+    // Where layers are delivered on the way, tasks of their own let some slice while others deliver.
+    if (points_in_flight == 0 && tasks.size() > 1 && workers * nodes <= walked + walked / 16)
+        return one_for_all(planes, workers, planes);
+    return tasks;
+}
+
+} // namespace lamella

@@ -1,0 +1,113 @@
+#pragma once
+
+// Where the walks of a plane start.
+
+#include "core/executor.hpp"
+#include "core/pages.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+#include "slicing/sweep/plane_loads.hpp"
+#include "slicing/sweep/schedule.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// The nodes by the plane they begin on, and those that reach into a task from below.
+class StartIndex {
+  public:
+    /// Of the graph whose nodes were counted in `shares`, added up in `loads` and divided into `tasks`.
+    template <class Ends>
+    StartIndex(const CutGraph<Ends>& graph, const std::vector<NodeShare>& shares, const PlaneLoads& loads,
+               const std::vector<SweepTask>& tasks, Executor& executor)
+        : starts_before_(loads.begun), starts_(loads.begun.back()) {
+        // The task that a plane lies in.
+        const std::uint32_t planes = loads.planes();
+        std::vector<std::uint32_t> task_of(planes);
+        for (std::uint32_t t = 0; t < tasks.size(); ++t)
+            std::fill(task_of.begin() + tasks[t].planes.begin, task_of.begin() + tasks[t].planes.end, t);
+
+        Places places = places_of(shares, loads, tasks, task_of);
+        carried_ = PageArray<std::uint32_t>(carried_before_.back());
+        executor.for_chunks(shares.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
+            for (std::uint32_t id = shares[s].begin; id < shares[s].end; ++id) {
+                const PlaneSpan span = graph.spans[id];
+                if (span.last == 0)
+                    continue;
+                assert(span.first < span.last);
+                starts_[places.starts[s][span.first]++] = id;
+                for (std::uint32_t t = task_of[span.first] + 1;
+                     t < tasks.size() && tasks[t].planes.begin < span.last; ++t)
+                    carried_[places.carried[s][t]++] = id;
+            }
+        });
+        // The last share has filled the starts of each plane, and what is carried into each task, to the end.
+        assert(std::equal(places.starts.back().begin(), places.starts.back().end(), loads.begun.begin() + 1));
+        assert(std::equal(places.carried.back().begin(), places.carried.back().end(),
+                          carried_before_.begin() + 1));
+    }
+
+    /// Nodes that begin on the plane.
+    [[nodiscard]] std::span<const std::uint32_t> starts(std::uint32_t plane) const noexcept {
+        assert(plane + std::size_t{1} < starts_before_.size());
+        return starts_.span().subspan(starts_before_[plane],
+                                      starts_before_[plane + 1] - starts_before_[plane]);
+    }
+    /// Nodes alive on the first plane of a task that begin before.
+    [[nodiscard]] std::span<const std::uint32_t> carried(std::size_t task) const noexcept {
+        assert(task + 1 < carried_before_.size());
+        return carried_.span().subspan(carried_before_[task],
+                                       carried_before_[task + 1] - carried_before_[task]);
+    }
+
+  private:
+    /// Where each share of the nodes writes next.
+    struct Places {
+        std::vector<std::vector<std::uint64_t>> starts;  ///< per share and plane
+        std::vector<std::vector<std::uint64_t>> carried; ///< per share and task
+    };
+
+    Places places_of(const std::vector<NodeShare>& shares, const PlaneLoads& loads,
+                     const std::vector<SweepTask>& tasks, const std::vector<std::uint32_t>& task_of) {
+        const std::uint32_t planes = loads.planes();
+        Places places;
+        places.starts.assign(shares.size(), std::vector<std::uint64_t>(planes));
+        places.carried.assign(shares.size(), std::vector<std::uint64_t>(tasks.size()));
+        for (std::uint32_t p = 0; p < planes; ++p) {
+            std::uint64_t place = loads.begun[p];
+            for (std::size_t s = 0; s < shares.size(); ++s)
+                places.starts[s][p] = std::exchange(place, place + shares[s].begins[p]);
+            assert(place == loads.begun[p + 1]);
+        }
+        // What each share has for each task, and then where it goes.
+        for (std::size_t s = 0; s < shares.size(); ++s) {
+            std::uint64_t open = 0; // begun below the plane and not ended there
+            for (std::uint32_t p = 0; p < planes; ++p) {
+                open -= shares[s].ends[p];
+                if (tasks[task_of[p]].planes.begin == p)
+                    places.carried[s][task_of[p]] = open;
+                open += shares[s].begins[p];
+            }
+        }
+        carried_before_.assign(tasks.size() + 1, 0);
+        for (std::size_t t = 0; t < tasks.size(); ++t) {
+            std::uint64_t place = carried_before_[t];
+            for (std::vector<std::uint64_t>& of_share : places.carried)
+                of_share[t] = std::exchange(place, place + of_share[t]);
+            carried_before_[t + 1] = place;
+        }
+        return places;
+    }
+
+    std::vector<std::uint64_t> starts_before_; ///< per plane, and one more entry
+    PageArray<std::uint32_t> starts_;
+    std::vector<std::uint64_t> carried_before_; ///< per task, and one more entry
+    PageArray<std::uint32_t> carried_;
+};
+
+} // namespace lamella

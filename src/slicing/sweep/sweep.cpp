@@ -1,0 +1,216 @@
+#include "lamella/slicing/slice.hpp"
+
+#include "core/executor.hpp"
+#include "slicing/sweep/crew.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+#include "slicing/sweep/emit.hpp"
+#include "slicing/sweep/measure.hpp"
+#include "slicing/sweep/ordered_delivery.hpp"
+#include "slicing/sweep/plane_loads.hpp"
+#include "slicing/sweep/point_arena.hpp"
+#include "slicing/sweep/runs.hpp"
+#include "slicing/sweep/schedule.hpp"
+#include "slicing/sweep/start_index.hpp"
+#include "slicing/sweep/walk.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <memory>
+#include <span>
+#include <vector>
+
+// The sweep engine
+//
+// Ranks turn heights into integers, and the cut graph links every cut edge to its successors (cut_graph.hpp).
+// What is left is to read contours off the graph. The planes are divided into tasks (schedule.hpp), each for
+// one worker, or one task for all of them. For one plane after the other:
+//
+//     walk       follow the links from every node that begins there: walk.hpp
+//     run        the sequence of nodes serves all planes up to the first event in it: runs.hpp
+//     measure    learn of each plane of the run where its ring starts and how many points it has: measure.hpp
+//     emit       once a stretch of planes is complete, put the rings of each layer in order and compute the
+//                points again, straight into their places: emit.hpp
+//
+// The result is in normal form, so nothing of this order of work can be seen in it.
+
+namespace lamella {
+
+namespace {
+
+/// The sweep of one worker over one task after the other.
+template <class Ends>
+class alignas(128) Sweep {
+  public:
+    /// All tasks are shared, or none is.
+    Sweep(const CutGraph<Ends>& graph, const StartIndex& starts, const PlaneLoads& loads, const Ranks& ranks,
+          const Plan& plan, bool shared, Executor& executor, OrderedDelivery& delivery)
+        : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), delivery_(delivery),
+          crew_(executor, shared), walk_(graph), columns_(room_for_columns(loads, shared)),
+          arena_(loads.all_points) {
+        if (shared)
+            runs_.reserve_nodes(loads.begun.back());
+    }
+
+    /// Tasks come in ascending order. `carried`: the nodes that reach into this one from below.
+    void sweep(const SweepTask& task, std::span<const std::uint32_t> carried) {
+        assert(task.shared == crew_.shared() && task.group > 0);
+        const PlaneRange planes = task.planes;
+        walk_.begin_task(planes);
+        runs_.begin_task(planes);
+        entries_.begin_task(planes);
+        std::uint32_t emitted = planes.begin;
+        for (std::uint32_t plane = planes.begin; plane < planes.end; ++plane) {
+            if (crew_.executor().stopping())
+                return;
+            const std::size_t known = runs_.all().size();
+            walk_.walk(plane, starts_.starts(plane),
+                       plane == planes.begin ? carried : std::span<const std::uint32_t>(),
+                       [&](const NodeSequence& sequence) { add_run(plane, sequence); });
+            if (crew_.shared())
+                measure_together(runs_.all().subspan(known), planes);
+            entries_.add(runs_.all().subspan(known), runs_, plane);
+
+            const bool last = plane + 1 == planes.end;
+            const bool much_is_stale = runs_.end_plane(plane);
+            if (much_is_stale || last || plane + 1 - emitted == task.group) {
+                emit({emitted, plane + 1}, plan_, ranks_, runs_, entries_, edges_of(), crew_, arena_,
+                     delivery_);
+                emitted = plane + 1;
+            }
+            if (much_is_stale || last)
+                forget_before(plane + 1);
+        }
+    }
+
+  private:
+    /// Columns that stay are to stay in one core's cache; and where all workers share the work they do not.
+    static std::uint64_t room_for_columns(const PlaneLoads& loads, bool shared) {
+        constexpr std::uint64_t most = 1U << 16; // edges: 3 MB
+        return shared ? 0 : std::min(most, EdgeColumns::padded(8 * loads.all_points));
+    }
+
+    /// In a task of one's own a run is measured now, while its nodes are in the cache.
+    void add_run(std::uint32_t plane, const NodeSequence& sequence) {
+        Run& run = runs_.add(plane, sequence);
+        if (crew_.shared())
+            return; // measured by all when the walk is over
+        skip_walks(run);
+        run.columns = columns_.reserve(run.size);
+        measure_run(run, {run.begin, run.end}, crew_.scratch());
+    }
+
+    void measure_together(std::span<Run> runs, PlaneRange planes) {
+        crew_.for_runs(runs, planes, [&](const Run& run, PlaneRange part, Scratch& scratch) {
+            if (part.begin == run.begin) // the first of its pieces
+                skip_walks(run);
+            measure_run(run, part, scratch);
+        });
+    }
+
+    /// Later planes need no walk where the run goes.
+    void skip_walks(const Run& run) const {
+        if (run.end > run.begin + 1)
+            walk_.skip(runs_.nodes(run), run.end);
+    }
+
+    void measure_run(const Run& run, PlaneRange planes, Scratch& scratch) {
+        measure_rings({lay_out(run, scratch), run.closed}, planes, ranks_, crew_.executor(),
+                      runs_.rings(run, planes), scratch);
+    }
+
+    /// The edges of a run, in their place in the store if they have one.
+    EdgeColumns lay_out(const Run& run, Scratch& scratch) const {
+        return lay_out_edges(graph_, ranks_.rule(), runs_.nodes(run), scratch.kernels,
+                             run.columns == ColumnStore::not_kept ? scratch.columns_for(run.size)
+                                                                  : columns_.at(run.columns));
+    }
+
+    /// The edges of runs that were laid out before.
+    [[nodiscard]] auto edges_of() const {
+        return [this](const Run& run, Scratch& scratch) -> EdgeColumns {
+            if (run.columns == ColumnStore::not_kept)
+                return lay_out(run, scratch);
+            return {columns_.at(run.columns), run.size};
+        };
+    }
+
+    void forget_before(std::uint32_t plane) {
+        runs_.forget_before(plane, columns_);
+        entries_.clear(); // the rings have new indices
+        entries_.add(runs_.all(), runs_, plane);
+    }
+
+    const CutGraph<Ends>& graph_;
+    const StartIndex& starts_;
+    const Ranks& ranks_;
+    const Plan& plan_;
+    OrderedDelivery& delivery_;
+    Crew crew_;
+    Walk<Ends> walk_;
+    Runs runs_;
+    ColumnStore columns_;
+    EntryLists entries_;
+    PointArena arena_;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <class Ends>
+void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& ranks, Executor& executor) {
+    const auto start = Clock::now();
+    ProgressMeter progress(job.execution, Stage::slice, ranks.count());
+    OrderedDelivery delivery(job.sink, executor, progress);
+
+    const std::vector<NodeShare> shares = count_nodes(graph, ranks.count(), executor);
+    const PlaneLoads loads = loads_of(shares, ranks.count());
+    const std::vector<SweepTask> tasks = schedule(loads, executor.workers(), job.points_in_flight);
+    const StartIndex starts(graph, shares, loads, tasks, executor);
+    std::vector<std::unique_ptr<Sweep<Ends>>> sweeps(executor.workers());
+    const auto sweep = [&](std::size_t task, unsigned worker) {
+        if (!sweeps[worker])
+            sweeps[worker] = std::make_unique<Sweep<Ends>>(graph, starts, loads, ranks, job.plan,
+                                                           tasks[task].shared, executor, delivery);
+        sweeps[worker]->sweep(tasks[task], starts.carried(task));
+    };
+    if (tasks.size() == 1) {
+        sweep(0, 0);
+    } else {
+        executor.for_chunks(tasks.size(), 1, [&](std::uint64_t t, std::uint64_t, unsigned worker) {
+            const bool bounded = job.points_in_flight != 0 && t > executor.workers();
+            if (bounded && !delivery.wait_for(tasks[t - executor.workers()].planes.begin))
+                return;
+            sweep(t, worker);
+        });
+    }
+    executor.check_cancelled();
+    assert(delivery.delivered() == ranks.count());
+    progress.finish();
+    job.report.slice_seconds = seconds_since(start);
+}
+
+} // namespace
+
+void slice_by_sweep(const SliceJob& job) {
+    Executor executor(job.execution);
+    const auto start = Clock::now();
+    const Ranks ranks(job.plan);
+    ProgressMeter progress(job.execution, Stage::link, job.mesh.size());
+    const auto sweep = [&](const auto& graph) {
+        progress.finish();
+        job.report.link_seconds = seconds_since(start);
+        sweep_graph(job, graph, ranks, executor);
+    };
+    if (job.mesh.indexed() != nullptr)
+        sweep(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress));
+    else if (job.mesh.soup()->has_placement())
+        sweep(build_placed_cut_graph(*job.mesh.soup(), ranks, executor, progress));
+    else
+        sweep(build_cut_graph(*job.mesh.soup(), ranks, executor, progress));
+}
+
+} // namespace lamella

@@ -1,0 +1,246 @@
+#pragma once
+
+// Reading contours off the cut graph: from a node that begins on a plane, follow `next` until the start is
+// reached. A contour without a new node is the continuation of one on the plane below; it is not searched
+// for.
+
+#include "lamella/slicing/slabs.hpp"
+
+#include "core/pages.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// The nodes of a contour, in the order in which it visits them. They are the same, and link to one another,
+/// on all planes from the one that was walked to the one before `valid_until`.
+struct NodeSequence {
+    std::span<const std::uint32_t> nodes;
+    std::uint32_t valid_until;
+    bool closed;
+};
+
+/// The walks of one worker over the planes of one task after the other.
+template <class Ends>
+class Walk {
+  public:
+    explicit Walk(const CutGraph<Ends>& graph) : graph_(graph), visited_until_(graph.count, Fill::zero) {}
+
+    /// To be called before the first plane of a task. Tasks come in ascending order.
+    void begin_task(PlaneRange planes) {
+        assert(planes.begin < planes.end && planes.begin >= planes_.end);
+        planes_ = planes;
+        restarts_.assign(planes.size(), {});
+    }
+
+    /// found(NodeSequence) once for every contour of the plane that visits one of the starts, or a node of a
+    /// chain that ended just below, unless it was found on a plane before and is still valid. Planes of a
+    /// task come in ascending order.
+    template <class Found>
+    void walk(std::uint32_t plane, std::span<const std::uint32_t> starts,
+              std::span<const std::uint32_t> carried, const Found& found) {
+        assert(plane >= planes_.begin && plane < planes_.end);
+        assert(segments_.empty() && pending_.empty());
+        walk_from(plane, starts, found);
+        walk_from(plane, carried, found);
+        const std::vector<std::uint32_t> again = std::move(restarts_[plane - planes_.begin]);
+        walk_from(plane, again, found);
+        if (!segments_.empty())
+            join_segments(plane, found);
+    }
+
+    /// Planes before `end` need no walk over these nodes: a contour that was found serves them. From any
+    /// number of threads at once, for different nodes, while nobody walks.
+    void skip(std::span<const std::uint32_t> nodes, std::uint32_t end) const {
+        for (const std::uint32_t node : nodes) {
+            assert(visited_until_[node] != 0 && visited_until_[node] <= end);
+            visited_until_[node] = end;
+        }
+    }
+
+  private:
+    /// What was walked from one start to where it met the start of a walk, or the end of the mesh.
+    struct Segment {
+        std::uint32_t start; ///< its first node
+        std::uint32_t next;  ///< the segment it ran into, at first by its first node; no_node: the mesh ended
+        std::uint64_t begin;
+        std::uint64_t end;
+        std::uint32_t valid_until;
+    };
+
+    /// A walk under way.
+    struct Walker {
+        std::uint32_t node;
+        std::uint32_t start;
+        std::uint32_t valid_until;
+        std::uint64_t candidate; ///< the next one to look at
+        std::uint64_t candidates_end;
+        std::vector<std::uint32_t> sequence;
+    };
+
+    /// Several walks at a time hide the memory's latency where nodes lie scattered; one is enough where the
+    /// graph fits the cache.
+    static constexpr std::size_t most_walkers = 20;
+    static constexpr std::uint64_t candidates_per_walker = 64;
+
+    template <class Found>
+    void walk_from(std::uint32_t plane, std::span<const std::uint32_t> candidates, const Found& found) {
+        const std::uint64_t count = candidates.size();
+        if (count == 0)
+            return;
+        const std::size_t walkers = std::clamp<std::size_t>(count / candidates_per_walker, 1, most_walkers);
+        if (walker_.size() < walkers)
+            walker_.resize(walkers);
+        std::size_t active = 0;
+        for (std::size_t w = 0; w < walkers; ++w) {
+            // Each has its own share of the candidates, so that they are far apart in the file and rarely
+            // meet.
+            walker_[active].candidate = count * w / walkers;
+            walker_[active].candidates_end = count * (w + 1) / walkers;
+            if (set_out(walker_[active], plane, candidates))
+                ++active;
+        }
+        while (active > 1) {
+            for (std::size_t w = 0; w < active;) {
+                if (step(walker_[w], plane, found) || set_out(walker_[w], plane, candidates))
+                    ++w;
+                else
+                    std::swap(walker_[w], walker_[--active]);
+            }
+        }
+        if (active == 1) {
+            do {
+                while (step(walker_[0], plane, found)) {
+                }
+            } while (set_out(walker_[0], plane, candidates));
+        }
+    }
+
+    /// Finds the walker's next unvisited candidate. False when there is none.
+    bool set_out(Walker& walker, std::uint32_t plane, std::span<const std::uint32_t> candidates) {
+        while (walker.candidate < walker.candidates_end) {
+            const std::uint32_t node = candidates[walker.candidate++];
+            assert(node < graph_.count);
+            if (visited_until_[node] > plane || graph_.nodes[node].last <= plane)
+                continue;
+            walker.node = walker.start = node;
+            walker.valid_until = planes_.end;
+            walker.sequence.clear();
+            return true;
+        }
+        return false;
+    }
+
+    /// Visits one node. False when the walk is over.
+    template <class Found>
+    bool step(Walker& walker, std::uint32_t plane, const Found& found) {
+        const std::uint32_t id = walker.node;
+        if (visited_until_[id] > plane) {
+            if (!walker.sequence.empty()) // else another walk came by before this one took its first step
+                finish(walker, plane, id, found);
+            return false;
+        }
+        visited_until_[id] = plane + 1;
+        const CutNode<Ends>& node = graph_.nodes[id];
+        assert(node.in_use() && graph_.spans[id].first <= plane && plane < node.last);
+        walker.sequence.push_back(id);
+        walker.valid_until = std::min<std::uint32_t>(walker.valid_until, node.last);
+        std::uint32_t next = node.next_high;
+        if (plane < node.split) {
+            walker.valid_until = std::min(walker.valid_until, node.split);
+            next = node.next_low;
+        }
+        if (next == no_node) {
+            finish(walker, plane, no_node, found);
+            return false;
+        }
+        walker.node = next;
+        __builtin_prefetch(&visited_until_[next], 1);
+        __builtin_prefetch(&graph_.nodes[next]);
+        __builtin_prefetch(&graph_.nodes[next].ends);
+        return true;
+    }
+
+    template <class Found>
+    void finish(Walker& walker, std::uint32_t plane, std::uint32_t met, const Found& found) {
+        if (met == walker.start) {
+            pass_on({walker.sequence, walker.valid_until, true}, plane, found);
+            return;
+        }
+        const std::uint64_t begin = pending_.size();
+        pending_.insert(pending_.end(), walker.sequence.begin(), walker.sequence.end());
+        segments_.push_back({walker.start, met, begin, pending_.size(), walker.valid_until});
+    }
+
+    /// Joins walks that ran into one another. Links are one to one, so a walk can only run into the start of
+    /// another, and at most one runs into each: they form rings and chains of walks.
+    template <class Found>
+    void join_segments(std::uint32_t plane, const Found& found) {
+        std::sort(segments_.begin(), segments_.end(),
+                  [](const Segment& a, const Segment& b) { return a.start < b.start; });
+        std::vector<bool> followed(segments_.size());
+        for (Segment& segment : segments_) {
+            if (segment.next == no_node)
+                continue;
+            const auto met =
+                std::lower_bound(segments_.begin(), segments_.end(), segment.next,
+                                 [](const Segment& s, std::uint32_t node) { return s.start < node; });
+            assert(met != segments_.end() && met->start == segment.next); // links are one to one
+            segment.next = static_cast<std::uint32_t>(met - segments_.begin());
+            assert(!followed[segment.next]);
+            followed[segment.next] = true;
+        }
+        std::vector<bool> joined(segments_.size());
+        const auto join = [&](std::uint32_t head, bool closed) {
+            joined_.clear();
+            std::uint32_t valid_until = planes_.end;
+            for (std::uint32_t s = head; s != no_node && !joined[s]; s = segments_[s].next) {
+                joined[s] = true;
+                valid_until = std::min(valid_until, segments_[s].valid_until);
+                joined_.insert(joined_.end(),
+                               pending_.begin() + static_cast<std::ptrdiff_t>(segments_[s].begin),
+                               pending_.begin() + static_cast<std::ptrdiff_t>(segments_[s].end));
+            }
+            pass_on({joined_, valid_until, closed}, plane, found);
+        };
+        for (std::uint32_t s = 0; s < segments_.size(); ++s)
+            if (!followed[s])
+                join(s, false);
+        for (std::uint32_t s = 0; s < segments_.size(); ++s)
+            if (!joined[s])
+                join(s, true);
+        segments_.clear();
+        pending_.clear();
+    }
+
+    template <class Found>
+    void pass_on(const NodeSequence& sequence, [[maybe_unused]] std::uint32_t plane, const Found& found) {
+        assert(!sequence.nodes.empty());
+        assert(plane < sequence.valid_until && sequence.valid_until <= planes_.end);
+        if (!sequence.closed && sequence.valid_until < planes_.end) {
+            // Only a closed contour is sure to go on through a node that begins where its sequence ends.
+            std::vector<std::uint32_t>& again = restarts_[sequence.valid_until - planes_.begin];
+            again.insert(again.end(), sequence.nodes.begin(), sequence.nodes.end());
+        }
+        found(sequence);
+    }
+
+    const CutGraph<Ends>& graph_;
+    PlaneRange planes_;                      // of the task
+    PageArray<std::uint32_t> visited_until_; // per node: the plane before which it needs no visit
+    std::vector<Walker> walker_;
+    std::vector<Segment> segments_;      // of the plane that is walked
+    std::vector<std::uint32_t> pending_; // the nodes of the segments
+    std::vector<std::uint32_t> joined_;  // of a contour that is made of segments
+    /// Per plane of the task: the nodes of chains whose sequence ends before it.
+    std::vector<std::vector<std::uint32_t>> restarts_;
+};
+
+} // namespace lamella

@@ -1,0 +1,70 @@
+#pragma once
+
+// The engines of the EECC paper, as parameters of tests.
+
+#include "lamella/slicing/slice.hpp"
+
+#include "slicing/expect_layers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella::test {
+
+/// Those that sort intersections into lists, by name; "conventional" sorts by points.
+inline const std::vector<std::string>& paper_engines() {
+    static const std::vector<std::string> names{"conventional", "ecc", "ecc-edge-match", "eecc"};
+    return names;
+}
+inline const std::vector<std::string>& list_engines() {
+    static const std::vector<std::string> names{"ecc", "ecc-edge-match", "eecc"};
+    return names;
+}
+
+/// For a parameterised test: "ecc_edge_match".
+inline std::string engine_test_name(const testing::TestParamInfo<std::string>& info) {
+    std::string name = info.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
+inline LayerStack slice_with(std::string_view name, const Mesh& mesh, const Plan& plan,
+                             SliceReport* report = nullptr) {
+    return slice(mesh, plan, {}, report, engine(name));
+}
+
+inline MatchingCounts counts_of(std::string_view name, const Mesh& mesh, const Plan& plan) {
+    SliceReport report;
+    (void)slice_with(name, mesh, plan, &report);
+    return report.matching.value();
+}
+
+/// Whether contours meet in a point, as in Fig. 2 of the paper: there sorting by points may go astray.
+inline bool contours_touch(const Layer& layer) {
+    std::set<Point2> points;
+    return !std::all_of(layer.points.begin(), layer.points.end(),
+                        [&](const Point2& p) { return points.insert(p).second; });
+}
+
+/// The same layers, bit for bit, but for those where contours touch when the engine sorts by points.
+inline void expect_same_where_it_can(std::string_view name, const LayerStack& found,
+                                     const LayerStack& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        expect_sound(found[i]);
+        EXPECT_EQ(found[i].index, expected[i].index);
+        EXPECT_EQ(found[i].z, expected[i].z);
+        EXPECT_EQ(found[i].bottom, expected[i].bottom);
+        EXPECT_EQ(found[i].top, expected[i].top);
+        if (name == "conventional" && contours_touch(expected[i]))
+            continue;
+        EXPECT_TRUE(same_contours(found[i], expected[i])) << name << ", layer " << i;
+    }
+}
+
+} // namespace lamella::test

@@ -1,0 +1,47 @@
+#pragma once
+
+// The cut graph of a mesh, for tests of what works on it.
+
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include "core/executor.hpp"
+#include "slicing/ranks.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace lamella::test {
+
+inline CutGraph<FloatEnds> graph_of(const TriangleSoup& soup, const Ranks& ranks) {
+    const Execution execution{.threads = 1};
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::link, soup.size());
+    return build_cut_graph(soup, ranks, executor, progress);
+}
+
+/// The nodes in use that begin on the plane, ascending.
+inline std::vector<std::uint32_t> nodes_beginning_on(const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
+    std::vector<std::uint32_t> nodes;
+    for (std::uint32_t id = 0; id < graph.count; ++id)
+        if (graph.nodes[id].in_use() && graph.spans[id].first == plane)
+            nodes.push_back(id);
+    return nodes;
+}
+
+/// The nodes that the plane cuts, ascending.
+inline std::vector<std::uint32_t> nodes_alive_on(const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
+    std::vector<std::uint32_t> nodes;
+    for (std::uint32_t id = 0; id < graph.count; ++id)
+        if (graph.spans[id].first <= plane && plane < graph.spans[id].last)
+            nodes.push_back(id);
+    return nodes;
+}
+
+inline std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+}
+
+} // namespace lamella::test

@@ -1,0 +1,213 @@
+#include "lamella/core/error.hpp"
+
+#include "fixtures/random.hpp"
+#include "slicing/sweep/ordered_delivery.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+Layer layer_number(std::uint32_t plane) {
+    Layer layer;
+    layer.index = plane;
+    return layer;
+}
+
+/// All numbers below n, in random order.
+std::vector<std::uint32_t> mixed(std::uint32_t n, std::uint64_t seed) {
+    std::vector<std::uint32_t> order(n);
+    std::iota(order.begin(), order.end(), 0U);
+    test::Random random(seed);
+    for (std::uint32_t i = n; i > 1; --i)
+        std::swap(order[i - 1], order[static_cast<std::size_t>(random.integer(0, i - 1))]);
+    return order;
+}
+
+TEST(OrderedDelivery, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
+    const Execution execution{};
+    const Executor executor(execution);
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        std::vector<std::uint64_t> arrived;
+        std::vector<std::uint64_t> ordered;
+        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+            arrived.push_back(layer.index);
+            return [&ordered, index = layer.index] {
+                ordered.push_back(index);
+            };
+        };
+        ProgressMeter progress(execution, Stage::slice, 50);
+        OrderedDelivery delivery(sink, executor, progress);
+        const std::vector<std::uint32_t> order = mixed(50, seed);
+        for (const std::uint32_t plane : order)
+            delivery.deliver(plane, layer_number(plane));
+        EXPECT_TRUE(std::equal(arrived.begin(), arrived.end(), order.begin(), order.end()))
+            << "the parallel part must not wait";
+        ASSERT_EQ(ordered.size(), 50U);
+        EXPECT_TRUE(std::is_sorted(ordered.begin(), ordered.end()));
+    }
+}
+
+TEST(OrderedDelivery, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
+    constexpr std::uint32_t planes = 2000;
+    const Execution execution{.threads = 7};
+    Executor executor(execution);
+    std::atomic<int> inside{0};
+    std::atomic<int> parallel{0};
+    std::vector<std::uint64_t> ordered; // not guarded: the promise is that it need not be
+    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        ++parallel;
+        return [&, index = layer.index] {
+            EXPECT_EQ(++inside, 1);
+            ordered.push_back(index);
+            --inside;
+        };
+    };
+    ProgressMeter progress(execution, Stage::slice, planes);
+    OrderedDelivery delivery(sink, executor, progress);
+    const std::vector<std::uint32_t> order = mixed(planes, 1);
+    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        delivery.deliver(order[i], layer_number(order[i]));
+    });
+    EXPECT_EQ(parallel, static_cast<int>(planes));
+    ASSERT_EQ(ordered.size(), planes);
+    for (std::uint32_t i = 0; i < planes; ++i)
+        ASSERT_EQ(ordered[i], i);
+}
+
+TEST(OrderedDelivery, CountsLayersWithoutAnOrderedPart) {
+    const Execution execution{};
+    const Executor executor(execution);
+    const LayerSink sink = [](Layer&&) {
+        return std::function<void()>();
+    };
+    ProgressMeter progress(execution, Stage::slice, 3);
+    OrderedDelivery delivery(sink, executor, progress);
+    for (const std::uint32_t plane : {0U, 1U, 2U})
+        delivery.deliver(plane, layer_number(plane));
+    EXPECT_TRUE(delivery.wait_for(3));
+}
+
+TEST(OrderedDelivery, LetsGoOfAnOrderedPartOnceItHasRun) {
+    const Execution execution{};
+    const Executor executor(execution);
+    const auto token = std::make_shared<int>(0);
+    const LayerSink sink = [&](Layer&&) -> std::function<void()> {
+        return [kept = token] {
+        };
+    };
+    ProgressMeter progress(execution, Stage::slice, 3);
+    OrderedDelivery delivery(sink, executor, progress);
+    delivery.deliver(1, layer_number(1));
+    EXPECT_EQ(token.use_count(), 2);
+    delivery.deliver(0, layer_number(0));
+    EXPECT_EQ(token.use_count(), 1);
+}
+
+TEST(OrderedDelivery, PassesAnExceptionOfTheParallelPartToWhoDelivered) {
+    const Execution execution{};
+    const Executor executor(execution);
+    const LayerSink sink = [](Layer&& layer) -> std::function<void()> {
+        if (layer.index == 1)
+            throw std::runtime_error("no room for layer 1");
+        return {};
+    };
+    ProgressMeter progress(execution, Stage::slice, 3);
+    OrderedDelivery delivery(sink, executor, progress);
+    EXPECT_NO_THROW(delivery.deliver(0, layer_number(0)));
+    EXPECT_THROW(delivery.deliver(1, layer_number(1)), std::runtime_error);
+}
+
+TEST(OrderedDelivery, StopsForGoodWhenAnOrderedPartThrows) {
+    const Execution execution{};
+    const Executor executor(execution);
+    std::vector<std::uint64_t> ordered;
+    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        return [&, index = layer.index] {
+            if (index == 1)
+                throw std::runtime_error("disk full");
+            ordered.push_back(index);
+        };
+    };
+    ProgressMeter progress(execution, Stage::slice, 4);
+    OrderedDelivery delivery(sink, executor, progress);
+    delivery.deliver(2, layer_number(2));
+    delivery.deliver(1, layer_number(1));
+    EXPECT_THROW(delivery.deliver(0, layer_number(0)), std::runtime_error);
+    EXPECT_NO_THROW(delivery.deliver(3, layer_number(3)));
+    EXPECT_EQ(ordered, (std::vector<std::uint64_t>{0})) << "nothing may follow the failure";
+    EXPECT_FALSE(delivery.wait_for(2)) << "whoever waits must not wait for ever";
+    EXPECT_TRUE(delivery.wait_for(1));
+}
+
+TEST(OrderedDelivery, HoldsBackWhoeverWaitsForAPlane) {
+    const Execution execution{.threads = 2};
+    Executor executor(execution);
+    const LayerSink sink = [](Layer&&) {
+        return std::function<void()>();
+    };
+    ProgressMeter progress(execution, Stage::slice, 10);
+    OrderedDelivery delivery(sink, executor, progress);
+    std::atomic<int> delivered{0};
+    executor.run([&](unsigned worker) {
+        if (worker == 0) {
+            for (std::uint32_t plane = 0; plane < 10; ++plane) {
+                std::this_thread::yield();
+                ++delivered;
+                delivery.deliver(plane, layer_number(plane));
+            }
+        } else {
+            for (std::uint32_t plane = 0; plane <= 10; ++plane) {
+                EXPECT_TRUE(delivery.wait_for(plane));
+                EXPECT_GE(delivered, static_cast<int>(plane));
+            }
+        }
+    });
+}
+
+TEST(OrderedDelivery, LetsWaitersGoWhenTheCallerCancels) {
+    std::stop_source stop;
+    const Execution execution{.threads = 2, .cancel = stop.get_token()};
+    Executor executor(execution);
+    const LayerSink sink = [](Layer&&) {
+        return std::function<void()>();
+    };
+    ProgressMeter progress(execution, Stage::slice, 10);
+    OrderedDelivery delivery(sink, executor, progress);
+    EXPECT_THROW(executor.run([&](unsigned worker) {
+        if (worker == 0)
+            stop.request_stop();
+        else
+            EXPECT_FALSE(delivery.wait_for(5));
+    }),
+                 Error);
+}
+
+TEST(OrderedDelivery, LetsWaitersGoWhenAnotherWorkerFails) {
+    const Execution execution{.threads = 2};
+    Executor executor(execution);
+    const LayerSink sink = [](Layer&&) -> std::function<void()> {
+        throw std::runtime_error("parallel");
+    };
+    ProgressMeter progress(execution, Stage::slice, 10);
+    OrderedDelivery delivery(sink, executor, progress);
+    EXPECT_THROW(executor.run([&](unsigned worker) {
+        if (worker == 0)
+            delivery.deliver(0, layer_number(0));
+        else
+            EXPECT_FALSE(delivery.wait_for(1));
+    }),
+                 std::runtime_error);
+}
+
+} // namespace
+} // namespace lamella
