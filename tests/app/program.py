@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import re
 import struct
 import subprocess
 import tempfile
@@ -44,6 +45,11 @@ class ProgramTest(unittest.TestCase):
         result = self.run_program(*arguments, **keywords)
         self.assertEqual(result.code, 0, f"{arguments}: {result.err}")
         return result
+
+    def engines(self):
+        """The names of all engines, as the help has them."""
+        text = " ".join(self.succeed("slice", "--help").text.split())
+        return re.search(r"--engine NAME the algorithm: (.*?) \[", text)[1].split(", ")
 
     def fail_with(self, code, pattern, *arguments, **keywords):
         """One line of error, nothing on standard output, no file that was not there before."""

@@ -118,7 +118,7 @@ class Slice(ProgramTest):
         arguments = ["torus.stl", "--rotate", "20,30,0", "--layer-height", "0.5"]
         expected = self.stats(*arguments)
         self.assertEqual(expected["engine"], "sweep")
-        for engine in PAPER_ENGINES:
+        for engine in self.engines():
             with self.subTest(engine):
                 stats = self.stats(*arguments, "--engine", engine)
                 self.assertEqual(stats["engine"], engine)

@@ -5,14 +5,12 @@ import subprocess
 
 from program import PROGRAM, ProgramTest, main
 
-ENGINES = ["sweep", "conventional", "ecc", "ecc-edge-match", "eecc"]
-
 
 class Timeout(ProgramTest):
     def test_every_engine_is_stopped(self):
         # Half a million layers: minutes of work with any engine, had it been left alone.
         self.succeed("make", "rook")
-        for engine in ENGINES:
+        for engine in self.engines():
             with self.subTest(engine):
                 self.fail_with(5, r"rook\.stl: stopped after 0\.3 s \(--timeout\) in the stage (read|weld|link|slice), of which "
                                   r"\d+ % was done; nothing was written", "slice", "rook.stl", "-o", "rook.cli",

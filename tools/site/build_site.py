@@ -34,10 +34,20 @@ def main(build, site):
         cpp_reference.write_pages(ROOT / "include/lamella", pages / "reference/cpp")
         python_reference.write_page(build / "python", pages / "reference/python.md")
         configuration = Path(folder, "mkdocs.yml")
-        shutil.copy(ROOT / "tools/site/mkdocs.yml", configuration)
+        configuration.write_text(with_all_pages((ROOT / "tools/site/mkdocs.yml").read_text(encoding="utf-8")), encoding="utf-8")
         subprocess.run([sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--config-file", configuration,
                         "--site-dir", site], check=True)
     print(f"The site is in {site}; open {site / 'index.html'}")
+
+
+def with_all_pages(configuration):
+    """The configuration with a line for each page in place of a pattern such as `algorithms/*.md`; MkDocs has no patterns."""
+
+    def lines(match):
+        pages = sorted(page.relative_to(ROOT / "docs").as_posix() for page in (ROOT / "docs").glob(match[2]))
+        return "".join(f"{match[1]}{page}\n" for page in pages)
+
+    return re.sub(r"^( +- )(\S*\*\S*)\n", lines, configuration, flags=re.MULTILINE)
 
 
 def relinked(page):
