@@ -65,7 +65,7 @@ struct ContourList {
 /// What was done with an IN.
 enum class Inserted { new_list, front, back, link, close };
 
-/// All CLLs of a run, and the six cases of inserting an IN (section 3.1).
+/// All CLLs of a mesh, and the six cases of inserting an IN (section 3.1).
 template <class Node>
 class IntersectionLists {
   public:

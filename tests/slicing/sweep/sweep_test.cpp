@@ -470,7 +470,7 @@ TEST(Sweep, GivesTheSameBytesForAnyThreadsOrderAndKindOfMesh) {
              drum.resize(drum.size() - 37);
              return test::soup(drum);
          }()},
-        // On which all threads share one slab (plane_index.hpp).
+        // On which all threads share one task (schedule.hpp).
         {"upright pipe", make_cylinder(10, 30, 1000)},
         {"upright pipe with a slit, and a box that begins further up", [] {
              Triangles pipe = test::triangles_of(make_cylinder(10, 30, 1000));
@@ -624,7 +624,7 @@ TEST(Sweep, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
     }
 }
 
-TEST(Sweep, EndsASharedSlabWhenTheSinkFails) {
+TEST(Sweep, EndsASharedTaskWhenTheSinkFails) {
     const TriangleSoup sheet = make_sheet({.holes = 36, .segments = 32});
     const Plan plan = even_planes(0, 3, 40);
     for (const unsigned threads : {1U, 2U, 7U}) {
