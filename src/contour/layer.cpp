@@ -24,7 +24,6 @@ Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double 
     const std::vector<End> ends = std::exchange(ends_, {});
     std::vector<Point2> points = std::exchange(points_, {});
     points.resize(ends.empty() ? 0 : ends.back().offset); // a contour that was never ended is none
-    assert(bottom <= top);
 
     Layer layer{.index = index, .z = z, .bottom = bottom, .top = top};
     layer.offsets.reserve(ends.size() + 1);

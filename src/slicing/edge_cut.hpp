@@ -5,8 +5,6 @@
 
 #include "lamella/core/point.hpp"
 
-#include <cassert>
-
 namespace lamella {
 
 /// An edge prepared for being cut: from its base (the end that belongs to planes through it: the lower end
@@ -33,9 +31,7 @@ struct EdgeCut {
 
     EdgeCut(const Point3& base, const Point3& far) noexcept
         : z0(base.z), inverse_dz(1.0 / (far.z - base.z)), x0(base.x + 0.0), dx(shortened(base.x, far.x)),
-          y0(base.y + 0.0), dy(shortened(base.y, far.y)) {
-        assert(base.z != far.z);
-    }
+          y0(base.y + 0.0), dy(shortened(base.y, far.y)) {}
 
     [[nodiscard]] Point2 at(double z) const noexcept {
         const double t = (z - z0) * inverse_dz;
