@@ -185,7 +185,7 @@ py::tuple layer_state(const py::object& self) {
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
-    if (state.size() != 10)
+    if (state.size() != 8)
         throw Error(ErrorKind::input, "this is no pickled layer");
     const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
                          state[3].cast<double>()};
@@ -298,7 +298,7 @@ py::tuple pickled(const Stack& stack) {
 }
 
 StackPointer unpickled(const py::tuple& state) {
-    if (state.size() != 9)
+    if (state.size() != 10)
         throw Error(ErrorKind::input, "this is no pickled stack of layers");
     StackPointer stack =
         stack_of_layers(state[0].cast<std::vector<LayerPointer>>(), state[1].cast<std::string>());
