@@ -19,7 +19,6 @@ namespace {
 
 constexpr int deepest_element = 256;
 constexpr std::size_t most_attributes = 1000;
-// A token that is not whole is gone through again with each piece that is parsed.
 constexpr std::size_t piece = std::size_t{4} << 20;
 constexpr std::size_t longest_token = std::size_t{64} << 20;
 constexpr char namespace_end = '\n'; // Expat puts it between namespace and name; no URI has one
@@ -149,10 +148,11 @@ class Parse {
             last_tag_end_ = XML_GetCurrentByteIndex(parser_.get()) + XML_GetCurrentByteCount(parser_.get());
     }
 
-    /// Gives the parser the bytes up to `end`.
+    /// Gives the parser the bytes up to `end`, or somewhat more where `end` lies within a token.
     void feed(std::size_t end, bool last) {
         do {
-            const std::string_view part = bytes_.substr(at_, std::min(end - at_, piece));
+            const std::string_view part =
+                bytes_.substr(at_, waiting() == 0 ? std::min(end - at_, piece) : more_of_token());
             at_ += part.size();
             fed_ += static_cast<XML_Index>(part.size());
             const XML_Status status = XML_Parse(parser_.get(), part.data(), static_cast<int>(part.size()),
@@ -165,11 +165,26 @@ class Parse {
                     throw std::bad_alloc();
                 fail(fmt::format("the XML is broken: {}", XML_ErrorString(code)));
             }
-            if (const XML_Index parsed = XML_GetCurrentByteIndex(parser_.get());
-                parsed >= 0 && fed_ - parsed > static_cast<XML_Index>(longest_token + piece))
+            parsed_ = std::max(parsed_, XML_GetCurrentByteIndex(parser_.get())); // -1 where it does not know
+            if (waiting() >= longest_token)
                 fail(fmt::format("found a tag, text or comment longer than {} MB", longest_token >> 20));
             tell_progress(at_);
         } while (at_ < end);
+    }
+
+    /// How many bytes the parser holds of a token that is not whole.
+    [[nodiscard]] std::size_t waiting() const { return static_cast<std::size_t>(fed_ - parsed_); }
+
+    /// How many bytes more of such a token to give the parser: at least as many again. Expat goes through the
+    /// token from its start each time; and newer ones (2.6, and older ones with its security patches) not
+    /// before they have twice as much of it. The steps end at exactly the longest token: what is not whole
+    /// then is too long, whichever Expat this is.
+    [[nodiscard]] std::size_t more_of_token() const {
+        constexpr std::size_t first_step = std::size_t{1} << 16;
+        std::size_t enough = longest_token;
+        while (enough / 2 >= std::max(2 * waiting(), first_step))
+            enough /= 2;
+        return enough - waiting();
     }
 
     void tell_progress(std::size_t place) {
@@ -182,16 +197,18 @@ class Parse {
     /// Feeds everything up to the last run of elements that come in numbers, but for those runs.
     void skim_through() {
         std::size_t from = 0;
-        // Feeding in vain costs, as the parser begins an unfinished comment anew each time: the more often in
-        // vain, the later the next time.
-        constexpr std::size_t first_patience = std::size_t{1} << 16;
-        std::size_t patience = first_patience;
+        // Asking in vain costs: the more often in vain, the later the next time.
+        std::size_t patience = std::size_t{1} << 16;
         while (const std::optional<std::size_t> tag = find_tag(from)) {
             std::size_t blanks = *tag;
             while (blanks > at_ && is_blank(bytes_[blanks - 1]))
                 --blanks;
             if (blanks > at_)
                 feed(blanks, false);
+            if (at_ > blanks) { // the tag is in a token that is longer
+                from = at_;
+                continue;
+            }
             std::size_t skimmed = 0;
             if (last_tag_end_ == fed_)
                 skimmed = std::min(handlers_.skim(bytes_, *tag), bytes_.size() - *tag);
@@ -244,7 +261,8 @@ class Parse {
     std::exception_ptr error_ = nullptr;
     int depth_ = 0;
     std::size_t at_ = 0;          ///< place in the document
-    XML_Index fed_ = 0;           ///< bytes that the parser has seen
+    XML_Index fed_ = 0;           ///< bytes that the parser was given
+    XML_Index parsed_ = 0;        ///< those of them that it is done with
     XML_Index last_tag_end_ = -1; ///< in terms of these
     std::size_t skimmed_lines_ = 0;
     std::vector<std::size_t> next_tags_; ///< for each of `many`, the first place not before the last search

@@ -108,6 +108,34 @@ TEST(Xml, RefusesWhatIsNotForUs) {
     EXPECT_NE(error_of("<a><!--" + std::string(90 << 20, 'x')).find("longer than 64 MB"), std::string::npos);
 }
 
+// Expat looks at a token that is not whole only now and then, which must not count against the token.
+TEST(Xml, ReadsTokensOf64MBAndRefusesLongerOnes) {
+    const std::string before = "<a>" + std::string(3'000'001, 'x');
+    const auto document = [&](std::size_t token) {
+        std::string comment = "<!--" + std::string(token - 7, ' ') + "-->";
+        comment.replace(40'000'000, 4, "<v/>");
+        return before + comment + "<b/></a>";
+    };
+    constexpr std::size_t most = std::size_t{64} << 20;
+    for (const bool skim : {false, true}) {
+        Told told;
+        if (skim) { // the tag in the comment sends the parser there
+            told.handlers.many = {"<v"};
+            told.handlers.skim = [](std::string_view, std::size_t) -> std::size_t {
+                return 0;
+            };
+        }
+        parse_xml(document(most), "x.xml", told.handlers);
+        EXPECT_EQ(told.events, "1:<a>1:<b></b></a>") << skim;
+        try {
+            parse_xml(document(most + 1), "x.xml", told.handlers);
+            ADD_FAILURE() << skim;
+        } catch (const Error& error) {
+            EXPECT_STREQ(error.what(), "x.xml, line 1: found a tag, text or comment longer than 64 MB");
+        }
+    }
+}
+
 TEST(Xml, ThrowsWhatAHandlerThrows) {
     XmlHandlers handlers;
     handlers.start = [](XmlName, const XmlAttributes&, std::size_t) {
