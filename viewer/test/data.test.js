@@ -1,11 +1,24 @@
 import assert from 'node:assert/strict';
-import { deflateRawSync } from 'node:zlib';
+import { Duplex } from 'node:stream';
+import { createInflateRaw, deflateRawSync } from 'node:zlib';
 import { test } from 'node:test';
 import { NumberReader } from '../src/data/number_reader.js';
 import { readLayer } from '../src/data/layer.js';
 import { readMesh } from '../src/data/mesh.js';
 import { LayerShelf } from '../src/data/page.js';
 import { unpack } from '../src/data/unpack.js';
+
+// Browsers unpack raw Deflate streams, and so does Node.js from 20.12 on. For older ones its zlib does.
+try {
+  new DecompressionStream('deflate-raw');
+} catch {
+  globalThis.DecompressionStream = class {
+    constructor(format) {
+      assert.equal(format, 'deflate-raw');
+      return Duplex.toWeb(createInflateRaw());
+    }
+  };
+}
 
 /** Writes what NumberReader reads, in big integers: another way to the same bytes. */
 function numbers(...values) {
