@@ -15,7 +15,6 @@
 #include "page_notes.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
-#include "viewer_page.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -63,8 +62,8 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     if (!arguments.picture.empty())
         write_text_file(arguments.picture, defect_picture(mesh, found, execution));
     if (!arguments.report.empty())
-        write_mesh_page(arguments.report, mesh, found, mesh_notes(file, found),
-                        {.viewer = viewer_page(), .title = title_of(file.path)}, execution);
+        write_mesh_page(arguments.report, mesh, found, mesh_notes(file, found), page_options(file.path),
+                        execution);
     context.messages.result(arguments.json ? json_text(mesh_json(file, found, plate))
                                            : mesh_text(file, found, plate));
     if (arguments.strict && !found.counts.sound())

@@ -18,7 +18,6 @@
 #include "shard_stamp.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
-#include "viewer_page.hpp"
 #include "z_list.hpp"
 
 #include <fmt/format.h>
@@ -290,9 +289,8 @@ FileJob make_job(const SliceArguments& arguments) {
     job.write.strict = job.strict;
     job.write.page.title = title_of(job.inputs.front().path);
     if (!arguments.report.empty())
-        job.report = {.path = arguments.report,
-                      .page = {.viewer = viewer_page(), .title = job.write.page.title},
-                      .notes = run_notes};
+        job.report = {
+            .path = arguments.report, .page = page_options(job.inputs.front().path), .notes = run_notes};
     return job;
 }
 

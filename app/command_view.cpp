@@ -15,7 +15,6 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
-#include "viewer_page.hpp"
 
 #include <fmt/format.h>
 
@@ -70,14 +69,13 @@ Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::stri
     job.max_memory = arguments.limits.max_memory.value_or(0);
     job.steps = arguments.making.steps();
     job.layer_statistics = job.steps.any(); // the page tells what became of each
-    job.report = {.path = output,
-                  .page = {.viewer = viewer_page(), .title = title_of(arguments.input)},
-                  .notes = [&](const FileResult& result) {
-                      PageNotes notes = run_notes(result);
-                      notes.sections.insert(notes.sections.begin(), mesh_section(diagnosis.counts));
-                      notes.places = places_of(diagnosis);
-                      return notes;
-                  }};
+    job.report = {
+        .path = output, .page = page_options(arguments.input), .notes = [&](const FileResult& result) {
+            PageNotes notes = run_notes(result);
+            notes.sections.insert(notes.sections.begin(), mesh_section(diagnosis.counts));
+            notes.places = places_of(diagnosis);
+            return notes;
+        }};
     const FileResult result = slice_file(job, std::move(plate), execution);
     Written written{.layers = result.report.layers, .warnings = result.report_warnings};
     for (const PlateFile& file : result.files)
@@ -101,8 +99,7 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
                 notes.changes.push_back({part.layers[i].index, changes[i]});
     }
     const LayerFileInfo info = info_of(file);
-    const auto page =
-        open_layer_page(output, info, {.viewer = viewer_page(), .title = title_of(arguments.input)});
+    const auto page = open_layer_page(output, info, page_options(arguments.input));
     const auto parts_of = [&](std::size_t i) {
         std::vector<Layer> plane;
         for (const LayerPart& part : file.parts)

@@ -271,6 +271,7 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) con
     options.most_bytes = max_output.value_or(0);
     picture.apply(with, options);
     options.page.viewer = viewer_page();
+    options.page.no_viewer = no_viewer();
     return options;
 }
 

@@ -2,6 +2,7 @@
 
 #include "numbers.hpp"
 #include "options.hpp"
+#include "viewer_page.hpp"
 
 #include <fmt/format.h>
 
@@ -63,6 +64,10 @@ PageSection run_section(const FileResult& result) {
 
 std::string title_of(const std::string& path) {
     return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
+}
+
+PageOptions page_options(const std::string& path) {
+    return {.viewer = viewer_page(), .no_viewer = no_viewer(), .title = title_of(path)};
 }
 
 PageSection mesh_section(const Inspection& found) {

@@ -21,6 +21,9 @@ inline constexpr std::size_t page_places = 500;
 /// The title of the page of a file: its name without its folder.
 [[nodiscard]] std::string title_of(const std::string& path);
 
+/// A page with this program's viewer and the title of the page of that file.
+[[nodiscard]] PageOptions page_options(const std::string& path);
+
 /// Size, volume and every kind of defect, found or not.
 [[nodiscard]] PageSection mesh_section(const Inspection& found);
 

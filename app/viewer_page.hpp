@@ -8,5 +8,7 @@ namespace lamella::app {
 
 /// "" where it was built without (viewer/CMakeLists.txt).
 [[nodiscard]] std::string_view viewer_page() noexcept;
+/// Why it was.
+[[nodiscard]] std::string_view no_viewer() noexcept;
 
 } // namespace lamella::app

@@ -47,10 +47,10 @@ def report(title, stats, *checks):
 
 
 def view(program, mesh, page):
-    """Writes a page of the layers, unless the program was built without the viewer, and says so then."""
+    """Writes a page of the layers, unless the program was built without the viewer, and says why then."""
     result = subprocess.run([program, "view", mesh, "-o", page], capture_output=True, text=True, check=False)
     if result.returncode == 2 and "no viewer" in result.stderr:
-        print(result.stderr.strip())
+        print(f"The page is left out: {result.stderr.strip().removeprefix('error: ')}")
         return False
     if result.returncode != 0:
         sys.exit(f"demo: lamella view {mesh}\n{result.stdout}{result.stderr}exit code {result.returncode}")

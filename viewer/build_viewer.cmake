@@ -1,5 +1,5 @@
 # Builds the viewer in WORK_DIR from FILES of SOURCE_DIR and writes it into the source PAGE. Where that fails and
-# REQUIRED is not ON, the build goes on with a program that has none: a network may be missing, for instance.
+# REQUIRED is not ON, the build goes on with a program that has none and says why: a network may be missing, for instance.
 
 function(try what)
     execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${WORK_DIR} RESULT_VARIABLE status OUTPUT_VARIABLE out
@@ -10,9 +10,15 @@ function(try what)
     if(REQUIRED STREQUAL "ON")
         message(FATAL_ERROR "${what} failed (${status}):\n${out}")
     endif()
-    message(WARNING "${what} failed (${status}), so this build has no viewer and lamella view will say so. Delete "
-                    "${PAGE} to try again.\n${out}")
-    file(COPY_FILE ${SOURCE_DIR}/../app/no_viewer.cpp ${PAGE})
+    # npm tells the cause in one line of many.
+    set(cause "${status}")
+    if(out MATCHES "request to [^\n]*")
+        set(cause "${CMAKE_MATCH_0}")
+    endif()
+    set(why "${what} failed when Lamella was built (${cause})")
+    message(NOTICE "No viewer: ${why}; all that was said is in ${WORK_DIR}/failed.log; delete ${PAGE} to try again")
+    file(WRITE ${WORK_DIR}/failed.log "${out}")
+    configure_file(${SOURCE_DIR}/../app/no_viewer.cpp.in ${PAGE} @ONLY)
     file(TOUCH ${PAGE})
     set(failed TRUE PARENT_SCOPE)
 endfunction()
@@ -32,15 +38,15 @@ if(EXISTS ${WORK_DIR}/installed)
 endif()
 if(NOT installed STREQUAL wanted)
     # Scripts of packages are not needed, and so not run.
-    try("npm ci" ${NPM} ci --ignore-scripts --no-audit --no-fund --loglevel=error --fetch-retries=1
+    try("fetching its packages by npm" ${NPM} ci --ignore-scripts --no-audit --no-fund --loglevel=error --fetch-retries=1
         --fetch-timeout=60000)
     if(failed)
         return()
     endif()
     file(WRITE ${WORK_DIR}/installed ${wanted})
 endif()
-try("vite build" ${NODE} node_modules/vite/bin/vite.js build --logLevel error)
+try("building it by vite" ${NODE} node_modules/vite/bin/vite.js build --logLevel error)
 if(failed)
     return()
 endif()
-try("embed.mjs" ${NODE} embed.mjs dist/index.html ${PAGE})
+try("embedding it" ${NODE} embed.mjs dist/index.html ${PAGE})

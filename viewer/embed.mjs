@@ -31,5 +31,9 @@ ${lines.join('\n')};
 std::string_view lamella::app::viewer_page() noexcept {
     return {page, sizeof page - 1};
 }
+
+std::string_view lamella::app::no_viewer() noexcept {
+    return {};
+}
 `,
 );

@@ -239,7 +239,7 @@ class PlaneTable {
 class PageWriter final : public LayerPageWriter {
   public:
     PageWriter(const std::string& path, const LayerFileInfo& info, const PageOptions& options)
-        : frame_(page_frame(options.viewer)), grid_(page_grid(info.box)), file_(path), order_(info),
+        : frame_(page_frame(options)), grid_(page_grid(info.box)), file_(path), order_(info),
           budget_(options, info.layers) {
         file_.append(frame_.head);
         file_.append(json_element("head", head(info, options)));

@@ -146,7 +146,7 @@ std::string shells_json(const std::vector<Shell>& shells) {
 
 void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Diagnosis& diagnosis,
                      const PageNotes& notes, const PageOptions& options, const Execution& execution) {
-    const PageFrame frame = page_frame(options.viewer);
+    const PageFrame frame = page_frame(options);
     Executor executor(execution);
     const Box3& box = diagnosis.counts.box;
 

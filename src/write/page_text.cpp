@@ -64,13 +64,11 @@ std::string place_json(const PagePlace& place) {
 
 } // namespace
 
-PageFrame page_frame(std::string_view viewer) {
+PageFrame page_frame(const PageOptions& options) {
+    const std::string_view viewer = options.viewer;
     if (viewer.empty())
-        throw Error(
-            ErrorKind::usage,
-            "this build of Lamella has no viewer, and pages need it; it is made where Node.js 18 or "
-            "later and npm are installed (Debian: apt-get install nodejs npm): install them and build "
-            "Lamella again");
+        throw Error(ErrorKind::usage,
+                    fmt::format("there is no viewer, and pages need it: {}", options.no_viewer));
     const std::size_t place = viewer.find(place_of_data);
     if (place == std::string_view::npos)
         throw Error(ErrorKind::internal, fmt::format("the viewer has no {}", place_of_data));

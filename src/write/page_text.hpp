@@ -16,7 +16,7 @@ struct PageFrame {
     std::string_view head;
     std::string_view tail;
 };
-[[nodiscard]] PageFrame page_frame(std::string_view viewer);
+[[nodiscard]] PageFrame page_frame(const PageOptions& options);
 
 /// A string of JSON that can stand in an element of a page: no tag begins in it.
 [[nodiscard]] std::string page_quoted(std::string_view text);

@@ -24,12 +24,12 @@ class View(ProgramTest):
     def page(self, name):
         return self.path(name).read_text(encoding="utf-8")
 
-    def test_a_build_without_the_viewer_says_how_to_get_it(self):
+    def test_a_build_without_the_viewer_says_why(self):
         if self.viewer:
             self.skipTest("this program has the viewer")
         for command in (["view", "box.stl"], ["slice", "box.stl", "-o", "box.html"], ["info", "box.stl", "--report", "r.html"],
                         ["slice", "box.stl", "-o", "box.cli", "--report", "r.html"]):
-            self.fail_with(2, "no viewer.*apt-get install nodejs npm", *command)
+            self.fail_with(2, "no viewer, and pages need it: .* when Lamella was built", *command)
 
     def test_a_mesh_becomes_a_page_of_its_name_here(self):
         self.need_viewer()

@@ -320,10 +320,11 @@ TEST(LayerPage, NeedsAViewer) {
     const TemporaryFolder folder;
     const LayerStack layers = square_with_hole();
     for (const auto& [viewer, kind, word] :
-         {std::tuple{"", ErrorKind::usage, "Node.js"},
+         {std::tuple{"", ErrorKind::usage, "need it: it was left out"},
           std::tuple{"<html></html>", ErrorKind::internal, "lamella-data"}}) {
         try {
-            static_cast<void>(open_layer_page(folder.file("page.html"), info_of(layers), {.viewer = viewer}));
+            static_cast<void>(open_layer_page(folder.file("page.html"), info_of(layers),
+                                              {.viewer = viewer, .no_viewer = "it was left out"}));
             FAIL();
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), kind);

@@ -52,6 +52,8 @@ struct LayerFileInfo {
 struct PageOptions {
     /// The built viewer, an HTML page with a place for the data (viewer/). It must outlive the writer.
     std::string_view viewer = {};
+    /// Told to who asks for a page where `viewer` is empty: why it is. It must outlive the options.
+    std::string_view no_viewer = "PageOptions::viewer is empty";
     /// What the page calls itself.
     std::string title = "Lamella";
     /// The layers may take so many bytes of the page, and each of them may have so many points. What is
