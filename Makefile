@@ -41,7 +41,7 @@ test: packages  ## build everything and run the tests: a few minutes
 	cmake --build build
 	$(CTEST) --test-dir build
 
-test-all: test-large test-asan test-tsan test-shared  ## the long suites: large programs, sanitizers, fuzz corpora
+test-all: test-large test-asan test-tsan test-shared fresh  ## the long suites: large programs, sanitizers, fuzz corpora, fresh
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
@@ -67,6 +67,9 @@ test-shared: packages-all
 	cmake --preset release $(RELEASE) -D BUILD_SHARED_LIBS=ON
 	cmake --build build --target lamella_programs lamella_app_files examples/all
 	$(CTEST) --test-dir build --label-regex '^house$$'
+
+fresh:  ## `make demo` and `make test` on a Debian 12 with git, make and nothing else, made for it (root only)
+	@tools/fresh.sh
 
 fuzz: packages-all  ## fuzz all readers, each for MINUTES (10 unless given); what is found is left in out/fuzz/
 	cmake --preset fuzz
@@ -157,5 +160,5 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
-        test-shared fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core python-bench \
-        page-bench paper format format-check lint install clean
+        test-shared fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core \
+        python-bench page-bench paper format format-check lint install clean
