@@ -9,10 +9,12 @@
     lamella.write("part.cli", stack)
 
 Lengths are millimetres, heights are absolute z, and a mesh is whatever holds one: a path, a pair of arrays
-(vertices, faces), a trimesh.Trimesh. Layers show their points as NumPy arrays without a copy. Failures are
-lamella.Error, with texts for a person; what is odd but no failure is a lamella.DefectWarning.
+(vertices, faces), a trimesh.Trimesh. Layers show their points as NumPy arrays without a copy. Arguments that are
+wrong are a TypeError or a ValueError, other failures a lamella.Error, all with texts for a person; what is odd but no
+failure is a lamella.DefectWarning.
 """
 
+from . import _methods
 from ._checks import Comparison, LayerDifference, Verification, compare, verify
 from ._errors import (
     CancelledError,

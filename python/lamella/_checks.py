@@ -8,11 +8,14 @@ from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy.typing as npt
 
+from . import _arguments as check
 from . import _lamella
+from ._arguments import PathLike, Progress
 from ._errors import UsageError
 from ._files import as_stack
 from ._lamella import Layer, Stack
-from ._meshes import MeshLike, PathLike, Progress, as_mesh, placed, thread_count
+from ._meshes import UPWARDS, MeshLike, as_mesh, placed, placing
+from ._slicing import PLACES
 
 
 @dataclass(frozen=True)
@@ -55,13 +58,20 @@ def verify(
 
     Raises InputError.
     """
-    stack = as_stack(layers, threads=threads, progress=progress)
-    if at not in (None, "bottom", "middle", "top"):
-        raise UsageError(f'at: "{at}" is none of "bottom", "middle" and "top"')
-    compared = None
+    threads, progress = check.thread_count(threads), check.listener(progress)
+    place = check.optional(check.choice, "at", at, PLACES)
+    where = placing(direction, transform)
+    if mesh is None:
+        ways = {"direction": where[0] != UPWARDS, "transform": transform is not None, "unit_mm": unit_mm is not None}
+        for name, given in ways.items():
+            if given:
+                raise UsageError(f"{name} goes with a mesh, and none is given")
+    stack = as_stack("layers", layers, threads=threads, progress=progress)
+    sliced = None
     if mesh is not None:
-        compared = placed(as_mesh(mesh, unit_mm=unit_mm, threads=threads, progress=progress), direction, transform)
-    return Verification(**_lamella.verify(stack, compared, at or "", thread_count(threads), progress))
+        sliced = as_mesh("mesh", mesh, unit_mm=unit_mm, threads=threads, progress=progress)
+        sliced = placed(sliced, where)
+    return Verification(**_lamella.verify(stack, sliced, place or "", threads, progress))
 
 
 @dataclass(frozen=True)
@@ -100,9 +110,8 @@ def compare(
 
     Raises InputError.
     """
-    if tolerance is not None and not tolerance >= 0:
-        raise UsageError(f"tolerance: {tolerance} is no distance; it cannot be negative")
-    one, other = as_stack(first), as_stack(second)
+    tolerance = check.optional(check.distance, "tolerance", tolerance)
+    one, other = as_stack("first", first), as_stack("second", second)
     tolerance, planes = _lamella.compare(one, other, tolerance)
     same = 0
     differences = []

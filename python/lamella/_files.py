@@ -2,30 +2,49 @@
 
 from __future__ import annotations
 
+import numbers
 import os
-from typing import Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Iterable, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _arguments as check
 from . import _lamella
-from ._errors import InputError, UsageError
+from ._arguments import PathLike, Progress
+from ._errors import CancelledError, InputError, UsageError
 from ._lamella import Layer, LayerStream, Mesh, Stack
-from ._meshes import PathLike, Progress, is_path, read_mesh, thread_count
+from ._meshes import read_mesh
 from ._warning import warn
 
 MESH_EXTENSIONS = (".stl", ".ply", ".obj")
 
+# What formats must take for an option to go with them. Options that are not here go with pictures.
+ASKED_OF_FORMATS = {
+    "units_mm": "units",
+    "short_form": "short_form",
+    "exposure_s": "exposure",
+    "first_exposure_s": "exposure",
+    "fade_layers": "exposure",
+}
+MOST_PIXELS = 65535
+MOST_ANTIALIAS = 64
+
 BATCH_LAYERS = 64
 BATCH_POINTS = 2**22  # 64 MB
 
-Layers = Union[Stack, LayerStream, Sequence[Stack]]
+Layers = Union[Layer, Stack, LayerStream, Iterable[Layer], Iterable[Stack]]
 
 
 def read_layers(
     path: PathLike, *, max_memory: int = 0, threads: int = 0, progress: Optional[Progress] = None
 ) -> Stack:
-    stack, warnings = _lamella.read_layers(os.fsencode(path), max_memory, thread_count(threads), progress)
+    stack, warnings = _lamella.read_layers(
+        check.path("path", path),
+        check.whole("max_memory", max_memory),
+        check.thread_count(threads),
+        check.listener(progress),
+    )
     warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
     return stack
 
@@ -70,7 +89,7 @@ def read(
     def layers() -> Stack:
         return read_layers(path, max_memory=max_memory, threads=threads, progress=progress)
 
-    kind = _lamella.file_kind(_head_of(path))
+    kind = _lamella.file_kind(_head_of(check.path("path", path)))
     if kind == "layers":
         return layers()
     if kind == "mesh":
@@ -82,7 +101,7 @@ def read(
         return mesh()
 
 
-def _head_of(path: PathLike) -> bytes:
+def _head_of(path: bytes) -> bytes:
     """The first bytes; none of what cannot be opened, which its reader reports."""
     try:
         with open(path, "rb") as file:
@@ -91,12 +110,14 @@ def _head_of(path: PathLike) -> bytes:
         return b""
 
 
-def as_stack(layers: Union[PathLike, Stack], *, threads: int = 0, progress: Optional[Progress] = None) -> Stack:
+def as_stack(
+    name: str, layers: Union[PathLike, Stack], *, threads: int = 0, progress: Optional[Progress] = None
+) -> Stack:
     if isinstance(layers, Stack):
         return layers
     if isinstance(layers, (str, bytes, os.PathLike)):
-        return read_layers(layers, threads=threads, progress=progress)
-    raise TypeError(f"layers are a path or a lamella.Stack; this is a {type(layers).__name__}")
+        return read_layers(check.path(name, layers), threads=threads, progress=progress)
+    check.refuse_type(name, "a path or a lamella.Stack", layers)
 
 
 def write(
@@ -108,43 +129,104 @@ def write(
     short_form: bool = False,
     pixel_mm: Union[None, float, Tuple[float, float]] = None,
     pixels: Optional[Tuple[int, int]] = None,
-    display_mm: Optional[Tuple[float, float]] = None,
+    display_mm: Union[None, float, Tuple[float, float]] = None,
+    orientation: Optional[str] = None,
+    mirror: Optional[str] = None,
+    antialias: Optional[int] = None,
+    gamma: Optional[float] = None,
+    exposure_s: Optional[float] = None,
+    first_exposure_s: Optional[float] = None,
+    fade_layers: Optional[int] = None,
+    strict: bool = False,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> None:
     """Writes layers or a mesh to a file, whose extension says the format. Nobody ever sees half a file.
 
     path: str or os.PathLike. Meshes: .stl, .ply, .obj. Layers: see `layer_formats`.
-    what: a Mesh; or a Stack, several stacks on the same planes, which are the parts of the file, or what
-        `iter_layers` gives, which is written while it is being made.
+    what: a Mesh; a Layer, a Stack, or any iterable of layers in ascending z; or several stacks on the same planes,
+        which are the parts of the file. What `iter_layers` gives is written while it is being made; layers of
+        any other iterable are collected first.
     format: name of the format of layers, where the extension does not say it.
     units_mm: Common Layer Interface: millimetres per unit, to which coordinates are rounded; 0.001 unless given.
     short_form: Common Layer Interface, binary: coordinates of 16 bits.
-    pixel_mm, pixels, display_mm: pictures: size of a pixel, their number, and size of the display, each along x and
-        y; of these three, two tell the third.
+
+    Pictures (png, png-zip, sl1, sl1s):
+    pixel_mm, pixels, display_mm: size of a pixel, their number, and size of the display, each along x and y; of
+        these three, two tell the third. What is not given is the printer's, and 0.05 mm without one.
+    orientation: "landscape" or "portrait": whether x runs along the columns of a picture or along its rows.
+    mirror: "none", "x", "y" or "xy".
+    antialias: 1 is black and white, by the middles of pixels; 2 to 64: grey by the covered part of each pixel, exact
+        for up to that many corners close together; 8 unless given.
+    gamma: grey becomes 255 times the covered part to this power; 1 unless given.
+    exposure_s, first_exposure_s: sl1, sl1s: seconds of a layer, and of each of the first three.
+    fade_layers: sl1, sl1s: layers in which the first exposure fades to the normal one; 10 unless given.
+
+    strict: makes a DefectError of what is otherwise a DefectWarning, in place of the file.
     threads: that layers are formatted on; 0 takes one for each processor. The file is the same.
     progress: called as progress("write", done, total), in layers.
 
-    Raises OutputError, and UsageError for a format that is not known. Issues a DefectWarning for what the format has
-    no place for.
+    Raises OutputError, UsageError for a format that is not known and for options that do not go with it, and
+    TypeError. Issues a DefectWarning for what the format has no place for.
     """
+    target = check.path("path", path)
+    threads, progress = check.thread_count(threads), check.listener(progress)
+    format = check.text("format", format)
+    options = {
+        "units_mm": check.optional(check.positive, "units_mm", units_mm),
+        "short_form": check.flag("short_form", short_form) or None,
+        "pixel_mm": check.optional(_lengths, "pixel_mm", pixel_mm),
+        "pixels": check.optional(_columns_and_rows, "pixels", pixels),
+        "display_mm": check.optional(_lengths, "display_mm", display_mm),
+        "orientation": check.optional(check.choice, "orientation", orientation, ("landscape", "portrait")),
+        "mirror": check.optional(check.choice, "mirror", mirror, ("none", "x", "y", "xy")),
+        "antialias": check.optional(check.whole, "antialias", antialias, 1, MOST_ANTIALIAS),
+        "gamma": check.optional(check.positive, "gamma", gamma),
+        "exposure_s": check.optional(check.positive, "exposure_s", exposure_s),
+        "first_exposure_s": check.optional(check.positive, "first_exposure_s", first_exposure_s),
+        "fade_layers": check.optional(check.whole, "fade_layers", fade_layers, 0, 2**32 - 1),
+    }
+    given = {name: value for name, value in options.items() if value is not None}
+    strict = check.flag("strict", strict)
     if isinstance(what, Mesh):
-        _write_mesh(path, what)
+        _write_mesh(target, what, [*(["format"] if format else []), *given])
         return
-    thread_count(threads)
-    parts, planes, bottom, rule = _planes(what)
-    pixel = (pixel_mm, pixel_mm) if isinstance(pixel_mm, (int, float)) else pixel_mm
-    writer = _lamella.open_writer(
-        os.fsencode(path), format, parts, _length(what), bottom, rule, units_mm, short_form, pixel, pixels,
-        display_mm,
-    )
-    done, total = 0, _length(what)
+    parts, planes, total, bottom, rule = _planes(what)
+    name = _format_for(target, format, given)
+    writer = _lamella.open_writer(target, name, parts, total, bottom, rule, {**given, "strict": strict})
+    done = 0
     for batch in _batches(planes):
         writer.write(batch, threads)
         done += len(batch)
         if progress is not None:
             progress("write", done, total)
+    if done < total:
+        raise CancelledError(f"{os.fsdecode(path)}: the stream was closed while it was written")
     warn(f"{os.fsdecode(path)}: {warning}" for warning in writer.finish())
+
+
+def _lengths(name: str, value: Any) -> Tuple[float, float]:
+    if isinstance(value, numbers.Real):
+        return (check.positive(name, value),) * 2
+    return check.pair(name, value, "one length, or two (x, y)", check.positive)
+
+
+def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
+    def side(name: str, value: Any) -> int:
+        return check.whole(name, value, 1, MOST_PIXELS)
+
+    return check.pair(name, value, "two whole numbers (columns, rows)", side)
+
+
+def _format_for(path: bytes, format: str, given: Iterable[str]) -> str:
+    """The name of the format, with which all options that are given go."""
+    name = _lamella.layer_format(format, path)
+    for option in given:
+        formats = _lamella.formats_with(ASKED_OF_FORMATS.get(option, "picture"))
+        if name not in formats:
+            several = "formats" if len(formats) > 1 else "format"
+            raise UsageError(f"{option} goes with the {several} {', '.join(formats)}, not with {name}")
+    return name
 
 
 def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
@@ -161,38 +243,57 @@ def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
         yield batch
 
 
-def _write_mesh(path: PathLike, mesh: Mesh) -> None:
+def _write_mesh(path: bytes, mesh: Mesh, given: List[str]) -> None:
     extension = os.path.splitext(os.fsdecode(path))[1].lower()
     if extension not in MESH_EXTENSIONS:
         raise UsageError(
             f"{os.fsdecode(path)}: meshes are written as {', '.join(MESH_EXTENSIONS)}; slice the mesh to get layers"
         )
-    _lamella.write_mesh(os.fsencode(path), extension, mesh, mesh.name or "lamella")
+    if given:
+        raise UsageError(f"{given[0]} goes with layers, and what is written is a mesh")
+    _lamella.write_mesh(path, extension, mesh, check.label("name", mesh.name or "lamella"))
 
 
-def _length(what: Layers) -> int:
+def _planes(what: Any) -> Tuple[List[Tuple[bytes, npt.NDArray[np.float64]]], Iterator[List[Layer]], int, float, str]:
+    """The label and the bounds of each part, the layers plane by plane, how many planes, where the first one begins, and
+    the rule of the plane."""
     if isinstance(what, LayerStream):
-        return len(what.z)
-    return len(what) if isinstance(what, Stack) else len(what[0])
+        total = what.__length_hint__()
+        if total == 0:
+            raise UsageError("what: there are no layers to write: the stream is closed or at its end")
+        parts = [(check.label("label", what.label), what.bounds)]
+        return parts, ([layer] for layer in what), total, what._bottom, what.rule
+    stacks = what.parts if isinstance(what, Stack) else _parts_of(what)
+    if len(stacks[0]) == 0:
+        raise UsageError("what: there are no layers to write")
+    if any(len(stack) != len(stacks[0]) or (stack.z != stacks[0].z).any() for stack in stacks):
+        raise UsageError("what: the parts of a file must have the same planes: slice them at the same z")
+    if any(stack.rule != stacks[0].rule for stack in stacks):
+        raise UsageError("what: the parts of a file must be cut by the same rule: slice them with the same `at`")
+    parts = [(check.label("label", stack.label or "part"), stack.bounds) for stack in stacks]
+    planes = (list(plane) for plane in zip(*stacks))
+    return parts, planes, len(stacks[0]), stacks[0][0].bottom, stacks[0].rule
 
 
-def _planes(what: Layers) -> Tuple[List[Tuple[str, npt.NDArray[np.float64]]], Iterator[List[Layer]], float, str]:
-    """The label and the bounds of each part, the layers plane by plane, where the first one begins, and the rule of the
-    plane."""
-    if isinstance(what, LayerStream):
-        return [(what.label, what.bounds)], ([layer] for layer in what), what._bottom, what.rule
-    parts = what.parts if isinstance(what, Stack) else list(what)
-    if not parts or not all(isinstance(part, Stack) for part in parts):
-        raise TypeError("what is written is a lamella.Mesh, a lamella.Stack, a list of these, or a stream of layers")
-    if len(parts[0]) == 0:
-        raise UsageError("there are no layers to write")
-    if any(len(part) != len(parts[0]) or (part.z != parts[0].z).any() for part in parts):
-        raise UsageError("the parts of a file must have the same planes: slice them at the same z")
-    if any(part.rule != parts[0].rule for part in parts):
-        raise UsageError("the parts of a file must be cut by the same rule: slice them with the same `at`")
-    names = [(part.label or "part", part.bounds) for part in parts]
-    planes = (list(plane) for plane in zip(*parts))
-    return names, planes, parts[0][0].bottom, parts[0].rule
+def _parts_of(what: Any) -> List[Stack]:
+    """Of layers, or of stacks."""
+    expected = "a lamella.Mesh, Layer or Stack, or an iterable of layers or of stacks"
+    if isinstance(what, Layer):
+        return [Stack([what])]
+    if isinstance(what, (str, bytes)):
+        check.refuse_type("what", expected, what)
+    try:
+        things = iter(what)
+    except TypeError:
+        check.refuse_type("what", expected, what)
+    found = list(things)
+    if not found:
+        raise UsageError("what: there are no layers to write")
+    kind = Stack if isinstance(found[0], Stack) else Layer
+    for thing in found:
+        if not isinstance(thing, kind):
+            check.refuse_type("what", expected, thing)
+    return found if kind is Stack else [Stack(found)]
 
 
 def convert(
@@ -204,7 +305,15 @@ def convert(
     short_form: bool = False,
     pixel_mm: Union[None, float, Tuple[float, float]] = None,
     pixels: Optional[Tuple[int, int]] = None,
-    display_mm: Optional[Tuple[float, float]] = None,
+    display_mm: Union[None, float, Tuple[float, float]] = None,
+    orientation: Optional[str] = None,
+    mirror: Optional[str] = None,
+    antialias: Optional[int] = None,
+    gamma: Optional[float] = None,
+    exposure_s: Optional[float] = None,
+    first_exposure_s: Optional[float] = None,
+    fade_layers: Optional[int] = None,
+    strict: bool = False,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> None:
@@ -214,17 +323,26 @@ def convert(
     source, target: str or os.PathLike.
     For the rest see `write`.
 
-    Raises InputError, OutputError, and UsageError.
+    Raises InputError, OutputError, UsageError and TypeError.
     """
-    if is_path(source) and is_path(target) and os.path.exists(target) and os.path.samefile(source, target):
+    if _same_file(check.path("source", source), check.path("target", target)):
         raise UsageError(f"{os.fsdecode(target)}: the output would overwrite the input")
     stack = read_layers(source, threads=threads, progress=progress)
     if len(stack) == 0:
         raise InputError(f"{os.fsdecode(source)}: holds no layers")
     write(
         target, stack, format=format, units_mm=units_mm, short_form=short_form, pixel_mm=pixel_mm, pixels=pixels,
-        display_mm=display_mm, threads=threads, progress=progress,
+        display_mm=display_mm, orientation=orientation, mirror=mirror, antialias=antialias, gamma=gamma,
+        exposure_s=exposure_s, first_exposure_s=first_exposure_s, fade_layers=fade_layers, strict=strict,
+        threads=threads, progress=progress,
     )  # fmt: skip
+
+
+def _same_file(first: bytes, second: bytes) -> bool:
+    try:
+        return os.path.samefile(first, second)
+    except OSError:  # at least one is not there, which whoever opens it reports
+        return False
 
 
 def layer_formats() -> List[Tuple[str, str, str]]:

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import dataclass
-from typing import Any, Callable, Optional, Protocol, Sequence, Tuple, Union
+from typing import Any, Optional, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _arguments as check
 from . import _lamella
+from ._arguments import PathLike, Progress
 from ._errors import UsageError
 from ._lamella import Mesh
 from ._warning import warn
 
-PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
-Progress = Callable[[str, int, int], object]
+UPWARDS = (0, 0, 1)
 
 
 class HasFaces(Protocol):
@@ -70,20 +70,9 @@ class Inspection:
         return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in kinds if count)
 
 
-def is_path(thing: object) -> bool:
-    return isinstance(thing, (str, bytes, os.PathLike))
-
-
-def thread_count(threads: int) -> int:
-    if threads < 0:
-        raise UsageError(f"threads: {threads} is not possible; 0 takes one for each processor")
-    return threads
-
-
 def read_mesh(
     path: PathLike,
     *,
-    label: str = "",
     unit_mm: Optional[float] = None,
     strict: bool = False,
     supports: bool = False,
@@ -92,74 +81,79 @@ def read_mesh(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Mesh:
-    if unit_mm is not None and not (0 < unit_mm < math.inf):
-        raise UsageError(f"unit_mm: {unit_mm} is not possible; a unit is a number of millimetres above 0")
     mesh = _lamella.read_mesh(
-        os.fsencode(path), label, unit_mm, strict, supports, max_triangles, max_memory, thread_count(threads), progress
+        check.path("path", path),
+        check.optional(check.positive, "unit_mm", unit_mm),
+        check.flag("strict", strict),
+        check.flag("supports", supports),
+        check.whole("max_triangles", max_triangles),
+        check.whole("max_memory", max_memory),
+        check.thread_count(threads),
+        check.listener(progress),
     )
     warn(f"{mesh.path}: {warning}" for warning in mesh.warnings)
     return mesh
 
 
-def mesh_of_arrays(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> Mesh:
-    positions = np.asarray(vertices)
-    numbers = np.asarray(faces)
-    if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
-        raise UsageError(f"vertices: expected an array of numbers of the shape (n, 3), found {_described(positions)}")
-    if numbers.ndim != 2 or numbers.shape[1] != 3 or numbers.dtype.kind not in "iu":
-        raise UsageError(
-            f"faces: expected an array of whole numbers of the shape (m, 3), found {_described(numbers)}"
-            + ("; faces of more than three corners must be cut into triangles first" if numbers.ndim == 2 else "")
-        )
-    return _lamella.mesh_of_arrays(positions, numbers)
+def arrays_of_mesh(vertices: Any, faces: Any) -> Tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    positions = check.shaped("vertices", vertices, (None, 3), "an array of numbers of the shape (n, 3)")
+    expected = "an array of whole numbers of the shape (m, 3)"
+    numbers = check.array("faces", faces, expected, kinds="iu")
+    if numbers.ndim != 2 or numbers.shape[1] != 3:
+        cut = "; faces of more than three corners must be cut into triangles first" if numbers.ndim == 2 else ""
+        raise UsageError(f"faces: expected {expected}, found {check.described(numbers)}{cut}")
+    return positions, np.ascontiguousarray(numbers, dtype=np.int64)
 
 
-def _described(array: npt.NDArray[Any]) -> str:
-    return f"{array.shape} of {array.dtype}"
-
-
-def _mesh_of_triangles(corners: npt.NDArray[Any]) -> Mesh:
+def _mesh_of_triangles(name: str, corners: npt.NDArray[Any]) -> Mesh:
     """Triangles that share nothing: (m, 3, 3)."""
     if corners.ndim != 3 or corners.shape[1:] != (3, 3):
         raise UsageError(
-            f"triangles: expected an array of the shape (m, 3, 3), found {_described(corners)}; "
+            f"{name}: triangles: expected an array of the shape (m, 3, 3), found {check.described(corners)}; "
             "vertices and faces are given as a pair of arrays"
         )
-    return mesh_of_arrays(corners.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3))
+    return Mesh(corners.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3))
 
 
-def as_mesh(part: MeshLike, unit_mm: Optional[float] = None, **reading: Any) -> Mesh:
+def as_mesh(name: str, part: Any, unit_mm: Optional[float] = None, **reading: Any) -> Mesh:
     """A mesh from whatever the user has. `reading` is for paths."""
     if isinstance(part, (str, bytes, os.PathLike)):
-        return read_mesh(part, unit_mm=unit_mm, **reading)
+        return read_mesh(check.path(name, part), unit_mm=unit_mm, **reading)
     if unit_mm is not None:
         raise UsageError("unit_mm goes with files: arrays and meshes are in millimetres; scale them by transform")
     if isinstance(part, Mesh):
         return part
     if isinstance(part, np.ndarray):
-        return _mesh_of_triangles(part)
+        return _mesh_of_triangles(name, part)
     if isinstance(part, (tuple, list)):
         if len(part) == 2:
-            return mesh_of_arrays(*part)
+            return Mesh(*part)
     elif hasattr(part, "vertices") and hasattr(part, "faces"):
-        return mesh_of_arrays(part.vertices, part.faces)
+        return Mesh(part.vertices, part.faces)
     raise TypeError(
-        "a mesh is a path, a lamella.Mesh, a pair of arrays (vertices, faces), or something with .vertices and "
-        f".faces; this is a {type(part).__name__}"
+        f"{name}: a mesh is a path, a lamella.Mesh, a pair of arrays (vertices, faces), or something with .vertices "
+        f"and .faces; this is {check.described(part)}"
     )
 
 
-def placed(mesh: Mesh, direction: Sequence[float], transform: Optional[npt.ArrayLike]) -> Mesh:
-    """First the transform, then `direction` turned upright."""
+Placing = Tuple[Tuple[float, ...], Optional[npt.NDArray[np.float64]]]
+
+
+def placing(direction: Sequence[float], transform: Optional[npt.ArrayLike]) -> Placing:
+    rows = None
     if transform is not None:
-        rows = np.asarray(transform, dtype=float)
-        if rows.shape != (4, 4):
-            raise UsageError(f"transform: expected a matrix of the shape (4, 4), found {rows.shape}")
-        mesh = mesh._transformed(rows)
-    towards = np.asarray(direction, dtype=float)
-    if towards.shape != (3,):
-        raise UsageError(f"direction: expected three numbers, found {towards.shape}")
-    return mesh if tuple(towards) == (0, 0, 1) else mesh._turned(towards)
+        rows = check.shaped("transform", transform, (4, 4), "a matrix of the shape (4, 4)")
+        if not np.isfinite(rows).all():
+            raise UsageError("transform: expected finite numbers, found nan or inf")
+    return check.several("direction", direction, 3, "three numbers (x, y, z)", check.number), rows
+
+
+def placed(mesh: Mesh, where: Placing) -> Mesh:
+    """First the transform, then the direction turned upright."""
+    direction, transform = where
+    if transform is not None:
+        mesh = mesh._transformed(transform)
+    return mesh if direction == UPWARDS else mesh._turned(direction)
 
 
 def inspect(
@@ -179,6 +173,7 @@ def inspect(
 
     Raises InputError for a file that cannot be read.
     """
-    mesh = as_mesh(part, unit_mm=unit_mm, threads=threads, progress=progress)
-    fields = mesh._defects(thread_count(threads), progress)
+    threads, progress = check.thread_count(threads), check.listener(progress)
+    mesh = as_mesh("part", part, unit_mm=unit_mm, threads=threads, progress=progress)
+    fields = mesh._defects(threads, progress)
     return Inspection(path=mesh.path, format=mesh.format, bounds=mesh.bounds, **fields)

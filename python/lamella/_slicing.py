@@ -7,14 +7,17 @@ from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 import numpy.typing as npt
 
+from . import _arguments as check
 from . import _lamella
+from ._arguments import Progress
 from ._errors import DefectError, UsageError
 from ._lamella import LayerStream, Mesh, Stack
-from ._meshes import MeshLike, Progress, as_mesh, inspect, placed, thread_count
+from ._meshes import MeshLike, as_mesh, inspect, placed, placing
 from ._warning import warn
 
 DEFAULT_LAYER_HEIGHT = 0.1
 DEFAULT_CUSP = 0.05
+PLACES = ("bottom", "middle", "top")
 
 
 class Engine(NamedTuple):
@@ -86,7 +89,7 @@ def slice(
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,
-        transform, unit_mm, strict, threads, progress,
+        transform, unit_mm, engine, strict, threads, progress,
     )  # fmt: skip
     stack = _lamella.slice_stack(mesh, plan, engine, threads, progress)
     chains = stack.open_chains
@@ -133,7 +136,7 @@ def iter_layers(
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,
-        transform, unit_mm, strict, threads, progress,
+        transform, unit_mm, engine, strict, threads, progress,
     )  # fmt: skip
     return _lamella.stream(mesh, plan, engine, threads, progress)
 
@@ -153,44 +156,59 @@ def _prepared(
     direction: Sequence[float],
     transform: Optional[npt.ArrayLike],
     unit_mm: Optional[float],
+    engine: str,
     strict: bool,
     threads: int,
     progress: Optional[Progress],
 ) -> Tuple[Mesh, _lamella.Plan]:
     """The mesh as it is to be sliced, and the planes to cut it at."""
     _check_conflicts(layer_height, z, offsets, heights, adaptive, cusp, first_layer_height)
-    thread_count(threads)
-    mesh = as_mesh(part, unit_mm=unit_mm, strict=strict, threads=threads, progress=progress)
+    names = [known.name for known in engines()]
+    if check.text("engine", engine) not in names:
+        raise UsageError(f"engine: there is no engine named '{engine}'; the engines are: {', '.join(names)}")
+    threads, progress = check.thread_count(threads), check.listener(progress)
+    where = placing(direction, transform)
+    strict = check.flag("strict", strict)
+    above_bottom = check.optional(_heights, "offsets", offsets)
+    cuts = check.optional(_heights, "z", z)
+    ranges = check.optional(_ranges, "heights", heights)
+    varying = None
+    if adaptive is not None:
+        between = check.pair("adaptive", adaptive, "two numbers (smallest, largest)", check.positive)
+        varying = (*between, check.positive("cusp", DEFAULT_CUSP if cusp is None else cusp))
+    height = check.positive("layer_height", DEFAULT_LAYER_HEIGHT if layer_height is None else layer_height)
+    first_height = check.optional(check.positive, "first_layer_height", first_layer_height)
+    place = check.choice("at", at, PLACES)
+    z_limits = None if z_range is None else check.pair("z_range", z_range, "two numbers (from, to)", check.number)
+    numbers = None if layers is None else check.pair("layers", layers, "two whole numbers (first, end)", check.whole)
+    mesh = as_mesh("part", part, unit_mm=unit_mm, strict=strict, threads=threads, progress=progress)
     if strict:
         found = inspect(mesh, threads=threads, progress=progress)
         if not found.sound:
             raise DefectError(f"{mesh.path or 'the mesh'}: the mesh has defects: {found.defects}")
-    mesh = placed(mesh, direction, transform)
-    cuts = None if z is None else _numbers("z", z)
-    if offsets is not None:
-        cuts = _numbers("offsets", offsets) + mesh.bounds[0][2]
-    varying = None if adaptive is None else (*adaptive, DEFAULT_CUSP if cusp is None else cusp)
+    mesh = placed(mesh, where)
+    if above_bottom is not None:
+        cuts = above_bottom + mesh.bounds[0][2]
     plan = _lamella.plan(
-        mesh,
-        DEFAULT_LAYER_HEIGHT if layer_height is None else layer_height,
-        first_layer_height,
-        at,
-        z_range,
-        layers,
-        cuts,
-        [] if heights is None else list(heights),
-        varying,
-        threads,
-        progress,
+        mesh, height, first_height, place, z_limits, numbers, cuts, ranges or (), varying, threads, progress
     )
     return mesh, plan
 
 
-def _numbers(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    array = np.asarray(values, dtype=float)
+def _heights(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    array = check.array(name, values, "a list of numbers")
     if array.ndim != 1:
         raise UsageError(f"{name}: expected a list of numbers, found an array of the shape {array.shape}")
-    return array
+    return array.astype(np.float64)
+
+
+def _ranges(name: str, values: Any) -> Tuple[Tuple[float, ...], ...]:
+    expected = "ranges, each of three numbers (from, to, layer_height)"
+
+    def one(name: str, value: Any) -> Tuple[float, ...]:
+        return check.several(name, value, 3, expected, check.number)
+
+    return check.several(name, values, None, expected, one)
 
 
 def _check_conflicts(

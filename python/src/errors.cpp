@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <exception>
+#include <new>
 
 namespace py = pybind11;
 
@@ -33,10 +34,11 @@ const char* class_name(ErrorKind kind) {
 }
 
 /// Texts name paths, and paths are bytes: those that are no UTF-8 are kept as Python keeps them.
-py::object text_of(const Error& error) {
-    const char* text = error.what();
-    return py::reinterpret_steal<py::object>(
+void raise(ErrorKind kind, const char* text) {
+    const py::object type = py::module_::import("lamella._errors").attr(class_name(kind));
+    const auto decoded = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(text, static_cast<py::ssize_t>(std::strlen(text)), "surrogateescape"));
+    PyErr_SetObject(type.ptr(), decoded.ptr());
 }
 
 } // namespace
@@ -48,8 +50,15 @@ void register_errors() {
             if (thrown)
                 std::rethrow_exception(thrown);
         } catch (const Error& error) {
-            const py::object type = py::module_::import("lamella._errors").attr(class_name(error.kind()));
-            PyErr_SetObject(type.ptr(), text_of(error).ptr());
+            raise(error.kind(), error.what());
+        } catch (const py::error_already_set&) {
+            throw; // Python's own
+        } catch (const py::builtin_exception&) {
+            throw; // likewise
+        } catch (const std::bad_alloc&) {
+            raise(ErrorKind::limit, "memory ran out; free some, or slice fewer layers at once (layers)");
+        } catch (const std::exception& unknown) {
+            raise(ErrorKind::internal, unknown.what());
         }
     });
 }

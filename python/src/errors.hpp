@@ -2,8 +2,9 @@
 
 namespace lamella::python {
 
-/// Makes every lamella::Error that leaves this module an exception of the package: the class of
-/// lamella._errors that belongs to its kind, with the same text.
+/// Makes every exception of C++ that leaves this module one of the package: of a lamella::Error the class of
+/// lamella._errors that belongs to its kind, with the same text; a LimitError where memory ran out; an
+/// InternalError of anything else.
 void register_errors();
 
 } // namespace lamella::python

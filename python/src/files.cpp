@@ -94,34 +94,66 @@ class StackWriter {
     std::unique_ptr<LayerWriter> writer_;
 };
 
+/// An option by its keyword, where it is given.
 template <class T>
-std::optional<AlongXY<T>> along_xy(const std::optional<std::pair<T, T>>& pair) {
-    if (!pair)
-        return std::nullopt;
-    return AlongXY<T>{pair->first, pair->second};
+std::optional<T> option(const py::dict& given, const char* keyword) {
+    return given.contains(keyword) ? std::optional(given[keyword].cast<T>()) : std::nullopt;
+}
+
+template <class T>
+std::optional<AlongXY<T>> along_xy(const py::dict& given, const char* keyword) {
+    const auto pair = option<std::pair<T, T>>(given, keyword);
+    return pair ? std::optional(AlongXY<T>{pair->first, pair->second}) : std::nullopt;
+}
+
+LayerWriteOptions write_options(const py::dict& given) {
+    LayerWriteOptions options;
+    options.strict = option<bool>(given, "strict").value_or(options.strict);
+    options.units_mm = option<double>(given, "units_mm").value_or(options.units_mm);
+    options.short_form = option<bool>(given, "short_form").value_or(options.short_form);
+    PictureOptions& picture = options.picture;
+    picture.pixel_mm = along_xy<double>(given, "pixel_mm");
+    picture.pixels = along_xy<std::uint32_t>(given, "pixels");
+    picture.display_mm = along_xy<double>(given, "display_mm");
+    if (const auto orientation = option<std::string>(given, "orientation"))
+        picture.portrait = *orientation == "portrait";
+    if (const auto mirror = option<std::string>(given, "mirror")) {
+        picture.mirror_x = mirror->starts_with('x');
+        picture.mirror_y = mirror->ends_with('y');
+    }
+    picture.raster.antialias = option<unsigned>(given, "antialias").value_or(picture.raster.antialias);
+    picture.raster.gamma = option<double>(given, "gamma").value_or(picture.raster.gamma);
+    options.exposure.normal_s = option<double>(given, "exposure_s");
+    options.exposure.first_s = option<double>(given, "first_exposure_s");
+    options.exposure.fade_layers =
+        option<std::uint32_t>(given, "fade_layers").value_or(options.exposure.fade_layers);
+    return options;
+}
+
+/// The formats that take something of LayerWriteOptions, by the name of that in LayerFormat.
+std::vector<std::string> formats_with(const std::string& name) {
+    const auto takes = name == "units"        ? &LayerFormat::units
+                       : name == "short_form" ? &LayerFormat::short_form
+                       : name == "exposure"   ? &LayerFormat::exposure
+                                              : &LayerFormat::picture;
+    std::vector<std::string> found;
+    for (const LayerFormat& format : layer_formats())
+        if (format.*takes)
+            found.emplace_back(format.name);
+    return found;
 }
 
 using PartNames = std::vector<std::pair<std::string, Bounds>>;
 
 std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::string& format,
                                          const PartNames& parts, std::uint64_t layers, double bottom,
-                                         const std::string& rule, std::optional<double> units_mm,
-                                         bool short_form,
-                                         const std::optional<std::pair<double, double>>& pixel_mm,
-                                         const std::optional<std::pair<std::uint32_t, std::uint32_t>>& pixels,
-                                         const std::optional<std::pair<double, double>>& display_mm) {
+                                         const std::string& rule, const py::dict& options) {
     LayerFileInfo info{.box = {}, .layers = layers, .bottom = bottom, .parts = {}, .rule = rule_named(rule)};
     for (const auto& [label, bounds] : parts) {
         info.parts.push_back({label, box_of(bounds)});
         info.box.add(info.parts.back().box);
     }
-    LayerWriteOptions options;
-    options.units_mm = units_mm.value_or(options.units_mm);
-    options.short_form = short_form;
-    options.picture.pixel_mm = along_xy(pixel_mm);
-    options.picture.pixels = along_xy(pixels);
-    options.picture.display_mm = along_xy(display_mm);
-    return std::make_unique<StackWriter>(path, format, info, options);
+    return std::make_unique<StackWriter>(path, format, info, write_options(options));
 }
 
 void write_mesh(const std::string& path, const std::string& extension, const MeshPointer& mesh,
@@ -228,6 +260,10 @@ void bind_files(py::module_& module) {
         .def("write", &StackWriter::write)
         .def("finish", &StackWriter::finish);
     module.def("open_writer", &open_writer);
+    module.def("formats_with", &formats_with);
+    module.def("layer_format", [](const std::string& name, const std::string& path) {
+        return std::string(layer_format(name, path).name);
+    });
     module.def("layer_formats", [] {
         std::vector<std::tuple<std::string, std::string, std::string>> found;
         for (const LayerFormat& format : layer_formats())

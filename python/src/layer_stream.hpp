@@ -57,7 +57,10 @@ class LayerStream {
 
     [[nodiscard]] const SourceMesh& mesh() const noexcept { return *mesh_; }
     [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
-    [[nodiscard]] std::size_t left() const noexcept { return plan_.layers.size() - taken_; }
+    /// How many layers are to come.
+    [[nodiscard]] std::size_t left() const noexcept { return closed_ ? 0 : plan_.layers.size() - taken_; }
+    /// Where the next one begins; some must be left.
+    [[nodiscard]] double bottom() const noexcept { return plan_.layers[taken_].bottom; }
 
   private:
     MeshPointer mesh_;

@@ -20,7 +20,6 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -68,15 +67,22 @@ std::string hash_text(const SharedLayer& layer) {
     return text.data();
 }
 
-std::size_t place_in(py::ssize_t index, std::size_t size, const char* what) {
+/// Which of `size` things an index means; negative ones count from the end.
+std::size_t place_in(const py::object& index, std::size_t size, const char* what) {
+    if (PyIndex_Check(index.ptr()) == 0)
+        throw py::type_error(std::string("the number of a ") + what + ": expected a whole number, found " +
+                             Py_TYPE(index.ptr())->tp_name);
+    const py::ssize_t number = PyNumber_AsSsize_t(index.ptr(), PyExc_IndexError);
+    if (number == -1 && PyErr_Occurred() != nullptr)
+        throw py::error_already_set();
     const auto count = static_cast<py::ssize_t>(size);
-    if (index < -count || index >= count)
-        throw py::index_error(what + std::string(" ") + std::to_string(index) + " of " +
+    if (number < -count || number >= count)
+        throw py::index_error(what + std::string(" ") + std::to_string(number) + " of " +
                               std::to_string(size));
-    return static_cast<std::size_t>(index < 0 ? index + count : index);
+    return static_cast<std::size_t>(number < 0 ? number + count : number);
 }
 
-py::array_t<double> contour_of(const py::object& self, py::ssize_t index) {
+py::array_t<double> contour_of(const py::object& self, const py::object& index) {
     const Layer& layer = layer_of(self);
     return view_of(layer.contour(place_in(index, layer.contours(), "contour")), self);
 }
@@ -133,26 +139,25 @@ LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const
 }
 
 /// Contours in any order.
-LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z,
-                               std::optional<double> given_bottom, std::optional<double> given_top,
+LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, double bottom, double top,
                                std::uint64_t index, const std::vector<Doubles>& chains) {
-    const double bottom = given_bottom.value_or(z);
-    const double top = given_top.value_or(z);
-    for (const double height : {z, bottom, top})
-        if (!std::isfinite(height))
-            throw Error(ErrorKind::usage, "the heights of a layer must be finite numbers");
-    if (!(bottom <= z && z <= top))
-        throw Error(ErrorKind::usage, "a layer is cut at z between its bottom and its top");
+    const py::gil_scoped_release released;
     LayerBuilder builder;
     for (const auto* contours : {&rings, &chains})
         for (const Doubles& contour : *contours) {
-            if (contour.ndim() != 2 || contour.shape(1) != 2)
-                throw Error(ErrorKind::usage, "a contour is an array of the shape (n, 2)");
             for (const Point2& p : points_of(contour))
                 builder.add_point(p);
             builder.end_contour(contours == &rings);
         }
     return std::make_shared<SharedLayer>(builder.finish(index, z, bottom, top));
+}
+
+/// By its name, which is one of the three.
+FillRule fill_rule(const std::string& name) {
+    for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd})
+        if (fill_rule_name(rule) == name)
+            return rule;
+    return FillRule::positive;
 }
 
 bool same(const SharedLayer& first, const SharedLayer& second) {
@@ -278,7 +283,7 @@ bool same_stacks(const Stack& a, const Stack& b) {
 void require_ascending(const std::vector<LayerPointer>& layers) {
     for (std::size_t i = 0; i + 1 < layers.size(); ++i)
         if (!(layers[i]->get().z < layers[i + 1]->get().z))
-            throw Error(ErrorKind::usage, "layers of a stack must ascend in z: number " +
+            throw Error(ErrorKind::usage, "layers: those of a stack must ascend in z: number " +
                                               std::to_string(i + 1) + " is not above the one before it");
 }
 
@@ -292,7 +297,7 @@ StackPointer stack_of_layers(std::vector<LayerPointer> layers, const std::string
 }
 
 py::tuple pickled(const Stack& stack) {
-    return py::make_tuple(stack.layers, stack.label, bounds_of(stack.box), matrix_of(stack.matrix),
+    return py::make_tuple(stack.layers, py::bytes(stack.label), bounds_of(stack.box), matrix_of(stack.matrix),
                           py::bytes(stack.path), stack.format, stack.rounding.step_mm,
                           stack.rounding.single_precision, plane_rule_name(stack.rule), stack.parts);
 }
@@ -329,8 +334,7 @@ void bind_layer(py::module_& module) {
         "Slicing and reading make layers. Layer(rings, z, bottom=z, top=z, index=0, chains=()) makes one of "
         "arrays\n"
         "(n, 2) in millimetres, in any order.")
-        .def(py::init(&layer_of_contours), py::arg("rings"), py::arg("z"), py::arg("bottom") = py::none(),
-             py::arg("top") = py::none(), py::arg("index") = 0, py::arg("chains") = std::vector<Doubles>())
+        .def(py::init(&layer_of_contours))
         .def_property_readonly(
             "index", [](const SharedLayer& self) { return self.get().index; },
             "Its number in the whole plan, also when only a part of that was sliced.")
@@ -401,47 +405,15 @@ void bind_layer(py::module_& module) {
             },
             "Fill lines that a slice file held beside the contours, from point to point: (n, 2, 2) float64,\n"
             "millimetres, read-only. Slicing makes none.")
-        .def(
-            "polygons", &polygons_of,
-            "Pieces of material: pairs (outer, holes) of the number of the ring around it and a list of the\n"
-            "numbers of its holes. Open chains, and rings that bound no material, are left out.")
-        .def(
-            "to_shapely",
-            [](const py::object& self) {
-                return py::module_::import("lamella._shapely").attr("multi_polygon")(self);
-            },
-            "The material as a shapely.geometry.MultiPolygon in millimetres, holes where they belong. Open "
-            "chains\n"
-            "are left out. Needs shapely.")
-        .def(
-            "filled",
-            [](const SharedLayer& self, const std::string& rule) {
-                for (const FillRule known : {FillRule::nonzero, FillRule::evenodd, FillRule::positive})
-                    if (fill_rule_name(known) == rule)
-                        return after(self, {.fill = known});
-                throw Error(ErrorKind::usage,
-                            "\"" + rule + "\" is no fill rule; there are nonzero, evenodd and positive");
-            },
-            py::arg("rule") = "nonzero",
-            "The layer with bodies that overlap united: material is where contours wind around `rule` "
-            "times:\n"
-            "\"nonzero\", \"evenodd\" or \"positive\". Contours that do not overlap keep their points.")
-        .def(
-            "offset",
-            [](const SharedLayer& self, double distance) {
-                if (!std::isfinite(distance))
-                    throw Error(ErrorKind::usage, "a distance must be a finite number");
-                return after(self, {.offset_mm = distance});
-            },
-            py::arg("distance"),
-            "The layer with its material grown by `distance` millimetres, or shrunk by a negative one.")
-        .def(
-            "simplified",
-            [](const SharedLayer& self, double tolerance) { return after(self, {.simplify_mm = tolerance}); },
-            py::arg("tolerance"),
-            "The layer with points left out, so that no contour moves by more than `tolerance` millimetres.")
+        .def("_polygons", &polygons_of)
+        .def("_filled", [](const SharedLayer& self,
+                           const std::string& rule) { return after(self, {.fill = fill_rule(rule)}); })
+        .def("_offset",
+             [](const SharedLayer& self, double distance) { return after(self, {.offset_mm = distance}); })
+        .def("_simplified", [](const SharedLayer& self,
+                               double tolerance) { return after(self, {.simplify_mm = tolerance}); })
         .def("__len__", [](const SharedLayer& self) { return self.get().contours(); })
-        .def("__getitem__", &contour_of, py::arg("contour"))
+        .def("__getitem__", &contour_of)
         .def("__iter__", &each_of)
         .def(
             "__eq__", [](const SharedLayer& self, const SharedLayer& other) { return same(self, other); },
@@ -456,7 +428,7 @@ void bind_stack(py::module_& module) {
         module, "Stack",
         "Layers in ascending z, as lamella.slice and lamella.read give them. A sequence of Layer: stack[i],\n"
         "stack[a:b], len(stack), and for layer in stack. It never changes.")
-        .def(py::init(&stack_of_layers), py::arg("layers"), py::arg("label") = "part")
+        .def(py::init(&stack_of_layers))
         .def_property_readonly("z", numbers_of<double>([](const SharedLayer& l) { return l.get().z; }),
                                "Where the layers were cut, in millimetres: (layers,) float64.")
         .def_property_readonly("bottom",
@@ -526,10 +498,11 @@ void bind_stack(py::module_& module) {
             "top, of what is just below it (\"section_below\").")
         .def("__len__", [](const Stack& self) { return self.layers.size(); })
         .def("__getitem__",
-             [](const Stack& self, py::ssize_t index) {
-                 return self.layers[place_in(index, self.layers.size(), "layer")];
+             [](const Stack& self, const py::object& index) -> py::object {
+                 if (py::isinstance<py::slice>(index))
+                     return py::cast(part_of(self, index));
+                 return py::cast(self.layers[place_in(index, self.layers.size(), "layer")]);
              })
-        .def("__getitem__", &part_of)
         .def("__iter__", &each_of)
         .def(
             "__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },

@@ -1,6 +1,5 @@
 #include "slicing.hpp"
 
-#include "lamella/core/error.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -30,14 +29,11 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
+/// By its name, which is one of the three.
 SliceAt slice_at(const std::string& name) {
     if (name == "bottom")
         return SliceAt::bottom;
-    if (name == "middle")
-        return SliceAt::middle;
-    if (name == "top")
-        return SliceAt::top;
-    throw Error(ErrorKind::usage, "at: \"" + name + "\" is none of \"bottom\", \"middle\" and \"top\"");
+    return name == "top" ? SliceAt::top : SliceAt::middle;
 }
 
 using ZRange = std::optional<std::pair<double, double>>;
@@ -101,9 +97,8 @@ void bind_stream(py::module_& module) {
         .def_property_readonly(
             "rule", [](const LayerStream& self) { return plane_rule_name(self.plan().rule); },
             "The rule of the plane, as Stack.rule.")
-        .def_property_readonly("_bottom",
-                               [](const LayerStream& self) { return self.plan().layers.front().bottom; })
-        .def("close", &LayerStream::close, "Stops slicing. To be called more than once does no harm.")
+        .def_property_readonly("_bottom", &LayerStream::bottom)
+        .def("_close", &LayerStream::close)
         .def("__length_hint__", &LayerStream::left)
         .def("__iter__", [](const py::object& self) { return self; })
         .def("__next__", &LayerStream::next)

@@ -51,7 +51,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const Numbers& rows, std:
     return triangles;
 }
 
-/// `vertices` (n, 3) and `faces` (m, 3), whose shapes the caller has checked.
+/// `vertices` (n, 3) and `faces` (m, 3): lamella/_meshes.py has looked at their shapes.
 MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     if (static_cast<std::uint64_t>(vertices.shape(0)) > std::numeric_limits<std::uint32_t>::max())
         throw Error(ErrorKind::limit, "vertices: a mesh has 2^32 - 1 at most");
@@ -67,10 +67,10 @@ MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     return std::make_shared<SourceMesh>(Mesh(std::move(mesh)), std::move(origin), Execution{});
 }
 
-MeshPointer read_source_mesh(const std::string& path, const std::string& label, std::optional<double> unit_mm,
+MeshPointer read_source_mesh(const std::string& path, std::optional<double> unit_mm,
                              const MeshReadOptions& options, unsigned threads, const py::object& progress) {
     return result_of(threads, progress, [&](const Execution& execution) {
-        return source_mesh(read_mesh(path, options, execution), label, unit_mm, execution);
+        return source_mesh(read_mesh(path, options, execution), unit_mm, execution);
     });
 }
 
@@ -161,15 +161,13 @@ Plate SourceMesh::plate() const {
     return plate;
 }
 
-MeshPointer source_mesh(MeshFile file, const std::string& label, std::optional<double> unit_mm,
-                        const Execution& execution) {
+MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm, const Execution& execution) {
     MeshOrigin origin;
     origin.path = file.path;
     origin.format = format_name(file.format);
     origin.name = file.name;
     origin.stored_triangles = file.stored_triangles;
-    const Plate plate =
-        load_plate({.path = file.path, .unit_mm = unit_mm, .label = label}, std::move(file), execution);
+    const Plate plate = load_plate({.path = file.path, .unit_mm = unit_mm}, std::move(file), execution);
     origin.warnings = plate.files.front().warnings;
     origin.unit_mm = plate.files.front().unit_mm;
     if (plate.parts.size() == 1)
@@ -185,11 +183,7 @@ void bind_meshes(py::module_& module) {
         "millimetres, and faces (m, 3), three numbers of vertices each, counter-clockwise seen from "
         "outside.\n"
         "Wherever a function takes a mesh, arrays and paths will do, too.")
-        .def(py::init([](const py::object& vertices, const py::object& faces) {
-                 const py::object mesh_of = py::module_::import("lamella._meshes").attr("mesh_of_arrays");
-                 return mesh_of(vertices, faces).cast<MeshPointer>();
-             }),
-             py::arg("vertices"), py::arg("faces"))
+        .def(py::init(&mesh_of_arrays))
         .def_property_readonly(
             "vertices",
             [](const py::object& self) {
@@ -245,14 +239,12 @@ void bind_meshes(py::module_& module) {
         .def("__repr__", &mesh_text)
         .def(py::pickle(&mesh_state, &mesh_of_state));
 
-    module.def("mesh_of_arrays", &mesh_of_arrays);
-    module.def("read_mesh",
-               [](const std::string& path, const std::string& label, std::optional<double> unit_mm,
-                  bool strict, bool supports, std::uint64_t max_triangles, std::uint64_t max_memory,
-                  unsigned threads, const py::object& progress) {
-                   return read_source_mesh(path, label, unit_mm,
-                                           {strict, supports, max_triangles, max_memory}, threads, progress);
-               });
+    module.def("read_mesh", [](const std::string& path, std::optional<double> unit_mm, bool strict,
+                               bool supports, std::uint64_t max_triangles, std::uint64_t max_memory,
+                               unsigned threads, const py::object& progress) {
+        return read_source_mesh(path, unit_mm, {strict, supports, max_triangles, max_memory}, threads,
+                                progress);
+    });
 }
 
 } // namespace lamella::python

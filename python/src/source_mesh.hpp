@@ -57,7 +57,7 @@ class SourceMesh {
 using MeshPointer = std::shared_ptr<SourceMesh>;
 
 /// All meshes of a file, placed, as one.
-[[nodiscard]] MeshPointer source_mesh(MeshFile file, const std::string& label, std::optional<double> unit_mm,
+[[nodiscard]] MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm,
                                       const Execution& execution);
 
 /// The class Mesh, and functions that read and make meshes.

@@ -105,6 +105,75 @@ def test_pictures_are_those_of_the_program(program, rook, tmp_path):
     assert (tmp_path / "rook.zip").read_bytes() == (tmp_path / "program.zip").read_bytes()
 
 
+PICTURES = [
+    ("png-zip", {"pixels": (90, 80), "display_mm": (45, 40)}, ["--resolution", "90x80", "--display-size", "45,40"]),
+    ("png-zip", {"pixel_mm": (0.2, 0.3), "antialias": 1}, ["--pixel-size", "0.2,0.3", "--antialias", 1]),
+    ("png-zip", {"pixel_mm": 0.5, "orientation": "portrait", "mirror": "xy", "gamma": 2.5},
+     ["--pixel-size", 0.5, "--orientation", "portrait", "--mirror", "xy", "--gamma", 2.5]),
+    ("png-zip", {"pixel_mm": 0.5, "mirror": "y"}, ["--pixel-size", 0.5, "--mirror", "y"]),
+    ("sl1", {"mirror": "none", "orientation": "landscape"}, ["--mirror", "none", "--orientation", "landscape"]),
+    ("sl1s", {"exposure_s": 3, "first_exposure_s": 20.5, "fade_layers": 4},
+     ["--exposure", 3, "--first-exposure", 20.5, "--fade-layers", 4]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name, keywords, options", PICTURES)
+def test_options_of_pictures_are_those_of_the_program(program, rook, tmp_path, name, keywords, options):
+    (tmp_path / "program").mkdir()
+    target = tmp_path / "program" / "rook.out"
+    program.succeed("slice", rook, "-o", target, "--format", name, "--layer-height", 10, *options)
+    lamella.write(tmp_path / "rook.out", lamella.slice(rook, 10), format=name, **keywords)
+    assert (tmp_path / "rook.out").read_bytes() == target.read_bytes()
+    lamella.write(tmp_path / "rook.json", lamella.slice(rook, 10))
+    lamella.convert(tmp_path / "rook.json", tmp_path / "converted.out", format=name, **keywords)
+    assert (tmp_path / "converted.out").stat().st_size > 0
+
+
+def test_layers_are_written_from_whatever_has_them(tmp_path):
+    stack = lamella.slice(box_arrays(), 1)
+
+    def written(what):
+        lamella.write(tmp_path / "out.json", what)
+        return lamella.read(tmp_path / "out.json")
+
+    assert written(stack[3]) == stack[3:4]
+    assert written(list(stack)) == written(tuple(stack)) == written(layer for layer in stack) == stack
+    assert written(layer for layer in lamella.iter_layers(box_arrays(), 1)) == stack
+    shifted = written(layer.offset(1) for layer in stack)
+    assert shifted.area.tolist() == [layer.offset(1).area for layer in stack]
+    with pytest.raises(lamella.UsageError, match="ascend"):
+        lamella.write(tmp_path / "out.json", [stack[1], stack[0]])
+
+
+def test_what_a_format_has_no_place_for_is_an_error_where_it_is_asked_to_be(tmp_path):
+    chain = lamella.Layer([], 1, chains=[[(0, 0), (1, 0), (1, 1)]])
+    with pytest.warns(lamella.DefectWarning):
+        lamella.write(tmp_path / "out.slc", chain)
+    for write in (lambda **options: lamella.write(tmp_path / "strict.slc", chain, **options),
+                  lambda **options: lamella.convert(tmp_path / "chain.json", tmp_path / "strict.slc", **options)):
+        lamella.write(tmp_path / "chain.json", chain)
+        with pytest.raises(lamella.DefectError):
+            write(strict=True)
+        assert not (tmp_path / "strict.slc").exists()
+
+
+def test_what_is_left_of_a_stream_is_written(tmp_path):
+    stack = lamella.slice(box_arrays(), 1)
+    layers = lamella.iter_layers(box_arrays(), 1)
+    assert [next(layers), next(layers)] == list(stack[:2])
+    lamella.write(tmp_path / "rest.json", layers)
+    assert lamella.read(tmp_path / "rest.json") == stack[2:]
+    with pytest.raises(lamella.UsageError, match="closed or at its end"):
+        lamella.write(tmp_path / "nothing.json", layers)
+
+
+def test_a_stream_that_is_closed_while_it_is_written_leaves_no_file(tmp_path, rook):
+    layers = lamella.iter_layers(rook, 0.1)
+    with pytest.raises(lamella.CancelledError, match="closed while it was written"):
+        lamella.write(tmp_path / "out.cli", layers, progress=lambda *_: layers.close())
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_inspection_is_that_of_the_program(program, rook):
     expected = json.loads(program.succeed("info", rook, "--json"))
     found = lamella.inspect(rook)

@@ -1,0 +1,196 @@
+"""Looks at arguments before the work begins.
+
+A wrong type is a TypeError, a wrong value a UsageError, which is a ValueError. The text names the argument, says what
+was found, and what was expected.
+"""
+
+from __future__ import annotations
+
+import decimal
+import math
+import numbers
+import operator
+import os
+import reprlib
+from typing import Any, Callable, NoReturn, Optional, Sequence, Tuple, TypeVar, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import UsageError
+
+PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+Progress = Callable[[str, int, int], object]
+T = TypeVar("T")
+
+MOST_THREADS = 4096
+
+
+def described(value: object) -> str:
+    """What was found, in a few words."""
+    if isinstance(value, np.ndarray):
+        return f"{value.shape} of {value.dtype}"
+    if isinstance(value, (str, bytes)):
+        return reprlib.repr(value)
+    if value is None or isinstance(value, numbers.Number):
+        try:
+            return str(value)
+        except ValueError:  # Python writes down no whole number of so many digits
+            return "a number of thousands of digits"
+    return f"an object of type {type(value).__name__}"
+
+
+def refuse_type(name: str, expected: str, value: object) -> NoReturn:
+    raise TypeError(f"{name}: expected {expected}, found {described(value)}")
+
+
+def refuse_value(name: str, expected: str, value: object) -> NoReturn:
+    raise UsageError(f"{name}: {described(value)} is not possible; expected {expected}")
+
+
+def number(
+    name: str, value: Any, *, above: float = -math.inf, least: float = -math.inf, expected: str = "a finite number"
+) -> float:
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if not isinstance(value, (numbers.Real, decimal.Decimal)) or isinstance(value, bool):
+        refuse_type(name, expected, value)
+    try:
+        found = float(value)
+    except (ValueError, OverflowError):  # a Decimal that signals, a whole number of many digits
+        found = math.nan
+    if not (math.isfinite(found) and found > above and found >= least):
+        refuse_value(name, expected, value)
+    return found
+
+
+def positive(name: str, value: Any) -> float:
+    return number(name, value, above=0, expected="a number above 0")
+
+
+def distance(name: str, value: Any) -> float:
+    return number(name, value, least=0, expected="a distance, which is not negative")
+
+
+def whole(name: str, value: Any, least: int = 0, most: int = 2**64 - 1) -> int:
+    expected = f"a whole number from {least} to {most}" if most < 2**63 else f"a whole number, {least} or more"
+    if isinstance(value, (bool, np.bool_)):
+        refuse_type(name, expected, value)
+    try:
+        found = operator.index(value)
+    except TypeError:
+        refuse_type(name, expected, value)
+    if not least <= found <= most:
+        refuse_value(name, expected, found)
+    return found
+
+
+def flag(name: str, value: Any) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        refuse_type(name, "True or False", value)
+    return bool(value)
+
+
+def text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        refuse_type(name, "a text", value)
+    _encoded(name, value)
+    return value
+
+
+def choice(name: str, value: Any, choices: Sequence[str]) -> str:
+    if not isinstance(value, str):
+        refuse_type(name, _listed(choices, "or"), value)
+    if value not in choices:
+        raise UsageError(f'{name}: "{value}" is none of {_listed(choices, "and")}')
+    return value
+
+
+def _listed(choices: Sequence[str], last: str) -> str:
+    quoted = [f'"{word}"' for word in choices]
+    return f"{', '.join(quoted[:-1])} {last} {quoted[-1]}"
+
+
+def label(name: str, value: Any) -> bytes:
+    """A text that may come from a file, whose bytes need not be UTF-8."""
+    return _encoded(name, text(name, value))
+
+
+def path(name: str, value: Any) -> bytes:
+    """The bytes of a path."""
+    if not isinstance(value, (str, bytes, os.PathLike)):
+        refuse_type(name, "a path: str, bytes or os.PathLike", value)
+    plain = os.fspath(value)
+    found = plain if isinstance(plain, bytes) else _encoded(name, plain)
+    if not found:
+        raise UsageError(f"{name}: expected the path of a file, found an empty one")
+    if b"\0" in found:
+        raise UsageError(f"{name}: {plain!r} is not possible; the path of a file holds no null character")
+    return found
+
+
+def _encoded(name: str, value: str) -> bytes:
+    try:
+        return os.fsencode(value)
+    except UnicodeError:
+        raise UsageError(f"{name}: {value!r} is not possible; expected characters that UTF-8 has") from None
+
+
+def several(
+    name: str, value: Any, count: Optional[int], expected: str, each: Callable[[str, Any], T]
+) -> Tuple[T, ...]:
+    """`count` of something, or any number."""
+    if isinstance(value, (str, bytes)):
+        refuse_type(name, expected, value)
+    try:
+        items = tuple(value)
+    except TypeError:
+        refuse_type(name, expected, value)
+    if count is not None and len(items) != count:
+        raise UsageError(f"{name}: expected {expected}, found {len(items)} {'value' if len(items) == 1 else 'values'}")
+    return tuple(each(name, item) for item in items)
+
+
+def pair(name: str, value: Any, expected: str, each: Callable[[str, Any], T]) -> Tuple[T, T]:
+    first, second = several(name, value, 2, expected, each)
+    return first, second
+
+
+def optional(check: Callable[..., T], name: str, value: Any, *more: Any) -> Optional[T]:
+    """None, or what the check makes of it."""
+    return None if value is None else check(name, value, *more)
+
+
+def array(name: str, value: Any, expected: str, kinds: str = "fiu") -> npt.NDArray[Any]:
+    """An array of numbers: whole ones where kinds is "iu"."""
+    if value is None or isinstance(value, (str, bytes, dict, set)):
+        refuse_type(name, expected, value)
+    try:
+        found = np.asarray(value)
+    except (TypeError, ValueError, OverflowError):  # rows of different lengths, things without a number
+        raise UsageError(f"{name}: expected {expected}, found what is no array of numbers") from None
+    if found.dtype.kind == "O" and found.ndim == 0:
+        refuse_type(name, expected, value)
+    if found.dtype.kind not in kinds:
+        raise UsageError(f"{name}: expected {expected}, found {described(found)}")
+    return found
+
+
+def shaped(
+    name: str, value: Any, shape: Tuple[Optional[int], ...], expected: str
+) -> npt.NDArray[np.float64]:
+    """An array of numbers of this shape, where None is any length, as float64, row by row."""
+    found = array(name, value, expected)
+    if found.ndim != len(shape) or any(want not in (None, has) for want, has in zip(shape, found.shape)):
+        raise UsageError(f"{name}: expected {expected}, found {described(found)}")
+    return np.ascontiguousarray(found, dtype=np.float64)
+
+
+def thread_count(threads: Any) -> int:
+    return whole("threads", threads, most=MOST_THREADS)
+
+
+def listener(progress: Any) -> Optional[Progress]:
+    if progress is not None and not callable(progress):
+        refuse_type("progress", "a function of (stage, done, total)", progress)
+    return progress  # type: ignore[no-any-return]

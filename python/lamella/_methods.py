@@ -1,0 +1,116 @@
+"""What the classes of the extension do when somebody gives them something: arguments are looked at here, as everywhere
+in the package, and what is good goes on to the method of the extension with an underscore."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Iterable, List, Optional, Tuple, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arguments as check
+from . import _lamella
+from ._errors import UsageError
+from ._meshes import arrays_of_mesh
+from ._shapely import multi_polygon
+
+T = TypeVar("T")
+
+
+def _methods_of(cls: type) -> Callable[[T], T]:
+    """Gives the functions of the class below it to `cls`, under whose name their errors speak."""
+
+    def give(source: T) -> T:
+        for name, method in vars(source).items():
+            if callable(method):
+                setattr(cls, name, method)
+        return source
+
+    return give
+
+
+_make_mesh: Callable[..., None] = _lamella.Mesh.__init__
+_make_layer: Callable[..., None] = _lamella.Layer.__init__
+_make_stack: Callable[..., None] = _lamella.Stack.__init__
+
+
+@_methods_of(_lamella.Mesh)
+class Mesh(_lamella.Mesh):
+    def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> None:
+        _make_mesh(self, *arrays_of_mesh(vertices, faces))
+
+
+def _contours(name: str, contours: Any) -> Tuple[npt.NDArray[np.float64], ...]:
+    def contour(name: str, points: Any) -> npt.NDArray[np.float64]:
+        return check.shaped(name, points, (None, 2), "contours, each an array of numbers of the shape (n, 2)")
+
+    return check.several(name, contours, None, "contours, each an array of the shape (n, 2)", contour)
+
+
+@_methods_of(_lamella.Layer)
+class Layer(_lamella.Layer):
+    def __init__(
+        self,
+        rings: Iterable[npt.ArrayLike],
+        z: float,
+        bottom: Optional[float] = None,
+        top: Optional[float] = None,
+        index: int = 0,
+        chains: Iterable[npt.ArrayLike] = (),
+    ) -> None:
+        height = check.number("z", z)
+        below = height if bottom is None else check.number("bottom", bottom)
+        above = height if top is None else check.number("top", top)
+        if not below <= height <= above:
+            raise UsageError(
+                f"z: {z} is not possible; a layer is cut between its bottom, {below}, and its top, {above}"
+            )
+        number = check.whole("index", index)
+        _make_layer(self, _contours("rings", rings), height, below, above, number, _contours("chains", chains))
+
+    def polygons(self) -> List[Tuple[int, List[int]]]:
+        """Pieces of material: pairs (outer, holes) of the number of the ring around it and a list of the numbers of
+        its holes. Open chains, and rings that bound no material, are left out."""
+        return self._polygons()
+
+    def to_shapely(self) -> Any:
+        """The material as a shapely.geometry.MultiPolygon in millimetres, holes where they belong. Open chains are
+        left out. Needs shapely."""
+        return multi_polygon(self)
+
+    def filled(self, rule: str = "nonzero") -> _lamella.Layer:
+        """The layer with bodies that overlap united: material is where contours wind around `rule` times: "nonzero",
+        "evenodd" or "positive". Contours that do not overlap keep their points."""
+        if check.text("rule", rule) not in ("nonzero", "evenodd", "positive"):
+            raise UsageError(f'rule: "{rule}" is no fill rule; there are nonzero, evenodd and positive')
+        return self._filled(rule)
+
+    def offset(self, distance: float) -> _lamella.Layer:
+        """The layer with its material grown by `distance` millimetres, or shrunk by a negative one."""
+        return self._offset(check.number("distance", distance))
+
+    def simplified(self, tolerance: float) -> _lamella.Layer:
+        """The layer with points left out, so that no contour moves by more than `tolerance` millimetres."""
+        return self._simplified(check.distance("tolerance", tolerance))
+
+
+def _one_layer(name: str, thing: Any) -> _lamella.Layer:
+    if not isinstance(thing, _lamella.Layer):
+        check.refuse_type(name, "layers", thing)
+    return thing
+
+
+@_methods_of(_lamella.Stack)
+class Stack(_lamella.Stack):
+    def __init__(self, layers: Iterable[_lamella.Layer], label: str = "part") -> None:
+        _make_stack(self, check.several("layers", layers, None, "layers", _one_layer), check.label("label", label))
+
+
+@_methods_of(_lamella.LayerStream)
+class LayerStream(_lamella.LayerStream):
+    def __init__(self) -> None:
+        raise TypeError("a lamella.LayerStream is made by lamella.iter_layers")
+
+    def close(self) -> None:
+        """Stops slicing. To be called more than once does no harm."""
+        self._close()

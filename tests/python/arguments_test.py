@@ -1,0 +1,280 @@
+"""Wrong arguments: the texts are of the package, in words of Python, and name the keyword."""
+
+import inspect
+import pickle
+import subprocess
+import sys
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from conftest import PACKAGE, box_arrays
+
+import lamella
+
+SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
+
+
+def stack():
+    return lamella.slice(box_arrays(), 5)
+
+
+def closed_stream():
+    layers = lamella.iter_layers(box_arrays(), 5)
+    layers.close()
+    return layers
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The working directory, with a mesh, layers, and a folder in it."""
+    monkeypatch.chdir(tmp_path)
+    lamella.write("box.stl", lamella.Mesh(*box_arrays()))
+    lamella.write("box.json", stack())
+    (tmp_path / "folder").mkdir()
+    return tmp_path
+
+
+class Broken:
+    """Has no number, no length, and nothing to iterate over."""
+
+
+# What somebody may give by mistake.
+MISTAKES = [
+    None, True, -1, 0, 2**70, 10**5000, -1.5, 1e300, np.nan, np.inf, 1j, "", "text", "folder", "missing.stl", "no\0name",
+    "\ud800", b"", b"\xff", b"no\0name", (), [1], [None], ["a", "b"], [SQUARE, [1]], [1, [2, 3]], {}, {"a": 1}, {1},
+    Broken(), Broken, ..., np.zeros(3), np.zeros((3, 3)), np.zeros((2, 2, 2)), np.zeros((0, 3)), np.array("x"),
+    np.array([(1, 2, 3)], dtype=object), np.array([1j, 2]), np.array([True, False]), np.full((4, 2), np.nan),
+    np.datetime64("2026-01-01"), memoryview(b"bytes"), range(3), (n for n in "ab"), closed_stream,
+]  # fmt: skip
+
+# Every function and every class that takes something, with arguments that are right.
+CALLS = {
+    "slice": (lamella.slice, {"part": box_arrays()}),
+    "iter_layers": (lamella.iter_layers, {"part": box_arrays()}),
+    "read": (lamella.read, {"path": "box.stl"}),
+    "write": (lamella.write, {"path": "out.zip", "what": stack(), "format": "png-zip"}),
+    "convert": (lamella.convert, {"source": "box.json", "target": "out.cli"}),
+    "inspect": (lamella.inspect, {"part": box_arrays()}),
+    "verify": (lamella.verify, {"layers": stack(), "mesh": box_arrays()}),
+    "compare": (lamella.compare, {"first": stack(), "second": stack()}),
+    "Mesh": (lamella.Mesh, dict(zip(("vertices", "faces"), box_arrays()))),
+    "Layer": (lamella.Layer, {"rings": [SQUARE], "z": 1}),
+    "Stack": (lamella.Stack, {"layers": list(stack())}),
+    "Layer.filled": (stack()[0].filled, {}),
+    "Layer.offset": (stack()[0].offset, {"distance": 1}),
+    "Layer.simplified": (stack()[0].simplified, {"tolerance": 1}),
+}
+
+
+def parameters():
+    for name, (function, _) in CALLS.items():
+        made = function.__init__ if inspect.isclass(function) else function
+        for parameter in inspect.signature(made).parameters:
+            if parameter != "self":
+                yield name, parameter
+
+
+def test_every_function_is_looked_at():
+    functions = {name for name in lamella.__all__ if inspect.isfunction(getattr(lamella, name))}
+    assert functions - set(CALLS) == {"engines", "layer_formats"}, "these take nothing"
+    methods = {
+        f"{cls.__name__}.{name}"
+        for cls in (lamella.Layer, lamella.Stack, lamella.Mesh, lamella.LayerStream)
+        for name, method in vars(cls).items()
+        if not name.startswith("_") and callable(method)
+    }
+    assert methods - set(CALLS) == {"Layer.polygons", "Layer.to_shapely", "LayerStream.close"}, "likewise"
+
+
+def in_words_of_python(text):
+    """No type, no name and no signature of C++, nor of the extension."""
+    return "\n" not in text and not any(
+        word in text for word in ("incompatible", "std::", "_lamella", "SharedLayer", "numpy.ndarray", "Invoked with")
+    )
+
+
+@pytest.mark.parametrize("name, parameter", parameters())
+@pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
+def test_mistakes_are_errors_of_the_documented_kinds(folder, name, parameter):
+    function, arguments = CALLS[name]
+    for mistake in MISTAKES:
+        given = mistake() if mistake is closed_stream else mistake
+        try:
+            function(**{**arguments, parameter: given})
+        except TypeError as error:
+            if not (parameter == "progress" and callable(given)):  # which raises what it likes
+                names = [parameter, "vertices", "faces"] if parameter in ("part", "mesh") else [parameter]
+                named = any(f"{name}: " in str(error) for name in names)
+                assert in_words_of_python(str(error)) and named, f"{mistake!r}: {error}"
+        except lamella.Error as error:
+            assert not isinstance(error, lamella.InternalError) and in_words_of_python(str(error)), f"{mistake!r}: {error}"
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_calls_that_do_not_fit_are_told_as_by_python(name):
+    function, arguments = CALLS[name]
+    for wrong in ([1] * 99, []), ([], {**arguments, "colour": 1}), ([], {"colour": 1}):
+        with pytest.raises(TypeError) as caught:
+            function(*wrong[0], **dict(wrong[1]))
+        assert in_words_of_python(str(caught.value)), caught.value
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: stack()[0].polygons(1),
+        lambda: stack()[0].to_shapely(1),
+        lambda: closed_stream().close(1),
+        lambda: lamella.LayerStream(),
+        lambda: stack()["a"],
+        lambda: stack()[1.5],
+        lambda: stack()[None],
+        lambda: stack()[0]["a"],
+        lambda: stack()[0][0:1],
+    ],
+)
+def test_methods_refuse_in_words_of_python(call):
+    with pytest.raises(TypeError) as caught:
+        call()
+    assert in_words_of_python(str(caught.value))
+
+
+TEXTS = [
+    (lambda: lamella.slice(box_arrays(), "thin"), TypeError, "layer_height: expected a number above 0, found 'thin'"),
+    (lambda: lamella.slice(box_arrays(), True), TypeError, "layer_height: expected a number above 0, found True"),
+    (lambda: lamella.slice(box_arrays(), np.nan), ValueError, "layer_height: nan is not possible; expected a number above 0"),
+    (lambda: lamella.slice(box_arrays(), z_range=5), TypeError, "z_range: expected two numbers (from, to), found 5"),
+    (lambda: lamella.slice(box_arrays(), z_range=(1, 2, 3)), ValueError,
+     "z_range: expected two numbers (from, to), found 3 values"),
+    (lambda: lamella.slice(box_arrays(), layers=(0, 1.5)), TypeError, "layers: expected a whole number, 0 or more, found 1.5"),
+    (lambda: lamella.slice(box_arrays(), heights=[(0, 1)]), ValueError,
+     "heights: expected ranges, each of three numbers (from, to, layer_height), found 2 values"),
+    (lambda: lamella.slice(box_arrays(), z=["1"]), ValueError, "z: expected a list of numbers, found (1,) of <U1"),
+    (lambda: lamella.slice(box_arrays(), at="side"), ValueError, 'at: "side" is none of "bottom", "middle" and "top"'),
+    (lambda: lamella.slice(box_arrays(), strict="no"), TypeError, "strict: expected True or False, found 'no'"),
+    (lambda: lamella.slice(box_arrays(), threads=5000), ValueError,
+     "threads: 5000 is not possible; expected a whole number from 0 to 4096"),
+    (lambda: lamella.slice(box_arrays(), progress=5), TypeError,
+     "progress: expected a function of (stage, done, total), found 5"),
+    (lambda: lamella.slice(box_arrays(), transform=np.full((4, 4), np.nan)), ValueError,
+     "transform: expected finite numbers, found nan or inf"),
+    (lambda: lamella.read(5), TypeError, "path: expected a path: str, bytes or os.PathLike, found 5"),
+    (lambda: lamella.read(""), ValueError, "path: expected the path of a file, found an empty one"),
+    (lambda: lamella.read("a\0b"), ValueError, "path: 'a\\x00b' is not possible; the path of a file holds no null character"),
+    (lambda: lamella.read("x", max_memory=-1), ValueError,
+     "max_memory: -1 is not possible; expected a whole number, 0 or more"),
+    (lambda: lamella.write("x.cli", 5), TypeError,
+     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers or of stacks, found 5"),
+    (lambda: lamella.write("x.cli", [stack(), stack()[0]]), TypeError,
+     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers or of stacks, found an object of type Layer"),
+    (lambda: lamella.write("x.cli", []), ValueError, "what: there are no layers to write"),
+    (lambda: lamella.write("x.cli", closed_stream()), ValueError,
+     "what: there are no layers to write: the stream is closed or at its end"),
+    (lambda: lamella.write("x.cli", stack(), gamma=2), ValueError,
+     "gamma goes with the formats png, png-zip, sl1, sl1s, not with cli"),
+    (lambda: lamella.write("x.svg", stack(), units_mm=2), ValueError, "units_mm goes with the formats cli, cli-ascii, not with svg"),
+    (lambda: lamella.write("x.zip", stack(), exposure_s=2, format="png-zip"), ValueError,
+     "exposure_s goes with the formats sl1, sl1s, not with png-zip"),
+    (lambda: lamella.write("x.stl", lamella.Mesh(*box_arrays()), gamma=2), ValueError,
+     "gamma goes with layers, and what is written is a mesh"),
+    (lambda: lamella.write("x.sl1", stack(), antialias=65), ValueError,
+     "antialias: 65 is not possible; expected a whole number from 1 to 64"),
+    (lambda: lamella.write("x.sl1", stack(), mirror="z"), ValueError, 'mirror: "z" is none of "none", "x", "y" and "xy"'),
+    (lambda: lamella.verify(stack(), unit_mm=2), ValueError, "unit_mm goes with a mesh, and none is given"),
+    (lambda: lamella.verify(5), TypeError, "layers: expected a path or a lamella.Stack, found 5"),
+    (lambda: lamella.compare(stack(), stack(), -1), ValueError,
+     "tolerance: -1 is not possible; expected a distance, which is not negative"),
+    (lambda: lamella.inspect(None), TypeError,
+     "part: a mesh is a path, a lamella.Mesh, a pair of arrays (vertices, faces), or something with .vertices and "
+     ".faces; this is None"),
+    (lambda: lamella.Layer([[(0, 0, 0)]], 1), ValueError,
+     "rings: expected contours, each an array of numbers of the shape (n, 2), found (1, 3) of int64"),
+    (lambda: lamella.Layer([], 1, bottom=2), ValueError,
+     "z: 1 is not possible; a layer is cut between its bottom, 2.0, and its top, 1.0"),
+    (lambda: lamella.Stack([1]), TypeError, "layers: expected layers, found 1"),
+    (lambda: stack()[0].offset("far"), TypeError, "distance: expected a finite number, found 'far'"),
+    (lambda: stack()[0]["a"], TypeError, "the number of a contour: expected a whole number, found str"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("call, kind, text", TEXTS, ids=[text.partition(" ")[0] for _, _, text in TEXTS])
+def test_texts_name_the_keyword_what_was_given_and_what_is_expected(folder, call, kind, text):
+    with pytest.raises(kind) as caught:
+        call()
+    assert str(caught.value) == text
+    assert isinstance(caught.value, lamella.Error) == (kind is ValueError), "wrong values are a UsageError"
+
+
+READERS = {
+    "read": lamella.read,
+    "slice": lamella.slice,
+    "iter_layers": lamella.iter_layers,
+    "inspect": lamella.inspect,
+    "verify": lamella.verify,
+    "verify with a mesh": lambda path: lamella.verify(stack(), path),
+    "compare": lambda path: lamella.compare(path, stack()),
+    "convert": lambda path: lamella.convert(path, "out.cli"),
+    "convert to itself": lambda path: lamella.convert(path, path),
+    "convert to what is there": lambda path: lamella.convert(path, "box.json"),
+}
+
+
+@pytest.mark.parametrize("name", READERS)
+@pytest.mark.parametrize("path", ["missing.stl", "missing.cli", "missing/part.stl", "box.json/part.cli", b"missing\xff.cli"])
+def test_files_that_are_not_there_are_errors_of_input(folder, name, path):
+    with pytest.raises(lamella.InputError) as caught:
+        READERS[name](path)
+    assert str(caught.value).startswith(f"{path}: " if isinstance(path, str) else "missing\udcff.cli: ")
+    assert not (folder / "out.cli").exists()
+
+
+@pytest.mark.parametrize("name", set(READERS) - {"convert to itself"})
+def test_folders_are_errors_of_input(folder, name):
+    with pytest.raises(lamella.InputError, match="folder"):
+        READERS[name]("folder")
+
+
+@pytest.mark.parametrize("target", ["missing/out.cli", "box.json/out.cli"])
+def test_places_that_cannot_be_written_to_are_errors_of_output(folder, target):
+    for write in (
+        lambda: lamella.write(target, stack()),
+        lambda: lamella.convert("box.json", target),
+        lambda: lamella.write(target.replace("cli", "stl"), lamella.Mesh(*box_arrays())),
+    ):
+        with pytest.raises(lamella.OutputError, match="out"):
+            write()
+
+
+def test_numbers_of_any_kind_are_numbers():
+    expected = lamella.slice(box_arrays(), 0.5, layers=(1, 3))
+    for half in (Fraction(1, 2), np.float32(0.5), np.array(0.5)):
+        assert lamella.slice(box_arrays(), half, layers=np.array([1, 3])) == expected
+    assert lamella.slice(box_arrays(), z=range(1, 4)).z.tolist() == [1, 2, 3]
+
+
+def test_labels_need_not_be_utf_8(folder):
+    named = lamella.Stack(list(stack()), label="caf\udce9")
+    assert named.label == pickle.loads(pickle.dumps(named)).label == "caf\udce9"
+    lamella.write("out.json", named)
+    assert lamella.read("out.json") == named
+
+
+def test_memory_that_runs_out_is_a_limit():
+    # Of a program of its own, which may take so much more than it has.
+    code = """
+import resource
+import numpy as np
+import lamella
+
+vertices, faces = np.zeros((6_000_000, 3)), np.arange(6_000_000).reshape(-1, 3)
+taken = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (taken + (64 << 20), resource.RLIM_INFINITY))
+try:
+    lamella.Mesh(vertices, faces)
+except lamella.LimitError as error:
+    print(error)
+"""
+    result = subprocess.run([sys.executable, "-B", "-c", code], env={"PYTHONPATH": PACKAGE}, capture_output=True,
+                            text=True, check=True)
+    assert result.stdout.startswith("memory ran out")
