@@ -1,3 +1,4 @@
+#include "lamella/core/error.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/shapes.hpp"
 
@@ -6,7 +7,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -24,6 +27,22 @@ TEST(Mesh, IsOneOfTwoKinds) {
     EXPECT_TRUE(Mesh().empty());
     EXPECT_EQ(bounding_box(soup), bounding_box(indexed));
     EXPECT_EQ(weld(soup).vertices, weld(indexed).vertices);
+}
+
+TEST(Mesh, RefusesTrianglesWhoseVerticesAreNotThere) {
+    for (const std::uint32_t wrong : {3U, 0xffffffffU}) {
+        IndexedMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}}, {{0, 1, 2}, {0, wrong, 1}}};
+        try {
+            const Mesh refused(std::move(mesh));
+            FAIL() << "a vertex that is not there was taken";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            EXPECT_EQ(error.what(), "triangle 1 names vertex " + std::to_string(wrong) +
+                                        ", but there are only 3 vertices (numbered from 0)");
+        }
+    }
+    EXPECT_THROW(Mesh(IndexedMesh{{}, {{0, 0, 0}}}), Error);
+    EXPECT_TRUE(Mesh(IndexedMesh{}).empty());
 }
 
 TEST(Mesh, KeepsItsVolumeWhenItIsMirrored) {

@@ -24,7 +24,9 @@ class Mesh {
     /// An empty soup.
     Mesh() = default;
     Mesh(TriangleSoup soup); // NOLINT(google-explicit-constructor): a soup is a mesh
-    Mesh(IndexedMesh mesh);  // NOLINT(google-explicit-constructor): so is this; move it in to save a copy
+    /// Throws Error{input} that names the first triangle with a vertex that is not there. Coordinates are not
+    /// looked at: readers give finite ones, and `check` says so of what comes from elsewhere.
+    Mesh(IndexedMesh mesh); // NOLINT(google-explicit-constructor): so is this; move it in to save a copy
 
     /// What it is; the other one is null.
     [[nodiscard]] const TriangleSoup* soup() const noexcept { return indexed_ ? nullptr : &soup_; }
