@@ -7,13 +7,34 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include <array>
 #include <csignal>
 #include <cstring>
 #include <new>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace lamella::app {
 namespace {
+
+/// A field that texts of the library name, as in `max_memory`, and what the user gave instead.
+struct FieldOption {
+    std::string_view field;
+    std::string_view option;
+};
+
+constexpr std::array field_options{
+    FieldOption{"`max_memory`", "--max-memory"},
+    FieldOption{"`max_triangles`", "--max-triangles"},
+};
+
+std::string with_options(std::string text) {
+    for (const auto& [field, option] : field_options)
+        for (auto at = text.find(field); at != std::string::npos; at = text.find(field, at))
+            text.replace(at, field.size(), option);
+    return text;
+}
 
 Failure failure(ErrorKind kind, std::string text) {
     switch (kind) {
@@ -41,7 +62,7 @@ Failure failure_of(const std::exception_ptr& error) {
     try {
         std::rethrow_exception(error);
     } catch (const Error& known) {
-        return failure(known.kind(), known.what());
+        return failure(known.kind(), with_options(known.what()));
     } catch (const std::bad_alloc&) {
         return failure(ErrorKind::limit,
                        "memory ran out; free some, or slice fewer layers at once (--layers)");

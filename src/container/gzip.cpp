@@ -89,9 +89,9 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
             throw Error(
                 ErrorKind::limit,
                 max_bytes != 0
-                    ? fmt::format("{}: unpacks to more than the {} bytes of --max-memory", packed.name, most)
+                    ? fmt::format("{}: unpacks to more than the {} bytes of `max_memory`", packed.name, most)
                     : fmt::format(
-                          "{}: unpacks to more than {} bytes, {} times its size; --max-memory allows more",
+                          "{}: unpacks to more than {} bytes, {} times its size; `max_memory` allows more",
                           packed.name, most, most / packed.bytes.size()));
         if (code == Z_STREAM_END) {
             const auto rest = packed.bytes.subspan(at);

@@ -101,7 +101,7 @@ void SpillFile::fail(int system_error) const {
         text += std::generic_category().message(system_error);
     throw Error(ErrorKind::output,
                 text + "; set the environment variable TMPDIR to a folder with more room, or raise "
-                       "--max-memory");
+                       "`max_memory`");
 }
 
 } // namespace lamella

@@ -343,7 +343,7 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
     if (entry.size > max_unpacked_ || before > max_unpacked_ - entry.size)
         throw Error(ErrorKind::limit,
                     fmt::format("{}: zip entry '{}' of {} bytes brings what is unpacked above {} bytes; "
-                                "--max-memory allows more",
+                                "`max_memory` allows more",
                                 source_.name, shown, entry.size, max_unpacked_));
 
     const std::span<const std::byte> packed = source_.bytes.subspan(entry.place, entry.packed_size);

@@ -40,7 +40,7 @@ class ReadLimits {
     void check_triangles(std::uint64_t count, std::string_view place = {}) const {
         if (count > max_triangles_ && max_triangles_ != 0)
             throw Error(ErrorKind::limit,
-                        fmt::format("{}: holds more than the {} triangles of --max-triangles{}", file_name_,
+                        fmt::format("{}: holds more than the {} triangles of `max_triangles`{}", file_name_,
                                     max_triangles_, up_to(place)));
     }
     void add_bytes(std::uint64_t count, std::string_view place = {}) {
@@ -81,10 +81,10 @@ class ReadLimits {
 
     [[noreturn]] void refuse_bytes(std::string_view place) const {
         throw Error(ErrorKind::limit,
-                    asked_ ? fmt::format("{}: takes more than the {} bytes of --max-memory{}", file_name_,
+                    asked_ ? fmt::format("{}: takes more than the {} bytes of `max_memory`{}", file_name_,
                                          max_memory_, up_to(place))
                            : fmt::format("{}: takes more than {} bytes, three quarters of the memory there "
-                                         "is{}; --max-memory allows more",
+                                         "is{}; `max_memory` allows more",
                                          file_name_, max_memory_, up_to(place)));
     }
     static std::string up_to(std::string_view place) {

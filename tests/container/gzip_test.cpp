@@ -85,7 +85,7 @@ TEST(Gzip, StopsAtTheLimit) {
     const std::string bomb = packed(std::string(8'000'000, '\0'));
     EXPECT_LT(bomb.size(), 80'000U);
     EXPECT_EQ(error_of(bomb, 1'000'000, ErrorKind::limit),
-              "part.gz: unpacks to more than the 1000000 bytes of --max-memory");
+              "part.gz: unpacks to more than the 1000000 bytes of `max_memory`");
     EXPECT_EQ(unpacked(bomb, 8'000'000).size(), 8'000'000U);
 }
 

@@ -254,7 +254,7 @@ TEST(ZipReader, UnpacksNoMoreThanItMayAndSaysWhichOptionAllowsMore) {
     EXPECT_EQ(error_of(bytes, 1'000'000), "");
     const std::string error = error_of(bytes, 999'999, ErrorKind::limit);
     EXPECT_TRUE(says(error, "zip entry 'b' of 500000 bytes"));
-    EXPECT_TRUE(says(error, "--max-memory"));
+    EXPECT_TRUE(says(error, "`max_memory`"));
     EXPECT_TRUE(says(error_of(bytes, 1, ErrorKind::limit), "zip entry 'a'"));
 }
 

@@ -149,8 +149,9 @@ def test_limits_are_their_own_kind(rook):
 def test_the_limit_of_memory_holds_for_layers(rook, tmp_path):
     path = tmp_path / "layers.npz"
     lamella.write(path, lamella.slice(rook, 1))
-    with pytest.raises(lamella.LimitError, match=r"layers\.npz.*--max-memory"):
+    with pytest.raises(lamella.LimitError, match=r"layers\.npz.*`max_memory`") as caught:
         lamella.read(path, max_memory=10_000)
+    assert "--" not in str(caught.value), "there are no options here, but keywords"
     assert len(lamella.read(path, max_memory=10_000_000)) > 10
 
 

@@ -188,7 +188,7 @@ TEST(Amf, ZippedFilesAreReadToo) {
                      "x, part 'a.amf', line 1: the XML is broken"));
     EXPECT_TRUE(says(error_of(zip_bytes({{.name = "a.amf", .content = std::string(5'000'000, ' ') + text}}),
                               ErrorKind::limit, {.max_memory = 1'000'000}),
-                     "--max-memory"));
+                     "`max_memory`"));
 }
 
 TEST(Amf, NamesTheLineOfWhatIsWrong) {

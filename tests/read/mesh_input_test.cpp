@@ -176,7 +176,7 @@ TEST(MeshInput, KeepsTheLimitOfTriangles) {
         write_file(folder.file("part.stl"), bytes);
         const MeshInput input(folder.file("part.stl"));
         EXPECT_EQ(stream(input, {.max_triangles = 50'000}).triangles.size(), 50'000U);
-        EXPECT_NE(error_text([&] { stream(input, {.max_triangles = 49'999}); }).find("--max-triangles"),
+        EXPECT_NE(error_text([&] { stream(input, {.max_triangles = 49'999}); }).find("`max_triangles`"),
                   std::string::npos);
     }
 }

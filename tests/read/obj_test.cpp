@@ -104,9 +104,9 @@ TEST(Obj, StopsAtTheLimits) {
     const std::string more = triangle + "f 1 2 3\nf 1 2 3\n";
     EXPECT_EQ(read(more, name, {.max_triangles = 3, .max_memory = 1000}).stored_triangles, 3U);
     EXPECT_EQ(error_of(more, name, {.max_triangles = 2}, ErrorKind::limit),
-              name + ": holds more than the 2 triangles of --max-triangles");
+              name + ": holds more than the 2 triangles of `max_triangles`");
     EXPECT_EQ(error_of(more, name, {.max_memory = 100}, ErrorKind::limit),
-              name + ": takes more than the 100 bytes of --max-memory");
+              name + ": takes more than the 100 bytes of `max_memory`");
 }
 
 /// Some megabytes: quadrilaterals, triangles, and both ways to count.

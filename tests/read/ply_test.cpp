@@ -100,7 +100,7 @@ TEST(Ply, ReadsStripsOfTriangles) {
             const std::string file = strips_head(big_endian ? big : little, type, 2) + bytes.text;
             expect_mesh(file, name, vertices, expected);
             EXPECT_EQ(error_of(file, name, {.max_triangles = 4}, ErrorKind::limit),
-                      name + ": holds more than the 4 triangles of --max-triangles");
+                      name + ": holds more than the 4 triangles of `max_triangles`");
             EXPECT_NE(error_of(file.substr(0, file.size() - 1), name).find("the file ends within row 2 of 2"),
                       std::string::npos);
         }
@@ -292,7 +292,7 @@ TEST(Ply, CountsTextOfAnyLayoutOnceOnly) {
     EXPECT_EQ(read(text, name, {.max_triangles = triangles, .max_memory = 2 * bytes}).stored_triangles,
               triangles);
     EXPECT_EQ(error_of(text, name, {.max_triangles = 999}, ErrorKind::limit),
-              name + ": holds more than the 999 triangles of --max-triangles");
+              name + ": holds more than the 999 triangles of `max_triangles`");
 }
 
 TEST(Ply, IsTheSameForAnyThreads) {
@@ -400,9 +400,9 @@ TEST(Ply, StopsAtTheLimits) {
     const std::string text = strip(1000, true, false);
     EXPECT_EQ(read(text, name, {.max_triangles = 1000, .max_memory = 100'000}).stored_triangles, 1000U);
     EXPECT_EQ(error_of(text, name, {.max_triangles = 999}, ErrorKind::limit),
-              name + ": holds more than the 999 triangles of --max-triangles");
+              name + ": holds more than the 999 triangles of `max_triangles`");
     EXPECT_EQ(error_of(text, name, {.max_memory = 30'000}, ErrorKind::limit),
-              name + ": takes more than the 30000 bytes of --max-memory");
+              name + ": takes more than the 30000 bytes of `max_memory`");
 }
 
 TEST(Ply, SurvivesHostility) {

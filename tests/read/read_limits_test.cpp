@@ -104,7 +104,7 @@ class LimitsOfReading : public ::testing::Test {
         EXPECT_EQ(layers_outcome(path, {}, 32 * megabyte), "memory ran out");
         const std::string text = layers_outcome(path, {.max_memory = 10 * megabyte}, 32 * megabyte);
         EXPECT_TRUE(text.starts_with(
-            path + ": takes more than the 10000000 bytes of --max-memory (counted up to " + place))
+            path + ": takes more than the 10000000 bytes of `max_memory` (counted up to " + place))
             << text;
     }
 
@@ -120,9 +120,9 @@ TEST_F(LimitsOfReading, AsciiStlIsRefusedAtTheFacetThatIsTooMany) {
     const std::string path = file("many.stl", text + "endsolid\n");
     EXPECT_EQ(outcome(path, {}, 30 * megabyte), "memory ran out");
     EXPECT_EQ(outcome(path, {.max_triangles = 100'000}, 30 * megabyte),
-              path + ": holds more than the 100000 triangles of --max-triangles (counted up to line 700002)");
+              path + ": holds more than the 100000 triangles of `max_triangles` (counted up to line 700002)");
     EXPECT_NE(outcome(path, {.max_memory = 5 * megabyte}, 30 * megabyte)
-                  .find(path + ": takes more than the 5000000 bytes of --max-memory (counted up to byte "),
+                  .find(path + ": takes more than the 5000000 bytes of `max_memory` (counted up to byte "),
               std::string::npos);
     EXPECT_EQ(outcome(path, {.max_triangles = 1'000'000}, 400 * megabyte), "read");
 }
@@ -135,7 +135,7 @@ TEST_F(LimitsOfReading, ObjectsOf3mfAreCountedBeforeTheyAreMade) {
         file("many.3mf", package_test::package(package_test::model(resources, "<item objectid=\"1\"/>")));
     EXPECT_EQ(outcome(path, {}, 40 * megabyte), "memory ran out");
     EXPECT_NE(outcome(path, {.max_memory = 12 * megabyte}, 40 * megabyte)
-                  .find(path + ": takes more than the 12000000 bytes of --max-memory (counted up to part "
+                  .find(path + ": takes more than the 12000000 bytes of `max_memory` (counted up to part "
                                "'3D/3dmodel.model', line 3)"),
               std::string::npos);
 }
@@ -147,7 +147,7 @@ TEST_F(LimitsOfReading, InstancesOfAmfAreCountedBeforeTheyAreMade) {
     const std::string path = file("many.amf", text + "</constellation></amf>");
     EXPECT_EQ(outcome(path, {}, 40 * megabyte), "memory ran out");
     EXPECT_NE(outcome(path, {.max_memory = 12 * megabyte}, 40 * megabyte)
-                  .find(path + ": takes more than the 12000000 bytes of --max-memory (counted up to line "),
+                  .find(path + ": takes more than the 12000000 bytes of `max_memory` (counted up to line "),
               std::string::npos);
 }
 
@@ -179,11 +179,11 @@ TEST_F(LimitsOfReading, Of3mfCountEachTriangleOnceHoweverItIsWritten) {
     odd.insert(odd.find("<triangle v1"), "<!-- odd -->\n");
     EXPECT_EQ(answer(plain, 5000), "5000");
     EXPECT_EQ(answer(plain, 4999),
-              ": holds more than the 4999 triangles of --max-triangles (counted up to part "
+              ": holds more than the 4999 triangles of `max_triangles` (counted up to part "
               "'3D/3dmodel.model', line 3)");
     EXPECT_EQ(answer(plain + small + odd, 12010).substr(0, 5), "12010");
     const std::string refused = answer(plain + small + odd, 12009);
-    EXPECT_NE(refused.find("--max-triangles (counted up to part '3D/3dmodel.model', line "),
+    EXPECT_NE(refused.find("`max_triangles` (counted up to part '3D/3dmodel.model', line "),
               std::string::npos)
         << refused;
 }
@@ -289,13 +289,13 @@ TEST_F(LimitsOfReading, ArraysAreCountedBeforeThereAreLayers) {
     expect_refused(planes, "array 'z')");
     const std::string points = arrays("points.npz", 1, 1, 600'000);
     EXPECT_EQ(layers_outcome(points, {.max_memory = 10 * megabyte}, 32 * megabyte),
-              points + ": takes more than the 10000000 bytes of --max-memory (counted up to contour 0)");
+              points + ": takes more than the 10000000 bytes of `max_memory` (counted up to contour 0)");
     const std::string bomb = archive("bomb.npz", {zeros("points", "<f8", 100'000'000, "6250000, 2")});
     EXPECT_EQ(layers_outcome(bomb, {}, 32 * megabyte), "memory ran out");
     EXPECT_EQ(layers_outcome(bomb, {.max_memory = 10 * megabyte}, 32 * megabyte),
               bomb +
                   ": zip entry 'points.npy' of 100000128 bytes brings what is unpacked above 10000000 bytes; "
-                  "--max-memory allows more");
+                  "`max_memory` allows more");
 }
 
 std::string slices_model(const std::string& resources, const std::string& build) {

@@ -120,7 +120,7 @@ TEST(Stl, StopsAtMoreTrianglesThanAllowed) {
     for (const std::string& bytes : {binary(many), solid(many)}) {
         EXPECT_EQ(read(bytes, {.max_triangles = many.size()}).stored_triangles, many.size());
         EXPECT_NE(
-            error_of(bytes, {.max_triangles = many.size() - 1}, ErrorKind::limit).find("--max-triangles"),
+            error_of(bytes, {.max_triangles = many.size() - 1}, ErrorKind::limit).find("`max_triangles`"),
             std::string::npos);
     }
 }

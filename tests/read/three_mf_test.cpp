@@ -378,8 +378,8 @@ TEST(ThreeMf, ABillionLaughsAreCountedAndNotMade) {
         says(building(61), "puts 1152921504606846976 meshes on the plate, at most 1048576 are taken"));
     EXPECT_TRUE(says(building(22), "puts 2097152 meshes"));
     EXPECT_EQ(building(9, {.max_triangles = 256 * 12}), "");
-    EXPECT_TRUE(says(building(9, {.max_triangles = 256 * 12 - 1}), "--max-triangles"));
-    EXPECT_TRUE(says(building(9, {.max_memory = 20'000}), "--max-memory"));
+    EXPECT_TRUE(says(building(9, {.max_triangles = 256 * 12 - 1}), "`max_triangles`"));
+    EXPECT_TRUE(says(building(9, {.max_memory = 20'000}), "`max_memory`"));
 }
 
 TEST(ThreeMf, NestingHasALimit) {
@@ -416,13 +416,13 @@ TEST(ThreeMf, StrictReadersAreToldWhatBreaksTheRules) {
 TEST(ThreeMf, MemoryIsLimitedAndTheErrorNamesTheOption) {
     const std::string bytes = package(model(object(1, box_mesh()) + std::string(100'000, ' '), one_item));
     EXPECT_EQ(error_of(bytes, ErrorKind::limit, {.max_memory = 200'000}), "");
-    EXPECT_TRUE(says(error_of(bytes, ErrorKind::limit, {.max_memory = 100'000}), "--max-memory"));
+    EXPECT_TRUE(says(error_of(bytes, ErrorKind::limit, {.max_memory = 100'000}), "`max_memory`"));
 }
 
 TEST(ThreeMf, PackedBombsStopAtTheLimit) {
     const std::string bomb = package(model(std::string(8'000'000, ' '), one_item));
     EXPECT_LT(bomb.size(), 500'000U);
-    EXPECT_TRUE(says(error_of(bomb, ErrorKind::limit, {.max_memory = 1'000'000}), "--max-memory"));
+    EXPECT_TRUE(says(error_of(bomb, ErrorKind::limit, {.max_memory = 1'000'000}), "`max_memory`"));
 }
 
 TEST(ThreeMf, EntitiesAreNotExpanded) {

@@ -19,7 +19,8 @@ enum class ErrorKind {
 };
 
 /// Every failure that Lamella reports. what() is one line for a person: the file, the place in it (byte or
-/// line), what was found and what was expected.
+/// line), what was found and what was expected. Where it speaks of a field of the options that the caller
+/// gave, the field's name stands between backquotes, as in `max_memory`: a program puts its own name there.
 class Error : public std::runtime_error {
   public:
     Error(ErrorKind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}
