@@ -25,8 +25,16 @@ struct FieldOption {
 };
 
 constexpr std::array field_options{
+    FieldOption{"`adaptive`", "--adaptive"},
+    FieldOption{"`drop_duplicates`", "--drop-duplicates"},
+    FieldOption{"`inspect`", "--inspect"},
     FieldOption{"`max_memory`", "--max-memory"},
     FieldOption{"`max_triangles`", "--max-triangles"},
+    FieldOption{"`orient`", "--orient"},
+    FieldOption{"`placement`", "--translate"},
+    FieldOption{"`strict`", "--strict"},
+    FieldOption{"`threads`", "--threads"},
+    FieldOption{"`weld_tolerance_mm`", "--weld-tolerance"},
 };
 
 std::string with_options(std::string text) {

@@ -32,17 +32,17 @@ std::string wish_for_whole_mesh(const FileJob& job, const Engine& engine) {
     if (engine.welds)
         return fmt::format("the engine {}", engine.name);
     if (job.strict)
-        return "--strict";
+        return "`strict`";
     if (job.inspect)
-        return "--inspect";
+        return "`inspect`";
     if (job.repair.weld_tolerance_mm)
-        return "--weld-tolerance";
+        return "`weld_tolerance_mm`";
     if (job.repair.drop_duplicates)
-        return "--drop-duplicates";
+        return "`drop_duplicates`";
     if (job.repair.orient)
-        return "--orient";
+        return "`orient`";
     if (job.adaptive)
-        return "--adaptive";
+        return "`adaptive`";
     return {};
 }
 
@@ -71,7 +71,7 @@ void check_size(const std::string& path, const Mesh& mesh, const JobMemory& memo
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: to slice its {} triangles takes up to {} MB of memory, above the {} MB of "
-                        "--max-memory; only STL files that are not packed are sliced in pieces: write "
+                        "`max_memory`; only STL files that are not packed are sliced in pieces: write "
                         "the mesh as one, or allow more",
                         path, mesh.size(), bytes / 1'000'000 + 1, memory.limit / 1'000'000));
 }
@@ -123,7 +123,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: to be sliced whole takes up to {} MB of memory, above the {} MB of "
-                        "--max-memory; it would be sliced in pieces, but for {}",
+                        "`max_memory`; it would be sliced in pieces, but for {}",
                         job.inputs.front().path, bytes / 1'000'000 + 1, memory_.limit / 1'000'000,
                         !needs_all.empty()
                             ? fmt::format("{}, which needs the whole mesh", needs_all)
@@ -338,7 +338,7 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
-                        "--threads {} that takes {} MB of memory, above the {:.3g} MB of --max-memory; "
+                        "`threads` {} that takes {} MB of memory, above the {:.3g} MB of `max_memory`; "
                         "allow more, or use fewer threads",
                         plate_.files.front().path, plan.layers[mine.begin + where].z, survey.points(where),
                         threads, (overhead + largest) / 1'000'000 + 1,

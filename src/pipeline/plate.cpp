@@ -39,7 +39,7 @@ void check_build_volume(const Plate& plate, const Point3& size) {
         throw Error(ErrorKind::usage,
                     fmt::format("the part \"{}\" reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, "
                                 "{:.6g}) mm, out of the build volume from (0, 0, 0) to ({:.6g}, {:.6g}, "
-                                "{:.6g}); move it with --translate",
+                                "{:.6g}); move it with `placement`",
                                 part.label, box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z,
                                 size.x, size.y, size.z));
     }

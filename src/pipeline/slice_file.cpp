@@ -96,7 +96,7 @@ void check_count(const FileJob& job, double height) {
                 "{:.3g} GB of memory, above the {:.3g} GB {}; choose a larger one, or fewer layers",
                 job.layers.layer_height, count, height, static_cast<double>(bytes) / giga,
                 static_cast<double>(memory.limit) / giga,
-                memory.asked ? "of --max-memory" : "that may be taken here"));
+                memory.asked ? "of `max_memory`" : "that may be taken here"));
 }
 
 Plan uniform_plan(const FileJob& job, const Box3& box) {
