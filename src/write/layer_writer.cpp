@@ -39,7 +39,7 @@ std::unique_ptr<LayerWriter> open_page(const std::string& path, const LayerFileI
     return open_layer_page(path, info, options.page);
 }
 
-constexpr Rounding exact{};
+constexpr Rounding unrounded{};
 
 constexpr std::array formats{
     LayerFormat{.name = "cli",
@@ -99,12 +99,12 @@ constexpr std::array formats{
                 .summary = "all that layers have as JSON; exact",
                 .open = open_layers_json,
                 .pieces = true,
-                .rounding = exact},
+                .rounding = unrounded},
     LayerFormat{.name = "npz",
                 .extension = ".npz",
                 .summary = "NumPy arrays; exact",
                 .open = open_npz,
-                .rounding = exact},
+                .rounding = unrounded},
     LayerFormat{.name = "html",
                 .extension = ".html",
                 .summary = "a page to look at the layers with any browser; see docs/viewer.md",
