@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/nameless_file.hpp"
+#include "core/byte_amount.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -23,12 +24,6 @@ std::string spill_folder() {
     if (wished != nullptr && *wished != '\0')
         return wished;
     return access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
-}
-
-/// "3.2 GB"; what is smaller than a gigabyte in MB.
-std::string amount(std::uint64_t bytes) {
-    const double mb = static_cast<double>(bytes) / 1e6;
-    return mb < 1000 ? fmt::format("{:.1f} MB", mb) : fmt::format("{:.1f} GB", mb / 1000);
 }
 
 } // namespace
@@ -87,12 +82,12 @@ void SpillFile::forget(std::uint64_t place, std::uint64_t bytes) noexcept {
 }
 
 void SpillFile::fail(int system_error) const {
-    const std::string what = bytes_ != 0 ? amount(bytes_) + " of temporary data" : "temporary data";
+    const std::string what = bytes_ != 0 ? byte_amount(bytes_) + " of temporary data" : "temporary data";
     std::string text = fmt::format("{}: cannot hold {}: ", folder_, what);
     struct statvfs status {};
     if (system_error == ENOSPC && statvfs(folder_.c_str(), &status) == 0)
         text += fmt::format("the disk is full ({} free)",
-                            amount(std::uint64_t{status.f_bavail} * status.f_frsize));
+                            byte_amount(std::uint64_t{status.f_bavail} * status.f_frsize));
     else if (system_error == EDQUOT)
         text += "the disk quota is used up";
     else if (system_error == EFBIG)
