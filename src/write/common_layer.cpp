@@ -121,13 +121,24 @@ std::string position_text(double z, double units) {
     return decimal_text(z / units, 6, 1);
 }
 
-class AsciiWriter final : public SequentialWriter {
+class CommonLayerWriter : public SequentialWriter {
+  protected:
+    CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view head)
+        : SequentialWriter(path, info, head, holds) {
+        // Of several pieces the first has the head.
+        if (info.piece != nullptr && info.piece->before != 0)
+            return;
+        for (const PartInfo& part : info.parts)
+            note_label(part.label, label_text(part.label));
+    }
+};
+
+class AsciiWriter final : public CommonLayerWriter {
   public:
     AsciiWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : SequentialWriter(path, info,
-                           header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
-                               position_text(info.bottom, options.units_mm) + '\n',
-                           holds),
+        : CommonLayerWriter(path, info,
+                            header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
+                                position_text(info.bottom, options.units_mm) + '\n'),
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
@@ -217,13 +228,12 @@ char* put_hatches_head(char* out, int part, std::size_t hatches, std::uint64_t l
     return put_value(out, static_cast<std::int32_t>(hatches));
 }
 
-class LongWriter final : public SequentialWriter {
+class LongWriter final : public CommonLayerWriter {
   public:
     LongWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : SequentialWriter(path, info,
-                           header("BINARY", info, options.units_mm) +
-                               layer_start(height_of(info.bottom, options.units_mm)),
-                           holds),
+        : CommonLayerWriter(path, info,
+                            header("BINARY", info, options.units_mm) +
+                                layer_start(height_of(info.bottom, options.units_mm))),
           units_(options.units_mm), floats_(1 / options.units_mm, &rounding_loss()) {}
 
   private:
@@ -302,10 +312,10 @@ double round_units(double needed) {
     return needed;
 }
 
-class ShortWriter final : public SequentialWriter {
+class ShortWriter final : public CommonLayerWriter {
   public:
     ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : SequentialWriter(path, info, checked_head(info, options.units_mm), holds), units_(options.units_mm),
+        : CommonLayerWriter(path, info, checked_head(info, options.units_mm)), units_(options.units_mm),
           grid_(options.units_mm, &rounding_loss()),
           last_height_(whole_units(info.bottom, options.units_mm)) {}
 

@@ -23,6 +23,15 @@ void LeftOut::note(const PlaneExtras& plane) {
     hatches_.hatches += plane.hatches;
 }
 
+void LeftOut::note_label(std::string_view label, std::string_view written) {
+    if (label == written)
+        return;
+    if (changed_labels_++ == 0) {
+        first_label_ = label;
+        first_written_ = written;
+    }
+}
+
 std::vector<std::string> LeftOut::warnings() const {
     std::vector<std::string> lines = rounding_.warnings();
     const auto say = [&](std::uint64_t count, const char* one, const char* many, double z) {
@@ -35,6 +44,12 @@ std::vector<std::string> LeftOut::warnings() const {
         say(chains_.open_chains, "open contour was", "open contours were", chains_.z);
     if (!holds_.hatches)
         say(hatches_.hatches, "hatch line was", "hatch lines were", hatches_.z);
+    if (changed_labels_ != 0)
+        lines.push_back(
+            fmt::format("{} changed, the first from \"{}\" to \"{}\": the format has no place for "
+                        "some of the characters",
+                        changed_labels_ == 1 ? "1 label was" : fmt::format("{} labels were", changed_labels_),
+                        first_label_, first_written_));
     return lines;
 }
 

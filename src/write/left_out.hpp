@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -36,6 +37,8 @@ class LeftOut {
     void note(const PlaneExtras& plane);
     /// For what rounds.
     [[nodiscard]] RoundingLoss& rounding() noexcept { return rounding_; }
+    /// A label and what became of it in the file.
+    void note_label(std::string_view label, std::string_view written);
     /// One line for each kind.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
@@ -44,6 +47,9 @@ class LeftOut {
     PlaneExtras chains_; ///< all of them, and the lowest plane that has some
     PlaneExtras hatches_;
     RoundingLoss rounding_;
+    std::uint64_t changed_labels_ = 0;
+    std::string first_label_; ///< of those, and
+    std::string first_written_;
 };
 
 } // namespace lamella

@@ -77,6 +77,10 @@ class SequentialWriter : public LayerWriter {
 
     /// For the members that round.
     [[nodiscard]] RoundingLoss& rounding_loss() noexcept { return left_out_.rounding(); }
+    /// To be called where a label cannot be written as it is.
+    void note_label(std::string_view label, std::string_view written) {
+        left_out_.note_label(label, written);
+    }
 
     /// What stands before the contours of a layer. Called in order.
     [[nodiscard]] virtual std::string layer_head(const Place& place) = 0;

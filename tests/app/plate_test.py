@@ -67,6 +67,14 @@ class Plate(ProgramTest):
         labels = re.findall(rb'\$\$LABEL/(\d),"(.*?)"', self.path("a.cli").read_bytes())
         self.assertEqual(labels, [(b"1", b"crate"), (b"2", b"ball"), (b"3", b"ball 2")])
 
+    def test_a_label_that_the_format_has_no_place_for_is_told(self):
+        words = ["slice", "box.stl", "--label", "crate, small", "ball.stl", "--label", "b\u00e4ll"]
+        result = self.succeed(*words, "-o", "a.cli")
+        self.assertIn('a.cli: 2 labels were changed, the first from "crate, small" to "crate_ small"', result.err)
+        self.assertEqual(self.succeed(*words, "-o", "a.svg", "--strict").err, "")
+        self.path("a.cli").unlink()
+        self.fail_with(4, 'a.cli: 2 labels were changed, the first from "crate, small"', *words, "-o", "a.cli", "--strict")
+
     def test_a_part_outside_of_the_build_volume_is_named(self):
         words = ["-o", "a.cli", "--build-volume", "100,100,50"]
         self.succeed("slice", "box.stl", "--translate", "50,50,10", *words)

@@ -8,6 +8,8 @@
 
 #include <cstring>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -130,6 +132,27 @@ TEST(CommonLayer, MakesTheLabelHarmless) {
     info.parts.front().label = "a \"b\"\n$$BINARY, \xC3\xA4//";
     for (const char* format : {"cli", "cli-ascii"})
         EXPECT_TRUE(contains(written(format, layers, info), "$$LABEL/1,\"a _b____BINARY_ ____\"\n"));
+}
+
+TEST(CommonLayer, CountsTheLabelsThatItChanged) {
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    for (const char* format : {"cli", "cli-ascii"}) {
+        const auto warnings = [&](std::vector<PartInfo> parts) {
+            info.parts = std::move(parts);
+            const TemporaryFolder folder;
+            return open_layer_writer(folder.file("out"), layer_format(format, ""), info)->warnings();
+        };
+        EXPECT_TRUE(warnings({{"plain", info.box}}).empty());
+        EXPECT_EQ(
+            warnings({{"a,b", info.box}}),
+            std::vector<std::string>{"1 label was changed, the first from \"a,b\" to \"a_b\": the format has "
+                                     "no place for some of the characters"});
+        const auto two = warnings({{"x", info.box}, {"\xC3\xA4", info.box}, {"$", info.box}});
+        ASSERT_EQ(two.size(), 1U);
+        EXPECT_TRUE(two.front().starts_with("2 labels were changed, the first from \"\xC3\xA4\" to \"__\""))
+            << two.front();
+    }
 }
 
 TEST(CommonLayer, DropsContoursThatItsUnitsCannotTellFromAPoint) {
