@@ -11,6 +11,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella::app {
@@ -18,7 +19,19 @@ namespace lamella::app {
 struct Command;
 
 /// What the text of an option's value stands for; configuration files and statistics take the same.
-enum class ValueKind { flag, count, number, numbers, text, choice, file };
+enum class ValueKind {
+    flag,
+    count,
+    number,
+    numbers,
+    text,
+    choice,
+    input, ///< a file to read; "-" is standard input
+    output ///< a file to write; "-" is standard output
+};
+[[nodiscard]] constexpr bool is_file(ValueKind kind) noexcept {
+    return kind == ValueKind::input || kind == ValueKind::output;
+}
 
 struct Option {
     std::string name; ///< without hyphens
@@ -33,8 +46,20 @@ struct Option {
     std::function<void(const std::string& text)> set = {};
     /// Whether it makes sense in a configuration file.
     bool configurable = true;
-    /// What the command line or the configuration file gave, once parsed.
+    /// The name of an option without which this one says nothing; "" for none.
+    std::string goes_with = {};
+    /// Given after a file, it holds for that one; before the first file, for all (Operand::own_options).
+    bool of_each_file = false;
+    /// What the command line or the configuration file gave, once parsed: the last of several values.
     std::optional<std::string> given = {};
+    /// The same, of what was given for all files.
+    std::optional<std::string> given_for_all = {};
+};
+
+/// An option with the text of its value.
+struct Setting {
+    const Option* option;
+    std::string text;
 };
 
 struct OptionGroup {
@@ -42,14 +67,23 @@ struct OptionGroup {
     std::vector<Option> options;
 };
 
+/// What an operand was given.
+struct GivenOperand {
+    std::string text;
+    std::vector<Setting> settings = {}; ///< for it alone
+};
+
 /// An argument without a name, such as the file to slice.
 struct Operand {
     std::string placeholder; ///< such as "FILE"
     std::string help;
-    std::vector<std::string> choices = {}; ///< empty: the name of a file
+    std::vector<std::string> choices = {}; ///< empty: the name of a file; "-" is a standard stream
+    bool written = false;                  ///< of a file: it is written, not read
     bool required = true;
-    bool repeated = false; ///< may be given any number of times; the last one only
+    bool repeated = false;    ///< may be given any number of times; the last one only
+    bool own_options = false; ///< options behind it may hold for it alone (Option::of_each_file)
     std::function<void(const std::string& text)> set;
+    std::vector<GivenOperand> given = {}; ///< once parsed
 };
 
 struct Example {
@@ -74,6 +108,18 @@ struct Command {
     /// Returns the exit code.
     std::function<int(const Context&)> run;
 };
+
+/// The option of that name, or nullptr.
+[[nodiscard]] Option* find_option(Command& command, std::string_view name);
+[[nodiscard]] const Option* find_option(const Command& command, std::string_view name);
+
+/// A file that was given, and by what, such as "--stats".
+struct NamedFile {
+    std::string name;
+    std::string path;
+};
+/// Files to read or to write (ValueKind::input or output).
+[[nodiscard]] std::vector<NamedFile> files_of(const Command& command, ValueKind kind);
 
 /// All commands, in the order in which help lists them.
 [[nodiscard]] std::vector<Command> all_commands();

@@ -78,8 +78,6 @@ Json plane_json(const ComparedPlane& plane) {
 }
 
 int run_compare(const CompareArguments& arguments, const Context& context) {
-    if (arguments.inputs[0] == "-" && arguments.inputs[1] == "-")
-        throw Error(ErrorKind::usage, "standard input holds one file only");
     const Execution execution = arguments.run.execution(context);
     const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
     const LayerFile second = read_layers(arguments.inputs[1], arguments.limits.of_layers(), execution);

@@ -42,7 +42,7 @@ OptionGroup output_options(ConvertArguments& target) {
 }
 
 int run_convert(const ConvertArguments& arguments, const Context& context) {
-    check_distinct(arguments.input, arguments.output);
+    check_outputs(context.command);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
     LayerWriteOptions options = arguments.writing.write_options(format);
     options.strict = arguments.strict;
@@ -105,6 +105,7 @@ Command convert_command() {
                           }},
                      {.placeholder = "OUT",
                       .help = "the slice file to write; its extension says the format; - is standard output",
+                      .written = true,
                       .set =
                           [arguments](const std::string& text) {
                               arguments->output = text;

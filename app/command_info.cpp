@@ -64,8 +64,12 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     if (!arguments.report.empty())
         write_mesh_page(arguments.report, mesh, found, mesh_notes(file, found), page_options(file.path),
                         execution);
-    context.messages.result(arguments.json ? json_text(mesh_json(file, found, plate))
-                                           : mesh_text(file, found, plate));
+    const std::string text =
+        arguments.json ? json_text(mesh_json(file, found, plate)) : mesh_text(file, found, plate);
+    if (arguments.picture == "-" || arguments.report == "-")
+        context.messages.note(text);
+    else
+        context.messages.result(text);
     if (arguments.strict && !found.counts.sound())
         throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects", file.path));
     return 0;
@@ -156,8 +160,7 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
 }
 
 int run_info(const InfoArguments& arguments, const Context& context) {
-    check_distinct(arguments.input, arguments.picture);
-    check_distinct(arguments.input, arguments.report);
+    check_outputs(context.command);
     const Execution execution = arguments.run.execution(context);
     MeshReadOptions options = arguments.limits.of_meshes();
     options.strict = arguments.strict;
@@ -186,20 +189,21 @@ Command info_command() {
                           [arguments](const std::string& text) {
                               arguments->input = text;
                           }}},
-        .groups = {{"What is told",
-                    {flag("json", "print JSON", arguments->json),
-                     flag("self-intersections",
-                          "look for triangles that cross, overlap or touch one another, too (takes longer)",
-                          arguments->self_intersections),
-                     file("picture", "draw the mesh with its defects marked, as SVG", arguments->picture),
-                     file("report", "write a page to look at the mesh, its shells and its defects (HTML)",
-                          arguments->report),
-                     unit_option(arguments->placement.unit),
-                     flag("strict", "exit with code 4 where there is any defect", arguments->strict)}},
-                   run_options(arguments->run,
-                               {include_option(arguments->limits), max_triangles_option(arguments->limits),
-                                max_memory_option(arguments->limits, "what is read takes")}),
-                   common_options(true)},
+        .groups =
+            {{"What is told",
+              {flag("json", "print JSON", arguments->json),
+               flag("self-intersections",
+                    "look for triangles that cross, overlap or touch one another, too (takes longer)",
+                    arguments->self_intersections),
+               output_file("picture", "draw the mesh with its defects marked, as SVG", arguments->picture),
+               output_file("report", "write a page to look at the mesh, its shells and its defects (HTML)",
+                           arguments->report),
+               unit_option(arguments->placement.unit),
+               flag("strict", "exit with code 4 where there is any defect", arguments->strict)}},
+             run_options(arguments->run,
+                         {include_option(arguments->limits), max_triangles_option(arguments->limits),
+                          max_memory_option(arguments->limits, "what is read takes")}),
+             common_options(true)},
         .examples = {{"lamella info part.stl", "is it closed, how large is it?"},
                      {"lamella info scan.stl --self-intersections --picture scan.svg",
                       "everything that may be wrong, and a drawing of where"},

@@ -126,28 +126,62 @@ void check_choice(const std::vector<std::string>& choices, const std::string& te
                        meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
 }
 
-/// Takes the operands one after the other.
-class Operands {
+void check_path(const std::string& path) {
+    if (path.empty())
+        refuse("the name of a file is empty");
+}
+
+/// Gives a command its options and operands, one after the other.
+class Assignment {
   public:
-    explicit Operands(const Command& command) : command_(command) {}
+    explicit Assignment(Command& command) : command_(command) {}
+
+    /// `origin` says where the text came from, in case it is wrong.
+    void set(Option& option, const std::string& origin, const std::string& text) {
+        try {
+            if (option.kind == ValueKind::flag && text != "true" && text != "false")
+                refuse(fmt::format("\"{}\" is neither true nor false", text));
+            check_choice(option.choices, text);
+            if (is_file(option.kind))
+                check_path(text);
+            if (option.set)
+                option.set(text);
+        } catch (const Error& error) {
+            throw Error(error.kind(), fmt::format("{}: {}", origin, error.what()));
+        }
+        option.given = text;
+        if (!option.of_each_file)
+            return;
+        if (file_ != nullptr)
+            file_->settings.push_back({&option, text});
+        else
+            option.given_for_all = text;
+    }
 
     void take(const std::string& text) {
-        const std::vector<Operand>& operands = command_.operands;
+        std::vector<Operand>& operands = command_.operands;
         if (taken_ >= operands.size() && (operands.empty() || !operands.back().repeated))
             refuse(fmt::format("lamella {} takes {}, so what is \"{}\"? See lamella {} --help", command_.name,
                                operands.empty()       ? "no arguments"
                                : operands.size() == 1 ? "one argument"
                                                       : fmt::format("{} arguments", operands.size()),
                                text, command_.name));
-        const Operand& operand = operands[std::min(taken_, operands.size() - 1)];
+        Operand& operand = operands[std::min(taken_, operands.size() - 1)];
         ++taken_;
         try {
             check_choice(operand.choices, text);
+            if (operand.choices.empty())
+                check_path(text);
             operand.set(text);
         } catch (const Error& error) {
             throw Error(error.kind(), fmt::format("{}: {}", operand.placeholder, error.what()));
         }
+        operand.given.push_back({text});
+        if (operand.own_options)
+            file_ = &operand.given.back();
     }
+
+    [[nodiscard]] bool took_any() const { return taken_ > 0; }
 
     void end() const {
         if (taken_ >= command_.operands.size() || !command_.operands[taken_].required)
@@ -161,9 +195,51 @@ class Operands {
     }
 
   private:
-    const Command& command_;
+    Command& command_;
     std::size_t taken_ = 0;
+    GivenOperand* file_ = nullptr; ///< the last one with options of its own
 };
+
+template <class AnyOption, class AnyCommand>
+AnyOption* option_named(AnyCommand& command, std::string_view name) {
+    for (auto& group : command.groups)
+        for (AnyOption& option : group.options)
+            if (option.name == name)
+                return &option;
+    return nullptr;
+}
+
+bool is_on(const std::optional<std::string>& given) {
+    return given && *given != "false";
+}
+
+/// Options that say nothing without another one.
+void check_company(const Command& command) {
+    const auto says = [](const GivenOperand& file, const Option& option) {
+        return std::ranges::find(file.settings, &option, &Setting::option) != file.settings.end();
+    };
+    const auto check = [&](const Option& option) {
+        if (option.goes_with.empty() || !is_on(option.given))
+            return;
+        const Option& other = *find_option(command, option.goes_with);
+        if (!is_on(other.given))
+            refuse(fmt::format("--{} goes with --{}", option.name, other.name));
+        for (const Operand& operand : command.operands)
+            for (const GivenOperand& file : operand.given)
+                if (says(file, option) && !says(file, other) && !other.given_for_all)
+                    refuse(fmt::format("{}: --{} goes with --{}", file.text, option.name, other.name));
+    };
+    for (const OptionGroup& group : command.groups)
+        std::ranges::for_each(group.options, check);
+}
+
+void check_standard_input(const Command& command) {
+    std::vector<NamedFile> inputs = files_of(command, ValueKind::input);
+    std::erase_if(inputs, [](const NamedFile& file) { return file.path != "-"; });
+    if (inputs.size() > 1)
+        refuse(fmt::format("{} and {} contradict each other: standard input holds one file only",
+                           inputs[0].name, inputs[1].name));
+}
 
 } // namespace
 
@@ -171,44 +247,43 @@ OptionGroup common_options(bool configurable) {
     OptionGroup group{"General", {}};
     if (configurable) {
         group.options.push_back({.name = std::string(config),
-                                 .kind = ValueKind::file,
+                                 .kind = ValueKind::input,
                                  .placeholder = "FILE",
-                                 .help = "take options from a .toml or .json file, with the names that they "
-                                         "have here; the command line goes before it",
-
+                                 .help =
+                                     "take options from a TOML file, with the names that they have here; the "
+                                     "command line goes before it",
                                  .configurable = false});
         group.options.push_back({.name = std::string(dump_config),
                                  .help = "print the options in effect as such a file, and do nothing else",
-
                                  .configurable = false});
     }
-    group.options.push_back({.name = std::string(help),
-                             .letter = 'h',
-                             .help = "show this help",
-
-                             .configurable = false});
+    group.options.push_back(
+        {.name = std::string(help), .letter = 'h', .help = "show this help", .configurable = false});
     return group;
 }
 
 Option* find_option(Command& command, std::string_view name) {
-    for (OptionGroup& group : command.groups)
-        for (Option& option : group.options)
-            if (option.name == name)
-                return &option;
-    return nullptr;
+    return option_named<Option>(command, name);
 }
 
-void set_option(Option& option, const std::string& origin, const std::string& text) {
-    try {
-        if (option.kind == ValueKind::flag && text != "true" && text != "false")
-            refuse(fmt::format("\"{}\" is neither true nor false", text));
-        check_choice(option.choices, text);
-        if (option.set)
-            option.set(text);
-        option.given = text;
-    } catch (const Error& error) {
-        throw Error(error.kind(), fmt::format("{}: {}", origin, error.what()));
-    }
+const Option* find_option(const Command& command, std::string_view name) {
+    return option_named<const Option>(command, name);
+}
+
+std::vector<NamedFile> files_of(const Command& command, ValueKind kind) {
+    std::vector<NamedFile> files;
+    const auto add = [&files](const std::string& name, const std::string& path) {
+        files.push_back({path == "-" ? name + " -" : name, path});
+    };
+    for (const Operand& operand : command.operands)
+        if (operand.choices.empty() && operand.written == (kind == ValueKind::output))
+            for (const GivenOperand& given : operand.given)
+                add(operand.placeholder, given.text);
+    for (const OptionGroup& group : command.groups)
+        for (const Option& option : group.options)
+            if (option.kind == kind && option.given)
+                add("--" + option.name, *option.given);
+    return files;
 }
 
 std::string option_suggestion(const Command& command, std::string_view name, std::string_view hyphens) {
@@ -227,19 +302,34 @@ Wish parse(Command& command, std::span<const std::string> words) {
     const Words split = Splitter(command, words).split();
     if (split.last(help) != nullptr)
         return Wish::help;
-    if (const Words::Word* file = split.last(config))
-        read_config(file->text, command);
-    Operands operands(command);
+    Configuration configured;
+    if (const Words::Word* file = split.last(config); file != nullptr && !file->text.empty())
+        configured = read_config(file->text, command);
+    Assignment assignment(command);
+    const auto set = [&](const ConfigEntry& entry) {
+        assignment.set(*entry.option, fmt::format("{}: {}", entry.place, entry.option->name), entry.text);
+    };
+    std::ranges::for_each(configured.options, set);
     for (const Words::Word& word : split.words) {
         if (word.option != nullptr)
-            set_option(*word.option, word.as_typed, word.text);
+            assignment.set(*word.option, word.as_typed, word.text);
         else
-            operands.take(word.text);
+            assignment.take(word.text);
+    }
+    if (!assignment.took_any()) {
+        for (const ConfiguredInput& input : configured.inputs) {
+            assignment.take(input.path);
+            for (const ConfigEntry& entry : input.options)
+                if (split.last(entry.option->name) == nullptr)
+                    set(entry);
+        }
     }
     const Words::Word* dump = split.last(dump_config);
     if (dump != nullptr && dump->text == "true")
         return Wish::dump_config;
-    operands.end();
+    assignment.end();
+    check_company(command);
+    check_standard_input(command);
     return Wish::run;
 }
 

@@ -13,17 +13,13 @@ namespace lamella::app {
 enum class Wish { run, help, dump_config };
 
 /// Sets the options and operands of a command: first what its configuration file says (--config), then what
-/// the command line says. Throws Error{usage} with a suggestion where there is one.
+/// the command line says. Files of the configuration file only count where the command line names none.
+/// Throws Error{usage} with a suggestion where there is one, also for options without the one that they go
+/// with, and where two files are to be read from standard input.
 [[nodiscard]] Wish parse(Command& command, std::span<const std::string> words);
 
 /// The options that every command has.
 [[nodiscard]] OptionGroup common_options(bool configurable);
-
-/// The option of that name, or nullptr.
-[[nodiscard]] Option* find_option(Command& command, std::string_view name);
-
-/// Gives an option its value; `origin` says where it came from, in case it is wrong.
-void set_option(Option& option, const std::string& origin, const std::string& text);
 
 /// ", did you mean --layer-height?" or "": to be put behind an unknown option's name.
 [[nodiscard]] std::string option_suggestion(const Command& command, std::string_view name,

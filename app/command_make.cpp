@@ -8,6 +8,7 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -251,8 +252,8 @@ int run_make(const MakeArguments& arguments, const Context& context) {
                                                     : make_whole(output, arguments, body, pose);
     const Box3& extent = made.box;
     const std::string text =
-        fmt::format("{}: {}, {}, {} x {} x {} mm\n", output == "-" ? "standard output" : one_line(output),
-                    arguments.body, counted(made.triangles, "triangle"), brief(extent.max.x - extent.min.x),
+        fmt::format("{}: {}, {}, {} x {} x {} mm\n", one_line(output_name(output)), arguments.body,
+                    counted(made.triangles, "triangle"), brief(extent.max.x - extent.min.x),
                     brief(extent.max.y - extent.min.y), brief(extent.max.z - extent.min.z));
     context.messages.written(text, output);
     return 0;
@@ -262,11 +263,11 @@ int run_make(const MakeArguments& arguments, const Context& context) {
 
 Command make_command() {
     const auto arguments = std::make_shared<MakeArguments>();
-    Option output =
-        file("output",
-             "the file, STL, or PLY or OBJ by its extension; - is standard output; without it, BODY.stl "
-             "here",
-             arguments->output);
+    Option output = output_file(
+        "output",
+        "the file, STL, or PLY or OBJ by its extension; - is standard output; without it, BODY.stl "
+        "here",
+        arguments->output);
     output.letter = 'o';
     return {
         .name = "make",

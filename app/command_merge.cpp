@@ -24,8 +24,7 @@ struct MergeArguments {
 };
 
 int run_merge(const MergeArguments& arguments, const Context& context) {
-    for (const std::string& shard : arguments.shards)
-        check_distinct(shard, arguments.output);
+    check_outputs(context.command);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
     const LayerWriteOptions options = arguments.writing.write_options(format);
     const Execution execution = arguments.run.execution(context);
@@ -57,6 +56,7 @@ Command merge_command() {
             "of a single run, byte for byte; layers of other formats are read and written anew.",
         .operands = {{.placeholder = "OUT",
                       .help = "the slice file to write; its extension says the format; - is standard output",
+                      .written = true,
                       .set =
                           [arguments](const std::string& text) {
                               arguments->output = text;

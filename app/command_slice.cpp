@@ -16,6 +16,7 @@
 #include "page_notes.hpp"
 #include "repair_options.hpp"
 #include "shard_stamp.hpp"
+#include "standard_streams.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
 #include "z_list.hpp"
@@ -81,16 +82,16 @@ struct SliceArguments {
 
 OptionGroup output_options(SliceArguments& target) {
     OptionGroup group{"What is written", {}};
-    Option output =
-        file("output", "the slice file; its extension says the format; - is standard output", target.output);
+    Option output = output_file(
+        "output", "the slice file; its extension says the format; - is standard output", target.output);
     output.letter = 'o';
     group.options.push_back(std::move(output));
     for (Option& option : layer_output_options(target.writing))
         group.options.push_back(std::move(option));
-    group.options.push_back(file("report",
-                                 "write a page to look at the layers and the figures of the run (HTML), too",
-                                 target.report));
-    group.options.push_back(file(
+    group.options.push_back(
+        output_file("report", "write a page to look at the layers and the figures of the run (HTML), too",
+                    target.report));
+    group.options.push_back(output_file(
         "stats", "write figures of the run and of every layer as JSON; - is standard output", target.stats));
     return group;
 }
@@ -127,11 +128,14 @@ OptionGroup input_options(SliceArguments& target) {
     Option spacing =
         row("spacing", ValueKind::number, "MM", "the gap between copies",
             [&target](const std::string& text) { target.of_input.spacing = parse_number(text); });
+    spacing.goes_with = "copies";
     spacing.preset = exact(PlateInput{}.spacing_mm);
     group.options.push_back(std::move(spacing));
     group.options.push_back(text("label", "TEXT",
                                  "its name in the slice file, instead of that of the file or its objects",
                                  target.of_input.label));
+    for (Option& option : group.options)
+        option.of_each_file = true;
     group.options.push_back(triple("build-volume", "X,Y,Z",
                                    "make an error of any part that reaches out of the box from 0,0,0 to here",
                                    target.build_volume));
@@ -152,7 +156,7 @@ OptionGroup plan_options(SliceArguments& target) {
              [&target](const std::string& text) { target.z_range = parse_range(text); }),
          row("layers", ValueKind::text, "A:B", "only layers A to B - 1 of all, counted from 0",
              [&target](const std::string& text) { target.layers = parse_index_range(text); }),
-         file(
+         input_file(
              "z-list",
              "cut at the heights listed in this file instead: one a line, # starts a comment; or a JSON list",
              target.z_list)}};
@@ -162,12 +166,15 @@ OptionGroup plan_options(SliceArguments& target) {
 }
 
 OptionGroup shard_options(SliceArguments& target) {
+    Option resume =
+        flag("resume", "do nothing where this shard is finished, as the stamp beside its file shows",
+             target.resume);
+    resume.goes_with = "shard";
     return {"How it is shared out",
             {row("shard", ValueKind::text, "I/N",
                  "only the I-th of N runs of layers of about equal work; lamella merge puts them together",
                  [&target](const std::string& text) { target.shard = parse_share(text); }),
-             flag("resume", "do nothing where this shard is finished, as the stamp beside its file shows",
-                  target.resume)}};
+             std::move(resume)}};
 }
 
 OptionGroup checking_options(SliceArguments& target) {
@@ -207,8 +214,6 @@ void check_conflict(bool first, bool second, const char* names, const char* reas
 
 /// A shard is stamped with the content of its inputs and its output.
 void check_shard(const SliceArguments& arguments) {
-    if (arguments.resume && !arguments.shard)
-        throw Error(ErrorKind::usage, "--resume goes with --shard");
     if (!arguments.shard)
         return;
     check_conflict(std::ranges::count(arguments.inputs, std::string("-"), &PlateInput::path) > 0, true,
@@ -224,8 +229,6 @@ FileJob make_job(const SliceArguments& arguments) {
     if (arguments.output.empty() && arguments.stats.empty() && arguments.report.empty())
         throw Error(ErrorKind::usage,
                     "where should the result go? Say -o part.cli (or --stats - for figures only)");
-    check_conflict(arguments.output == "-", arguments.stats == "-", "--output - and --stats -",
-                   "both would go to standard output");
     check_conflict(!arguments.z_list.empty(), arguments.layer_height.has_value(),
                    "--z-list and --layer-height", "the list says where to cut");
     check_conflict(!arguments.z_list.empty(), arguments.first_layer_height.has_value(),
@@ -241,19 +244,6 @@ FileJob make_job(const SliceArguments& arguments) {
     check_conflict(ranges || adaptive, arguments.first_layer_height.has_value(),
                    "--first-layer-height and layers of varying height",
                    "--heights can say how high the first one is");
-    for (const PlateInput& input : arguments.inputs) {
-        check_distinct(input.path, arguments.output);
-        check_distinct(input.path, arguments.stats);
-        check_distinct(input.path, arguments.report);
-    }
-    check_conflict(std::ranges::count(arguments.inputs, std::string("-"), &PlateInput::path) > 1, true,
-                   "- and -", "standard input holds one file only");
-    check_conflict(!arguments.output.empty() && arguments.output != "-", arguments.output == arguments.stats,
-                   "--output and --stats", "both would go to the same file");
-    check_conflict(!arguments.report.empty(),
-                   arguments.report == arguments.output || arguments.report == arguments.stats,
-                   "--report and --output or --stats", "both would go to the same file");
-
     check_shard(arguments);
 
     FileJob job;
@@ -338,9 +328,8 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += fmt::format("weld {:.3f}, ", s.weld);
     text += fmt::format("link {:.3f}, slice {:.3f}, write {:.3f})\n", s.link, s.slice, s.write);
     if (!result.format.empty())
-        text +=
-            fmt::format("written  {}: {}, {}\n", job.output == "-" ? "standard output" : one_line(job.output),
-                        result.format, byte_size(result.bytes));
+        text += fmt::format("written  {}: {}, {}\n", one_line(output_name(job.output)), result.format,
+                            byte_size(result.bytes));
     if (!job.report.path.empty())
         text += fmt::format("report   {}: open it with a browser\n", one_line(job.report.path));
     return text;
@@ -441,8 +430,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     if (arguments.inputs.empty())
         throw Error(ErrorKind::usage, "lamella slice needs FILE: a mesh, or --batch for many of them; see "
                                       "lamella slice --help");
-    check_conflict(arguments.batch.jobs.has_value(), true, "--jobs and a single file",
-                   "--threads says how many it gets");
+    check_outputs(context.command);
     finish_input(arguments);
     const FileJob job = make_job(arguments);
     if (job.shard && !arguments.slicing.many_files)
@@ -453,8 +441,9 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     if (stamped) {
         origin = shard_origin(context.command, job, execution);
         if (arguments.resume && is_finished_shard(job, origin, execution)) {
-            context.messages.result(fmt::format("{}: shard {}/{} is finished\n", one_line(job.output),
-                                                job.shard->number, job.shard->count));
+            context.messages.written(fmt::format("{}: shard {}/{} is finished\n", one_line(job.output),
+                                                 job.shard->number, job.shard->count),
+                                     job.output);
             return 0;
         }
     }
@@ -475,10 +464,8 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         else
             write_text_file(arguments.stats, text);
     }
-    if (arguments.output == "-" || arguments.stats == "-" || arguments.report == "-")
-        context.messages.note(summary(job, result));
-    else
-        context.messages.result(summary(job, result));
+    const bool to_output = arguments.output == "-" || arguments.stats == "-" || arguments.report == "-";
+    context.messages.written(summary(job, result), to_output ? "-" : arguments.output);
     return 0;
 }
 
@@ -502,6 +489,7 @@ Command slice_command(Slicing slicing) {
                       .help = "a mesh: STL, 3MF, AMF, OBJ, PLY or OFF; - is standard input",
                       .required = false,
                       .repeated = true,
+                      .own_options = true,
                       .set =
                           [arguments](const std::string& text) {
                               add_input(*arguments, text);

@@ -83,8 +83,6 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (arguments.mesh.empty() && arguments.placement.given())
         throw Error(ErrorKind::usage,
                     "unit, pose and direction are those of a mesh: name it with --mesh part.stl");
-    if (arguments.input == "-" && arguments.mesh == "-")
-        throw Error(ErrorKind::usage, "standard input holds one file only: name the slice file or the mesh");
     const Transform pose = arguments.placement.pose();
     const Execution execution = arguments.run.execution(context);
 
@@ -137,8 +135,8 @@ Command verify_command() {
                               arguments->input = text;
                           }}},
         .groups = {{"What is checked",
-                    {file("mesh", "the mesh that was sliced; give the same options for where it stands",
-                          arguments->mesh),
+                    {input_file("mesh", "the mesh that was sliced; give the same options for where it stands",
+                                arguments->mesh),
                      choice("slice-at", "WHERE",
                             "where in their thickness the layers were cut, if not where the file says",
                             slice_at_names(), arguments->slice_at),

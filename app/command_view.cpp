@@ -15,6 +15,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 
@@ -134,13 +135,9 @@ int run_view(const ViewArguments& arguments, const Context& context) {
     for (const std::string& warning : written.warnings)
         context.messages.warn(warning);
     const std::string text =
-        fmt::format("{}: {} of {}; open it with a browser\n",
-                    output == "-" ? "standard output" : one_line(output), counted(written.layers, "layer"),
-                    arguments.input == "-" ? "standard input" : one_line(arguments.input));
-    if (output == "-")
-        context.messages.note(text);
-    else
-        context.messages.result(text);
+        fmt::format("{}: {} of {}; open it with a browser\n", one_line(output_name(output)),
+                    counted(written.layers, "layer"), one_line(input_name(arguments.input)));
+    context.messages.written(text, output);
     return 0;
 }
 
@@ -156,8 +153,9 @@ OptionGroup cutting_options(ViewArguments& target) {
 
 Command view_command() {
     const auto arguments = std::make_shared<ViewArguments>();
-    Option output = file("output", "the page; without it, FILE's name with .html, here; - is standard output",
-                         arguments->output);
+    Option output =
+        output_file("output", "the page; without it, FILE's name with .html, here; - is standard output",
+                    arguments->output);
     output.letter = 'o';
     return {
         .name = "view",

@@ -53,8 +53,8 @@ std::string bash_case(const Command& command) {
             continue;
         const std::string action = !option->choices.empty()
                                        ? fmt::format("words=\"{}\"", fmt::join(option->choices, " "))
-                                   : option->kind == ValueKind::file ? "compopt -o default; return"
-                                                                     : "return";
+                                   : is_file(option->kind) ? "compopt -o default; return"
+                                                           : "return";
         text += fmt::format("        {}) {} ;;\n", bash_pattern(*option), action);
     }
     std::string operands = "compopt -o default; return";
@@ -73,7 +73,7 @@ std::string zsh_value(const Option& option) {
     const std::string what = replaced(option.placeholder, ":", "\\");
     if (!option.choices.empty())
         return fmt::format(":{}:({})", what, fmt::join(option.choices, " "));
-    return fmt::format(":{}:{}", what, option.kind == ValueKind::file ? "_files" : "");
+    return fmt::format(":{}:{}", what, is_file(option.kind) ? "_files" : "");
 }
 
 std::string zsh_option(const Option& option) {
@@ -105,7 +105,7 @@ std::string fish_option(const Command& command, const Option& option) {
                                    command.name, option.name);
     if (option.letter != 0)
         text += fmt::format(" -s {}", option.letter);
-    if (option.kind == ValueKind::file)
+    if (is_file(option.kind))
         text += " -r -F";
     else if (option.kind != ValueKind::flag)
         text += " -x";

@@ -7,6 +7,7 @@
 
 #include "command_line.hpp"
 #include "numbers.hpp"
+#include "standard_streams.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -21,25 +22,34 @@
 namespace lamella::app {
 namespace {
 
+constexpr std::string_view inputs_key = "input";
+constexpr std::string_view path_key = "path";
+
 [[noreturn]] void refuse_entry(const std::string& place, std::string_view text) {
     throw Error(ErrorKind::usage, fmt::format("{}: {}", place, text));
 }
 
-void set_key(Command& command, const std::string& place, std::string_view key, const std::string& text) {
-    set_option(*find_option(command, key), fmt::format("{}: {}", place, key), text);
-}
-
 /// Throws when the command has no such option or it has no place in a file.
-void check_key(Command& command, const std::string& place, std::string_view key) {
-    const Option* option = find_option(command, key);
+Option& option_of(Command& command, const std::string& place, std::string_view key) {
+    Option* const option = find_option(command, key);
     if (option == nullptr || !option->configurable)
         refuse_entry(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, key,
                                         option_suggestion(command, key, "")));
+    return *option;
 }
 
+std::optional<std::string> as_text(const toml::node& node);
+
 /// Numbers as the command line takes a list of them; nothing when an item is no number.
-template <class Array>
-std::optional<std::string> list_as_text(const Array& array);
+std::optional<std::string> list_as_text(const toml::array& array) {
+    std::string list;
+    for (const auto& item : array) {
+        if (!item.is_number())
+            return std::nullopt;
+        list.append(list.empty() ? "" : ",").append(as_text(item).value());
+    }
+    return list;
+}
 
 /// A value of the file as it would stand on the command line; nothing for one that no option can have.
 std::optional<std::string> as_text(const toml::node& node) {
@@ -56,75 +66,89 @@ std::optional<std::string> as_text(const toml::node& node) {
     return std::nullopt;
 }
 
-std::optional<std::string> as_text(const nlohmann::json& value) {
-    if (value.is_string())
-        return value.get<std::string>();
-    if (value.is_number_float())
-        return exact(value.get<double>());
-    if (value.is_number() || value.is_boolean())
-        return value.dump();
-    if (value.is_array())
-        return list_as_text(value);
-    return std::nullopt;
-}
+/// Goes through a table of the file.
+class Reading {
+  public:
+    Reading(const std::string& name, Command& command) : name_(name), command_(command) {}
 
-template <class Array>
-std::optional<std::string> list_as_text(const Array& array) {
-    std::string list;
-    for (const auto& item : array) {
-        if (!item.is_number())
-            return std::nullopt;
-        list.append(list.empty() ? "" : ",").append(as_text(item).value());
+    Configuration all(const toml::table& table) const {
+        Configuration found;
+        for (const auto& [key, node] : table) {
+            if (key.str() == inputs_key && has_own_options())
+                found.inputs = inputs(place_of(key), node);
+            else
+                found.options.push_back(entry(key, node));
+        }
+        return found;
     }
-    return list;
-}
 
-constexpr std::string_view no_value = "this is no value for an option: expected a number, a text, true, "
-                                      "false or a list of numbers";
-
-void read_toml(const std::string& path, const std::string& content, Command& command) {
-    toml::table table;
-    try {
-        table = toml::parse(content);
-    } catch (const toml::parse_error& error) {
-        refuse_entry(fmt::format("{}:{}", path, error.source().begin.line), error.description());
+  private:
+    [[nodiscard]] bool has_own_options() const {
+        return std::ranges::any_of(command_.operands, &Operand::own_options);
     }
-    for (const auto& [key, node] : table) {
-        const std::string place = fmt::format("{}:{}", path, key.source().begin.line);
-        check_key(command, place, key.str());
+
+    [[nodiscard]] std::string place_of(const toml::key& key) const {
+        return fmt::format("{}:{}", name_, key.source().begin.line);
+    }
+
+    ConfigEntry entry(const toml::key& key, const toml::node& node) const {
+        const std::string place = place_of(key);
+        Option& option = option_of(command_, place, key.str());
         const auto text = as_text(node);
         if (!text)
-            refuse_entry(place, fmt::format("{}: {}", key.str(), no_value));
-        set_key(command, place, key.str(), *text);
+            refuse_entry(place, fmt::format("{}: this is no value for an option: expected a number, a text, "
+                                            "true, false or a list of numbers",
+                                            key.str()));
+        return {place, &option, *text};
     }
-}
 
-void read_json(const std::string& path, const std::string& content, Command& command) {
-    nlohmann::json object;
-    try {
-        object = nlohmann::json::parse(content, nullptr, true, true);
-    } catch (const nlohmann::json::parse_error& error) {
-        const auto line =
-            std::count(content.begin(),
-                       content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size())),
-                       '\n') +
-            1;
-        refuse_entry(fmt::format("{}:{}", path, line), "this is not JSON");
+    std::vector<ConfiguredInput> inputs(const std::string& place, const toml::node& node) const {
+        const toml::array* const list = node.as_array();
+        if (list == nullptr ||
+            !std::ranges::all_of(*list, [](const toml::node& one) { return one.is_table(); }))
+            refuse_entry(place, "expected [[input]], with the path of a file and options of that one");
+        std::vector<ConfiguredInput> found;
+        for (const toml::node& one : *list)
+            found.push_back(input(*one.as_table()));
+        return found;
     }
-    if (!object.is_object())
-        refuse_entry(path, "expected one JSON object such as {\"layer-height\": 0.1}");
-    for (const auto& [key, value] : object.items()) {
-        check_key(command, path, key);
-        const auto text = as_text(value);
-        if (!text)
-            refuse_entry(path, fmt::format("{}: {}", key, no_value));
-        set_key(command, path, key, *text);
-    }
-}
 
-/// TOML's basic strings escape as JSON's do.
+    ConfiguredInput input(const toml::table& table) const {
+        ConfiguredInput found;
+        for (const auto& [key, node] : table) {
+            if (key.str() == path_key) {
+                found.path = node.value<std::string>().value_or("");
+                continue;
+            }
+            found.options.push_back(entry(key, node));
+            if (!found.options.back().option->of_each_file)
+                refuse_entry(
+                    place_of(key),
+                    fmt::format("{} is no option of one file; it has to stand above the first [[input]]",
+                                key.str()));
+        }
+        if (found.path.empty())
+            refuse_entry(fmt::format("{}:{}", name_, table.source().begin.line),
+                         "this [[input]] has no path = \"...\" of a file");
+        return found;
+    }
+
+    const std::string& name_;
+    Command& command_;
+};
+
+/// TOML's basic strings escape as JSON's do, but for one character more.
 std::string quoted(const std::string& text) {
-    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    std::string quoted;
+    try {
+        quoted = nlohmann::json(text).dump();
+    } catch (const nlohmann::json::type_error&) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" is not UTF-8, as text in a configuration file has to be", text));
+    }
+    for (std::size_t at = 0; (at = quoted.find('\x7f', at)) != std::string::npos;)
+        quoted.replace(at, 1, "\\u007f");
+    return quoted;
 }
 
 std::string toml_value(const Option& option, const std::string& text) {
@@ -146,14 +170,45 @@ std::string toml_value(const Option& option, const std::string& text) {
     }
 }
 
+std::string toml_line(const Option& option, const std::string& text) {
+    return fmt::format("{} = {}\n", option.name, toml_value(option, text));
+}
+
+/// What is in effect for all files; "" for nothing, also where it would say nothing.
+std::string text_for_all(const Command& command, const Option& option) {
+    const auto given = [](const Option& one) {
+        return one.of_each_file ? one.given_for_all : one.given;
+    };
+    if (!given(option) && !option.goes_with.empty() && !given(*find_option(command, option.goes_with)))
+        return {};
+    const std::string text = given(option).value_or(option.preset);
+    return text == "false" ? std::string() : text;
+}
+
+/// Of several values the last one counts.
+std::string input_text(const Command& command, const GivenOperand& input) {
+    std::string text = fmt::format("\n[[{}]]\n{} = {}\n", inputs_key, path_key, quoted(input.text));
+    for (const OptionGroup& group : command.groups)
+        for (const Option& option : group.options) {
+            const auto last = std::find_if(input.settings.rbegin(), input.settings.rend(),
+                                           [&](const Setting& one) { return one.option == &option; });
+            if (last != input.settings.rend())
+                text += toml_line(option, last->text);
+        }
+    return text;
+}
+
 } // namespace
 
-void read_config(const std::string& path, Command& command) {
+Configuration read_config(const std::string& path, Command& command) {
     const std::string content = read_text_file(path);
-    if (path.ends_with(".json"))
-        read_json(path, content, command);
-    else
-        read_toml(path, content, command);
+    const std::string name = input_name(path);
+    try {
+        return Reading(name, command).all(toml::parse(content));
+    } catch (const toml::parse_error& error) {
+        refuse_entry(fmt::format("{}:{}", name, error.source().begin.line),
+                     fmt::format("expected TOML: {}", error.description()));
+    }
 }
 
 std::string config_text(const Command& command) {
@@ -166,9 +221,9 @@ std::string config_text(const Command& command) {
         for (const Option& option : group.options) {
             if (!option.configurable)
                 continue;
-            const std::string text = option.given.value_or(option.preset);
-            if (!text.empty() && text != "false")
-                set += fmt::format("{} = {}\n", option.name, toml_value(option, text));
+            const std::string text = text_for_all(command, option);
+            if (!text.empty())
+                set += toml_line(option, text);
             else
                 unset.append(unset.empty() ? "" : ", ").append(option.name);
         }
@@ -178,6 +233,10 @@ std::string config_text(const Command& command) {
         if (!unset.empty())
             out += fmt::format("# not set: {}\n", unset);
     }
+    for (const Operand& operand : command.operands)
+        if (operand.own_options)
+            for (const GivenOperand& input : operand.given)
+                out += input_text(command, input);
     return out;
 }
 

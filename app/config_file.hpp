@@ -7,15 +7,35 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <vector>
 
 namespace lamella::app {
 
-/// Sets the options that a TOML file says, or a JSON file when its name ends in ".json". Throws Error{usage}
-/// with the line for what is no such file, for an unknown key and for a value that its option refuses, and
-/// Error{input} when it cannot be read.
-void read_config(const std::string& path, Command& command);
+/// An option's value in a file.
+struct ConfigEntry {
+    std::string place; ///< file and line
+    Option* option;
+    std::string text; ///< as it would stand on the command line
+};
 
-/// The options in effect as a TOML file that `read_config` takes.
+/// A file to read (an operand), with the options of that one.
+struct ConfiguredInput {
+    std::string path;
+    std::vector<ConfigEntry> options;
+};
+
+/// What a file says.
+struct Configuration {
+    std::vector<ConfigEntry> options;
+    std::vector<ConfiguredInput> inputs;
+};
+
+/// Reads a TOML file for that command; sets nothing. Throws Error{usage} with the line for what is no such
+/// file and for an unknown key, and Error{input} when it cannot be read.
+[[nodiscard]] Configuration read_config(const std::string& path, Command& command);
+
+/// What was given and is in effect, as a TOML file that `read_config` takes: options, and files where these
+/// can have options of their own.
 [[nodiscard]] std::string config_text(const Command& command);
 
 /// The options in effect as an object: given ones and presets.

@@ -44,6 +44,7 @@ std::optional<AdaptiveLayers> HeightOptions::adaptive_layers(SliceAt slice_at) c
 
 std::vector<Option> height_options(HeightOptions& target) {
     Option cusp = length("cusp", "how far the steps of --adaptive may stand off the surface", target.cusp);
+    cusp.goes_with = "adaptive";
     cusp.preset = exact(AdaptiveLayers{}.cusp_mm);
     return {row("heights", ValueKind::text, "A:B=H,...",
                 "layers of H from A to B above the bottom, of the layer height elsewhere",

@@ -57,7 +57,7 @@ std::variant<MeshFile, LayerFile> read_either(const std::string& path, const Mes
     const LayerReadOptions reading{.max_memory = options.max_memory};
     if (path == "-") {
         // Standard input can be read only once.
-        const std::string content = read_text_file("/dev/stdin", options.max_memory);
+        const std::string content = read_text_file(path, options.max_memory);
         const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
         return choose(
             content, [&] { return read_layers(bytes, path, reading, execution); },

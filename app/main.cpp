@@ -1,11 +1,13 @@
 #include "commands.hpp"
 #include "crash.hpp"
 #include "program.hpp"
+#include "standard_streams.hpp"
 
 #include <string>
 #include <vector>
 
 int main(int argc, char** argv) {
+    lamella::app::reserve_standard_streams();
     lamella::app::prepare_for_crashes();
     return lamella::app::run_program(lamella::app::all_commands(),
                                      std::vector<std::string>(argv + 1, argv + argc));

@@ -7,6 +7,7 @@
 #include "interrupt.hpp"
 #include "mpi_processes.hpp"
 #include "program.hpp"
+#include "standard_streams.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -53,6 +54,7 @@ Slicing by_all(MpiProcesses& processes, std::vector<ProcessFigures>& figures) {
 } // namespace
 
 int main(int argc, char** argv) {
+    reserve_standard_streams();
     prepare_for_crashes();
     block_interrupts(); // before MPI has threads of its own
     MpiProcesses processes;

@@ -1,5 +1,6 @@
 #include "messages.hpp"
 
+#include "standard_streams.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -100,7 +101,7 @@ void Messages::note(const std::string& text) {
 void Messages::written(const std::string& text, std::string_view output) {
     if (output == "-")
         note(text);
-    else
+    else if (!output_is_closed())
         result(text);
 }
 

@@ -46,7 +46,8 @@ class Messages {
     void error(const std::string& text, int exit_code);
     /// What is no result here because standard output carries data. Programs are spared it.
     void note(const std::string& text);
-    /// How the writing of `output` went: a result, or a note where the output itself is standard output.
+    /// How the writing of `output` went: a result, or a note where the output itself is standard output. It
+    /// is no error that nobody is there to be told.
     void written(const std::string& text, std::string_view output);
     /// How a run of many files went: for people, or as a JSON object for programs.
     void sum_up(const std::string& text, const std::string& json);

@@ -101,9 +101,15 @@ Option text(std::string name, std::string placeholder, std::string help, std::st
     return option;
 }
 
-Option file(std::string name, std::string help, std::string& target) {
+Option input_file(std::string name, std::string help, std::string& target) {
     Option option = text(std::move(name), "FILE", std::move(help), target);
-    option.kind = ValueKind::file;
+    option.kind = ValueKind::input;
+    return option;
+}
+
+Option output_file(std::string name, std::string help, std::string& target) {
+    Option option = text(std::move(name), "FILE", std::move(help), target);
+    option.kind = ValueKind::output;
     return option;
 }
 
@@ -320,6 +326,22 @@ SliceAt slice_at_of(std::string_view name) {
     if (name == "bottom")
         return SliceAt::bottom;
     return name == "top" ? SliceAt::top : SliceAt::middle;
+}
+
+void check_outputs(const Command& command) {
+    const std::vector<NamedFile> outputs = files_of(command, ValueKind::output);
+    const std::vector<NamedFile> inputs = files_of(command, ValueKind::input);
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const NamedFile& output = outputs[i];
+        for (std::size_t k = 0; k < i; ++k)
+            if (outputs[k].path == output.path)
+                throw Error(ErrorKind::usage,
+                            fmt::format("{} and {} contradict each other: both would go to {}",
+                                        outputs[k].name, output.name,
+                                        output.path == "-" ? "standard output" : "the same file"));
+        for (const NamedFile& input : inputs)
+            check_distinct(input.path, output.path);
+    }
 }
 
 void check_distinct(const std::string& input, const std::string& output) {

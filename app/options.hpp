@@ -38,7 +38,8 @@ namespace lamella::app {
 [[nodiscard]] Option choice(std::string name, std::string placeholder, std::string help,
                             std::vector<std::string> choices, std::string& target);
 [[nodiscard]] Option text(std::string name, std::string placeholder, std::string help, std::string& target);
-[[nodiscard]] Option file(std::string name, std::string help, std::string& target);
+[[nodiscard]] Option input_file(std::string name, std::string help, std::string& target);
+[[nodiscard]] Option output_file(std::string name, std::string help, std::string& target);
 /// A limit in bytes, such as 500M.
 [[nodiscard]] Option byte_limit(std::string name, std::string help, std::optional<std::uint64_t>& target);
 
@@ -121,7 +122,9 @@ struct LayerStepOptions {
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
 [[nodiscard]] SliceAt slice_at_of(std::string_view name);
 
-/// Throws Error{usage} when a result would overwrite the file that it is made from.
+/// Throws Error{usage} when a result would overwrite a file that it is made from, or another result.
+void check_outputs(const Command& command);
+/// The same of one result that is called otherwise than an option says.
 void check_distinct(const std::string& input, const std::string& output);
 
 } // namespace lamella::app

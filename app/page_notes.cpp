@@ -2,6 +2,7 @@
 
 #include "numbers.hpp"
 #include "options.hpp"
+#include "standard_streams.hpp"
 #include "viewer_page.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +64,7 @@ PageSection run_section(const FileResult& result) {
 } // namespace
 
 std::string title_of(const std::string& path) {
-    return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
+    return std::filesystem::path(input_name(path)).filename().string();
 }
 
 PageOptions page_options(const std::string& path) {

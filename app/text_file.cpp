@@ -2,7 +2,11 @@
 
 #include "lamella/core/error.hpp"
 
+#include "standard_streams.hpp"
+
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <array>
@@ -10,6 +14,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <system_error>
 
 namespace lamella::app {
@@ -21,11 +26,37 @@ struct CloseFile {
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
 std::string reason(int error) {
-    return std::generic_category().message(error);
+    return error == EBADF ? "it is closed" : std::generic_category().message(error);
 }
 
 [[noreturn]] void fail(const std::string& path, int error) {
     throw Error(ErrorKind::output, fmt::format("{}: cannot be written: {}", path, reason(error)));
+}
+
+struct Descriptor {
+    explicit Descriptor(int file) : number(file) {}
+    ~Descriptor() {
+        if (number >= 0)
+            close(number);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    int number;
+};
+
+/// Some bytes, once there are any; 0 at the end.
+template <class Refuse>
+std::size_t read_some(int descriptor, std::span<char> room, const Refuse& refuse) {
+    for (;;) {
+        const ssize_t got = ::read(descriptor, room.data(), room.size());
+        if (got >= 0)
+            return static_cast<std::size_t>(got);
+        if (errno != EINTR && errno != EAGAIN)
+            refuse(errno);
+        pollfd waiting{descriptor, POLLIN, 0}; // whoever lent it may not want it to block
+        poll(&waiting, 1, -1);
+    }
 }
 
 void write_in_place(const std::string& path, const std::string& shown, std::string_view text) {
@@ -41,26 +72,30 @@ void write_in_place(const std::string& path, const std::string& shown, std::stri
 } // namespace
 
 std::string read_text_file(const std::string& path, std::uint64_t most) {
+    const std::string name = input_name(path);
     const auto refuse = [&](int error) {
-        throw Error(ErrorKind::input, fmt::format("{}: cannot be read: {}", path, reason(error)));
+        throw Error(ErrorKind::input, fmt::format("{}: cannot be read: {}", name, reason(error)));
     };
-    const File file(std::fopen(path.c_str(), "rb"));
-    if (file == nullptr)
+    // By its descriptor: what is at the other end, such as a socket, need not be there to be opened again.
+    const Descriptor file(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.number < 0)
         refuse(errno);
     std::string text;
     std::array<char, 1 << 16> block;
-    while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) {
+    while (const std::size_t n = read_some(file.number, block, refuse)) {
         if (most != 0 && text.size() + n > most)
             throw Error(ErrorKind::limit,
-                        fmt::format("{}: takes more than the {} bytes of --max-memory", path, most));
+                        fmt::format("{}: takes more than the {} bytes of --max-memory", name, most));
         text.append(block.data(), n);
     }
-    if (std::ferror(file.get()) != 0)
-        refuse(errno);
     return text;
 }
 
 void write_text_file(const std::string& path, std::string_view text) {
+    if (path == "-") {
+        print(text);
+        return;
+    }
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "numbers.hpp"
+#include "standard_streams.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -22,21 +23,21 @@ void append(std::vector<double>& z, double value, const std::string& place) {
     z.push_back(value);
 }
 
-std::vector<double> from_json(const std::string& path, std::string_view content) {
+std::vector<double> from_json(const std::string& name, std::string_view content) {
     std::vector<double> z;
     const nlohmann::json list = nlohmann::json::parse(content, nullptr, false);
     if (!list.is_array())
-        throw Error(ErrorKind::usage, fmt::format("{}: begins as a JSON list but is none", path));
+        throw Error(ErrorKind::usage, fmt::format("{}: begins as a JSON list but is none", name));
     for (const nlohmann::json& item : list) {
         if (!item.is_number())
             throw Error(ErrorKind::usage,
-                        fmt::format("{}: item {} of the list is not a number", path, z.size() + 1));
-        append(z, item.get<double>(), fmt::format("{}: item {}", path, z.size() + 1));
+                        fmt::format("{}: item {} of the list is not a number", name, z.size() + 1));
+        append(z, item.get<double>(), fmt::format("{}: item {}", name, z.size() + 1));
     }
     return z;
 }
 
-std::vector<double> from_lines(const std::string& path, std::string_view content) {
+std::vector<double> from_lines(const std::string& name, std::string_view content) {
     std::vector<double> z;
     std::size_t line = 0;
     while (!content.empty()) {
@@ -49,7 +50,7 @@ std::vector<double> from_lines(const std::string& path, std::string_view content
             text.remove_suffix(1);
         if (text.empty())
             continue;
-        const std::string place = fmt::format("{}:{}", path, line);
+        const std::string place = fmt::format("{}:{}", name, line);
         double value = 0;
         try {
             value = parse_number(text);
@@ -65,11 +66,12 @@ std::vector<double> from_lines(const std::string& path, std::string_view content
 
 std::vector<double> read_z_list(const std::string& path) {
     const std::string content = read_text_file(path);
+    const std::string name = input_name(path);
     const std::size_t first = content.find_first_not_of(" \t\r\n");
-    std::vector<double> z = first != std::string::npos && content[first] == '[' ? from_json(path, content)
-                                                                                : from_lines(path, content);
+    std::vector<double> z = first != std::string::npos && content[first] == '[' ? from_json(name, content)
+                                                                                : from_lines(name, content);
     if (z.empty())
-        throw Error(ErrorKind::input, fmt::format("{}: lists no height to cut at", path));
+        throw Error(ErrorKind::input, fmt::format("{}: lists no height to cut at", name));
     return z;
 }
 

@@ -37,6 +37,8 @@ namespace {
         fail(name, "no permission to read this file");
     case EISDIR:
         fail(name, "is a directory, expected a file");
+    case EBADF:
+        fail(name, "is closed, or not open for reading");
     default:
         fail(name, "cannot be read: " + std::generic_category().message(code));
     }
@@ -144,6 +146,9 @@ ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_m
 
 ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t most_in_memory,
                 const std::stop_token& cancel) {
+    const int flags = fcntl(descriptor.number(), F_GETFL);
+    if (flags < 0 || (flags & O_PATH) != 0 || (flags & O_ACCMODE) == O_WRONLY)
+        fail_with_errno(name, EBADF);
     struct stat status {};
     if (fstat(descriptor.number(), &status) != 0)
         fail_with_errno(name, errno);

@@ -1,6 +1,5 @@
 """Words on the command line, help, and configuration files."""
 
-import json
 import re
 
 from program import ProgramTest, main
@@ -87,13 +86,62 @@ class CommandLine(ProgramTest):
         self.succeed("slice", "box.stl", "--config", "job.toml")
         self.assertEqual(self.bytes_of("out.cli"), written)
 
-    def test_toml_and_json_say_the_same(self):
-        self.write("job.toml", 'layer-height = 0.5\nrotate = [90, 0, 0]\nstrict = true\nlabel = "x"\nthreads = 2\n')
-        self.write("job.json", json.dumps({"layer-height": 0.5, "rotate": [90, 0, 0], "strict": True, "label": "x",
-                                           "threads": 2}))
-        dumps = {self.succeed("slice", "--config", f"job.{kind}", "--dump-config").text for kind in ["toml", "json"]}
-        self.assertEqual(len(dumps), 1)
-        self.assertIn("layer-height = 0.5\n", dumps.pop())
+    def test_a_configuration_keeps_where_each_file_stands(self):
+        self.box("a.stl", size="4,6,2")
+        self.box('b "2"\x7f.stl', size="2,2,3")
+        words = ["--unit", "cm", "--copies", "1", "--scale", "2", "a.stl", "--copies", "3", "--spacing", "1.5", 'b "2"\x7f.stl',
+                 "--translate", "90,0,0", "--rotate-z", "30", "--rotate-z", "45", "--label", "tower", "a.stl", "--unit", "mm",
+                 "--translate=0,99,0", "-o", "out.cli", "--layer-height", "0.5"]
+        self.succeed("slice", *words)
+        written = self.bytes_of("out.cli")
+        dump = self.succeed("slice", *words, "--dump-config").text
+        self.assertEqual(dump.count("[[input]]\n"), 3)
+        self.write("job.toml", dump)
+        self.assertEqual(self.succeed("slice", "--config", "job.toml", "--dump-config").text, dump)
+        self.path("out.cli").unlink()
+        self.succeed("slice", "--config", "job.toml")
+        self.assertEqual(self.bytes_of("out.cli"), written)
+
+    def test_the_command_line_goes_before_the_files_of_a_configuration(self):
+        self.box("a.stl")
+        self.box("b.stl", size="3,3,3")
+        self.write("job.toml", 'unit = "cm"\n[[input]]\npath = "a.stl"\n[[input]]\npath = "b.stl"\ntranslate = [50, 0, 0]\n')
+        boxes = lambda *words: [part["bbox"] for part in
+                                self.succeed("slice", "--config", "job.toml", "--stats", "-", *words).json()["parts"]]
+        self.assertEqual(boxes()[1], self.succeed("slice", "b.stl", "--unit", "cm", "--translate", "50,0,0", "--stats",
+                                                  "-").json()["input"]["bbox"])
+        self.assertEqual(boxes("--translate", "0,70,0")[1],
+                         self.succeed("slice", "b.stl", "--unit", "cm", "--translate", "0,70,0", "--stats",
+                                      "-").json()["input"]["bbox"])
+        alone = self.succeed("slice", "b.stl", "--config", "job.toml", "--stats", "-").json()
+        self.assertEqual(alone["input"]["bbox"], self.succeed("slice", "b.stl", "--unit", "cm", "--stats",
+                                                              "-").json()["input"]["bbox"])
+        self.assertNotIn("parts", alone)
+
+    def test_a_name_that_no_configuration_can_hold(self):
+        self.fail_with(2, "not UTF-8", "slice", b"\xff.stl".decode("utf-8", "surrogateescape"), "--dump-config")
+
+    def test_options_say_what_they_go_with(self):
+        self.box()
+        for option, other, value in [("cusp", "adaptive", "0.1"), ("spacing", "copies", "3"), ("jobs", "batch", "2"),
+                                     ("resume", "shard", None)]:
+            words = [f"--{option}"] + ([value] if value else [])
+            self.fail_with(2, f"--{option} goes with --{other}", "slice", "box.stl", "-o", "x.cli", *words)
+            self.write("job.toml", f"{option} = {value or 'true'}\n")
+            self.fail_with(2, f"--{option} goes with --{other}", "slice", "box.stl", "-o", "x.cli", "--config", "job.toml")
+        self.fail_with(2, "box.stl: --spacing goes with --copies", "slice", "box.stl", "--copies", "2", "box.stl", "--spacing", "3",
+                       "-o", "x.cli")
+        # What is only a preset asks for nothing.
+        for words in [[], ["--copies", "2"], ["--adaptive", "0.5:1"]]:
+            self.write("job.toml", self.succeed("slice", *words, "--dump-config", "-o", "x.cli").text)
+            self.succeed("slice", "box.stl", "--config", "job.toml")
+
+    def test_the_name_of_a_file_is_not_empty(self):
+        self.box()
+        for arguments in [["slice", "", "-o", "x.cli"], ["slice", "box.stl", "-o", ""], ["info", ""], ["convert", "x.cli", ""],
+                          ["slice", "box.stl", "-o", "x.cli", "--config="], ["slice", "box.stl", "--z-list=", "-o", "x.cli"]]:
+            with self.subTest(arguments):
+                self.fail_with(2, "the name of a file is empty", *arguments)
 
     def test_the_command_line_goes_before_the_file(self):
         self.write("job.toml", "layer-height = 2\n")
@@ -112,10 +160,18 @@ class CommandLine(ProgramTest):
             with self.subTest(content):
                 self.write("job.toml", content)
                 self.fail_with(2, pattern, "slice", "--config", "job.toml", "--dump-config")
-        for content in ['{"layer-hight": 1}', "[1]", "{", '{"layer-height": null}', '{"layer-height": {}}']:
+        for content, pattern in [('{"layer-height": 1}\n', r"job\.toml:1: expected TOML"),
+                                 ("input = 3\n", r"job\.toml:1: expected \[\[input\]\]"),
+                                 ("\n[[input]]\nunit = 'mm'\n", r"job\.toml:2: .*no path"),
+                                 ("[[input]]\npath = 7\n", r"job\.toml:1: .*no path"),
+                                 ("[[input]]\npath = 'a.stl'\nstrict = true\n", r"job\.toml:3: strict is no option of one file"),
+                                 ("[[input]]\npath = 'a.stl'\ncopies = 0\n", r"job\.toml:3: copies: "),
+                                 ("[[input]]\npath = 'a.stl'\nfolder = 'x'\n", r'job\.toml:3: .*no option "folder"')]:
             with self.subTest(content):
-                self.write("job.json", content)
-                self.fail_with(2, r"job\.json", "slice", "--config", "job.json", "--dump-config")
+                self.write("job.toml", content)
+                self.fail_with(2, pattern, "slice", "--config", "job.toml", "--dump-config")
+        self.write("job.toml", "[[input]]\npath = 'a.stl'\n")
+        self.fail_with(2, 'no option "input"', "info", "--config", "job.toml", "--dump-config")
         self.fail_with(3, r"missing\.toml", "slice", "--config", "missing.toml", "--dump-config")
 
 
