@@ -113,7 +113,11 @@ Json sliced(const BatchItem& item, const SliceItem& slice, const Execution& exec
     try {
         return record_of(item, slice(item, execution));
     } catch (...) {
-        return record_of(item, failure_of(std::current_exception()), seconds_since(start));
+        Failure failure = failure_of(std::current_exception());
+        // Where there is one file only, its name need not be said.
+        if (failure.text.find(item.input) == std::string::npos)
+            failure.text = fmt::format("{}: {}", item.input, failure.text);
+        return record_of(item, failure, seconds_since(start));
     }
 }
 

@@ -4,6 +4,7 @@
 #include "lamella/read/mesh_file.hpp"
 
 #include "numbers.hpp"
+#include "standard_streams.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -39,25 +40,50 @@ fs::path stem_of(const fs::path& path) {
     throw Error(ErrorKind::input, fmt::format("{}: {}", source, what));
 }
 
-std::vector<std::string> files_in(const std::string& folder, const std::string& results) {
+/// Pipes, sockets and devices: they may never end, and nobody named them.
+bool is_stream(const fs::path& path) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    return fs::is_other(status);
+}
+
+/// Appends the meshes in a folder and in those within it, but for the folder `apart`. Where one cannot be
+/// listed, `fail` is given its path and the reason.
+template <class Fail>
+void find_meshes(const fs::path& folder, const fs::path& apart, std::vector<std::string>& found,
+                 const Fail& fail) {
     std::error_code error;
-    const fs::path apart = results.empty() ? fs::path() : fs::weakly_canonical(results, error);
-    const bool all = apart.empty() || apart == fs::canonical(folder, error);
-    std::vector<std::string> found;
-    fs::recursive_directory_iterator entries(folder, error);
-    for (; !error && entries != fs::recursive_directory_iterator(); entries.increment(error)) {
+    fs::directory_iterator entries(folder, error);
+    for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
         const fs::path& path = entries->path();
+        if (path.filename().string().starts_with('.'))
+            continue;
         std::error_code ignored;
-        const bool hidden = path.filename().string().starts_with('.');
         if (entries->is_directory(ignored)) {
-            if (hidden || (!all && fs::weakly_canonical(path, ignored) == apart))
-                entries.disable_recursion_pending();
-        } else if (!hidden && is_mesh_name(path.string())) {
+            // No links: they may lead in a circle.
+            if (!entries->is_symlink(ignored) &&
+                (apart.empty() || fs::weakly_canonical(path, ignored) != apart))
+                find_meshes(path, apart, found, fail);
+        } else if (is_mesh_name(path.string()) && !is_stream(path)) {
             found.push_back(path.string());
         }
     }
     if (error)
-        refuse(folder, fmt::format("the folder cannot be listed: {}", error.message()));
+        fail(folder, error);
+}
+
+std::vector<std::string> files_in(const std::string& folder, const std::string& results) {
+    std::error_code error;
+    fs::path apart = results.empty() ? fs::path() : fs::weakly_canonical(results, error);
+    if (apart == fs::canonical(folder, error))
+        apart.clear();
+    std::vector<std::string> found;
+    find_meshes(folder, apart, found, [&](const fs::path& at, const std::error_code& why) {
+        if (at == folder)
+            refuse(folder, fmt::format("the folder cannot be listed: {}", why.message()));
+        // One of the files that fail: whoever opens it is told the same.
+        found.push_back(at.string());
+    });
     if (found.empty())
         refuse(folder, fmt::format("no file in this folder has a name as of a mesh (.{}); other names can be "
                                    "given in a list",
@@ -82,11 +108,17 @@ std::vector<std::string> lines_of(std::string_view text) {
 }
 
 std::vector<std::string> files_listed(const std::string& list) {
-    std::vector<std::string> lines = lines_of(read_text_file(list == "-" ? "/dev/stdin" : list));
+    if (is_mesh_name(list))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{}: has the name of a mesh; expected a folder, or a file that lists paths, one "
+                        "a line",
+                        list));
+    std::vector<std::string> lines = lines_of(read_text_file(list));
     if (lines.empty())
-        refuse(list == "-" ? "standard input" : list, "the list names no file; expected one path a line");
+        refuse(input_name(list), "the list names no file; expected one path a line");
     if (std::ranges::find(lines, "-") != lines.end())
-        refuse(list, "standard input (-) cannot be one of many files");
+        refuse(input_name(list), "standard input (-) cannot be one of many files");
     return lines;
 }
 

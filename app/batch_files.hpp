@@ -16,9 +16,11 @@ namespace lamella::app {
 /// a NUL is taken apart at those instead, as `find -print0` writes it. Empty lines and lines that begin with
 /// # do not count; paths in a list are relative to the working folder.
 ///
-/// Of a folder, hidden files and what lies in `results` (where that is another folder) are left out.
+/// Of a folder, hidden files, pipes, devices and what lies in `results` (where that is another folder) are
+/// left out. A folder within it that cannot be listed stands among the files, to fail as one of them.
 ///
-/// Throws Error{input} where the source cannot be read or names nothing.
+/// Throws Error{input} where the source cannot be read or names nothing, and Error{usage} for a list with the
+/// name of a mesh.
 [[nodiscard]] std::vector<std::string> batch_inputs(const std::string& source, const std::string& results);
 
 /// Throws Error{usage} where a result would be written over one of the inputs.

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import time
 from pathlib import Path
@@ -139,13 +140,50 @@ class Batch(ProgramTest):
         self.fail_with(2, "contradict", "slice", "--batch", "parts", "parts/box00.stl", "-o", "out", "--format", "cli")
         self.fail_with(2, "contradict", "slice", "--batch", "parts", "-o", "-", "--format", "cli")
         self.fail_with(2, r"\{nam\}.*none of", "slice", "--batch", "parts", "-o", "out/{nam}.cli")
-        self.fail_with(2, "contradict", "slice", "parts/box00.stl", "-o", "x.cli", "--jobs", "2")
+        self.fail_with(2, "--jobs goes with --batch", "slice", "parts/box00.stl", "-o", "x.cli", "--jobs", "2")
+        self.fail_with(2, r"parts/box00\.stl: has the name of a mesh; expected a folder", "slice", "--batch", "parts/box00.stl",
+                       "-o", "out", "--format", "cli")
         self.fail_with(2, "too many", "slice", "--batch", "parts", "-o", "o{name}.cli", "--jobs", "99999")
         self.fail_with(3, "there is no|No such", "slice", "--batch", "nowhere", "-o", "out", "--format", "cli")
         self.fail_with(3, "names no file", "slice", "--batch", "-", "-o", "out", "--format", "cli", stdin=b"# none\n")
         self.path("empty").mkdir()
         self.fail_with(3, "no file in this folder", "slice", "--batch", "empty", "-o", "out", "--format", "cli")
         self.fail_with(6, "cannot be made", "slice", "--batch", "parts", "-o", "parts/box00.stl", "--format", "cli")
+
+    def test_pipes_and_sockets_in_a_folder_are_no_meshes(self):
+        self.boxes("parts", 2)
+        os.mkfifo(self.path("parts/box00a.stl"))
+        os.mkfifo(self.path("pipe"))
+        os.symlink("../pipe", self.path("parts/link.stl"))
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(str(self.path("parts/box01a.stl")))
+            records = self.batch(0, "parts", "-o", "out", "--format", "cli")
+        self.assertEqual([r["path"] for r in records], ["parts/box00.stl", "parts/box01.stl"])
+
+    def test_a_folder_that_cannot_be_listed_fails_like_a_file(self):
+        self.boxes("parts/a", 1)
+        self.boxes("parts/locked", 1)
+        self.boxes("parts/z", 1)
+        self.folder.chmod(0o777)
+        self.path("parts/locked").chmod(0)
+        self.addCleanup(self.path("parts/locked").chmod, 0o700)
+        unprivileged = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+        records = self.batch(7, "parts", "-o", "out", "--format", "cli", **unprivileged)
+        self.assertEqual([(r["path"], r["ok"]) for r in records],
+                         [("parts/a/box00.stl", True), ("parts/locked", False), ("parts/z/box00.stl", True)])
+        self.assertEqual(records[1]["error"]["text"], "parts/locked: no permission to read this file")
+        self.path("parts").chmod(0)
+        self.addCleanup(self.path("parts").chmod, 0o700)
+        result = self.run_program("slice", "--batch", "parts", "-o", "out", "--format", "cli", **unprivileged)
+        self.assertEqual(result.code, 3)
+        self.assertIn("parts: the folder cannot be listed", result.err)
+
+    def test_every_error_names_its_file(self):
+        self.boxes("parts", 2)
+        records = self.batch(7, "parts", "-o", "out", "--format", "cli", "--layer-height", "50")
+        for record in records:
+            self.assertRegex(record["error"]["text"], f"^{record['path']}: the layer height")
+            self.assertEqual(record["error"]["text"].count(record["path"]), 1)
 
     def test_a_large_file_gets_more_threads(self):
         self.path("parts").mkdir()
