@@ -106,7 +106,7 @@ void for_each_part(std::span<const Layer> parts, const Format& format) {
 
 // The same on a grid: calls put(points, direction) for what the grid leaves of each contour.
 template <class Put>
-void for_each_on_grid(const Grid& grid, const Layer& layer, const Put& put) {
+void for_each_on_grid(const WriterGrid& grid, const Layer& layer, const Put& put) {
     std::vector<GridPoint> scratch;
     for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
         const double area = closed ? ring_area(contour) : 0;
@@ -201,7 +201,7 @@ class AsciiWriter final : public CommonLayerWriter {
     }
 
     double units_;
-    Grid grid_;
+    WriterGrid grid_;
 };
 
 constexpr std::size_t long_head = 14;
@@ -445,7 +445,7 @@ class ShortWriter final : public CommonLayerWriter {
     }
 
     double units_;
-    Grid grid_;
+    WriterGrid grid_;
     std::int64_t last_height_;
 };
 

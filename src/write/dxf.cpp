@@ -89,7 +89,7 @@ class DxfWriter final : public SequentialWriter {
     std::string tail() override { return "  0\nENDSEC\n  0\nEOF\n"; }
 
     bool several_;
-    Grid grid_{text_step_mm, &rounding_loss()};
+    WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 
 } // namespace

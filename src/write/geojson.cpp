@@ -105,7 +105,7 @@ class GeoJsonWriter final : public SequentialWriter {
     std::string tail() override { return "\n]}\n"; }
 
     std::vector<std::string> labels_;
-    Grid grid_{text_step_mm, &rounding_loss()};
+    WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 
 } // namespace

@@ -38,11 +38,11 @@ double grid_area(std::span<const GridPoint> ring) noexcept {
     return 0.5 * twice;
 }
 
-Grid::Grid(double step_mm, RoundingLoss* loss)
+WriterGrid::WriterGrid(double step_mm, RoundingLoss* loss)
     : step_(step_mm), per_step_(1 / step_mm),
       loss_(step_mm / 2 > RoundingLoss::unnoticed_mm ? loss : nullptr) {}
 
-void Grid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const {
+void WriterGrid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const {
     std::size_t beyond = 0;
     const auto whole = [](double v) {
         // Unsigned, because values that are refused below may wrap around.
@@ -61,7 +61,7 @@ void Grid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint*
                                 layer, step_));
 }
 
-double Grid::largest_move(std::span<const Point2> points, const GridPoint* rounded) const {
+double WriterGrid::largest_move(std::span<const Point2> points, const GridPoint* rounded) const {
     double largest = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
         largest = std::max({largest, std::abs(static_cast<double>(rounded[i].x) * step_ - points[i].x),
@@ -69,7 +69,7 @@ double Grid::largest_move(std::span<const Point2> points, const GridPoint* round
     return largest;
 }
 
-std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool closed, double area,
+std::span<const GridPoint> WriterGrid::snap(std::span<const Point2> contour, bool closed, double area,
                                       std::uint64_t layer, std::vector<GridPoint>& scratch) const {
     if (scratch.size() < contour.size())
         scratch.resize(contour.size());
@@ -92,7 +92,7 @@ std::span<const GridPoint> Grid::snap(std::span<const Point2> contour, bool clos
     return kept;
 }
 
-std::vector<GridPoint> Grid::snap_points(std::span<const Point2> points, std::uint64_t layer) const {
+std::vector<GridPoint> WriterGrid::snap_points(std::span<const Point2> points, std::uint64_t layer) const {
     std::vector<GridPoint> snapped(points.size());
     round(points, layer, snapped.data());
     if (loss_ != nullptr)

@@ -26,11 +26,11 @@ inline constexpr double text_step_mm = text_rounding.step_mm;
 /// Signed area of a ring in square steps.
 [[nodiscard]] double grid_area(std::span<const GridPoint> ring) noexcept;
 
-class Grid {
+class WriterGrid {
   public:
     /// Points at whole multiples of `step_mm`. What that loses of contours goes to `loss`, which must outlive
     /// the grid.
-    explicit Grid(double step_mm, RoundingLoss* loss = nullptr);
+    explicit WriterGrid(double step_mm, RoundingLoss* loss = nullptr);
 
     /// The nearest point for each of a contour, half-way cases to the even one. Points that fall together
     /// with the one before are dropped; what is left of a ring of fewer than three, or of a chain of fewer

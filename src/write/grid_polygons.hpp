@@ -17,7 +17,7 @@ namespace lamella {
 /// after each of them its holes. What the grid leaves nothing of is passed over, an outer ring with its
 /// holes.
 template <class Ring>
-void for_each_polygon(const Layer& layer, const Nesting& nesting, const Grid& grid,
+void for_each_polygon(const Layer& layer, const Nesting& nesting, const WriterGrid& grid,
                       std::vector<GridPoint>& scratch, const Ring& ring) {
     const auto put = [&](std::size_t i, bool first) {
         const auto points =
@@ -37,7 +37,7 @@ void for_each_polygon(const Layer& layer, const Nesting& nesting, const Grid& gr
 /// Calls `line(points, closed)` for what bounds no material: rings in nothing that run clockwise, rings
 /// without area, and open chains.
 template <class Line>
-void for_each_line(const Layer& layer, const Nesting& nesting, const Grid& grid,
+void for_each_line(const Layer& layer, const Nesting& nesting, const WriterGrid& grid,
                    std::vector<GridPoint>& scratch, const Line& line) {
     for (std::size_t i = 0; i < layer.contours(); ++i) {
         const bool closed = layer.closed(i);

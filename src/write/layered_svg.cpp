@@ -141,7 +141,7 @@ class LayeredSvgWriter final : public SequentialWriter {
     GridPoint origin_;
     std::vector<std::string> part_heads_; ///< used where there are several
     bool legacy_z_;
-    Grid grid_{text_step_mm, &rounding_loss()};
+    WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 
 // How each picture begins, and how a folder of pictures is known again that may be replaced.
@@ -246,7 +246,7 @@ class SvgLayersWriter final : public LayerWriter {
     LayerOrder order_;
     LeftOut left_out_{{.open_chains = true, .hatches = false}};
     std::string head_;
-    Grid grid_{text_step_mm, &left_out_.rounding()};
+    WriterGrid grid_{text_step_mm, &left_out_.rounding()};
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
     std::atomic<std::uint64_t> bytes_{0};
 };

@@ -35,7 +35,7 @@ struct SnappedContours {
     std::size_t rings = 0;
 };
 
-SnappedContours snapped(const Layer& layer, const Grid& grid) {
+SnappedContours snapped(const Layer& layer, const WriterGrid& grid) {
     SnappedContours result;
     std::vector<GridPoint> scratch;
     for (std::size_t i = 0; i < layer.contours(); ++i) {
@@ -81,13 +81,13 @@ double page_step_mm(const Box3& box) {
 PageGrid page_grid(const Box3& box) {
     PageGrid grid{.step_mm = page_step_mm(box), .origin = {}};
     const Point2 corner{box.min.x, box.min.y};
-    grid.origin = Grid(grid.step_mm).snap_points({&corner, 1}, 0).front();
+    grid.origin = WriterGrid(grid.step_mm).snap_points({&corner, 1}, 0).front();
     return grid;
 }
 
 NumberBytes layer_numbers(std::span<const Layer> parts, std::span<const Point2> places, const PageGrid& grid,
                           std::uint64_t& shown) {
-    const Grid snapping(grid.step_mm);
+    const WriterGrid snapping(grid.step_mm);
     NumberBytes out;
     shown = 0;
     for (const Layer& layer : parts) {

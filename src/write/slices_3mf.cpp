@@ -87,7 +87,7 @@ class Compression {
 };
 
 /// One <s:slice>.
-void put_slice(const Layer& layer, const Grid& grid, ByteBuffer& out) {
+void put_slice(const Layer& layer, const WriterGrid& grid, ByteBuffer& out) {
     out.append(fmt::format("<s:slice ztop=\"{}\"", decimal_text(layer.top)));
     constexpr std::string_view x_before = "<s:vertex x=\"";
     constexpr std::string_view y_before = "\" y=\"";
@@ -238,7 +238,7 @@ class Slices3mfWriter final : public LayerWriter {
     ZipWriter zip_;
     LayerOrder order_;
     LeftOut left_out_{{.open_chains = false, .hatches = false}};
-    Grid grid_{text_step_mm, &left_out_.rounding()};
+    WriterGrid grid_{text_step_mm, &left_out_.rounding()};
     Compression compression_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
     /// The stacks of all parts but the first, which wait for the end of the first one.

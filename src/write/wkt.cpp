@@ -81,7 +81,7 @@ class WktWriter final : public SequentialWriter {
     }
 
     std::vector<std::string> labels_;
-    Grid grid_{text_step_mm, &rounding_loss()};
+    WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 
 } // namespace

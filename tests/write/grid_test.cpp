@@ -15,17 +15,17 @@ namespace {
 
 std::vector<GridPoint> snapped(double step, const std::vector<Point2>& contour, bool closed = true) {
     std::vector<GridPoint> scratch;
-    const auto points = Grid(step).snap(contour, closed, closed ? ring_area(contour) : 0, 0, scratch);
+    const auto points = WriterGrid(step).snap(contour, closed, closed ? ring_area(contour) : 0, 0, scratch);
     return {points.begin(), points.end()};
 }
 
-TEST(Grid, RoundsToTheNearestPointAndHalvesToEven) {
+TEST(WriterGrid, RoundsToTheNearestPointAndHalvesToEven) {
     const std::vector<Point2> chain{{0.4, -0.4}, {0.5, -0.5}, {1.5, -1.5}, {2.6, -2.6}, {1e9 + 0.4, -1e9}};
     const std::vector<GridPoint> expected{{0, 0}, {2, -2}, {3, -3}, {1'000'000'000, -1'000'000'000}};
     EXPECT_EQ(snapped(1, chain, false), expected);
 }
 
-TEST(Grid, AgreesWithTheRoundingOfTheStandardLibrary) {
+TEST(WriterGrid, AgreesWithTheRoundingOfTheStandardLibrary) {
     std::mt19937_64 random(1);
     for (int i = 0; i < 20'000; ++i) {
         const double x =
@@ -38,17 +38,17 @@ TEST(Grid, AgreesWithTheRoundingOfTheStandardLibrary) {
     }
 }
 
-TEST(Grid, DropsPointsThatFallTogetherAlsoAcrossTheEnd) {
+TEST(WriterGrid, DropsPointsThatFallTogetherAlsoAcrossTheEnd) {
     const std::vector<Point2> ring{{0, 0}, {4, 0}, {4.1, 0.1}, {4, 4}, {0.2, 0.3}, {0.1, -0.1}};
     EXPECT_EQ(snapped(1, ring), (std::vector<GridPoint>{{0, 0}, {4, 0}, {4, 4}}));
     const std::vector<Point2> chain{{0, 0}, {0.1, 0}, {4, 0}, {0, 0}};
     EXPECT_EQ(snapped(1, chain, false), (std::vector<GridPoint>{{0, 0}, {4, 0}, {0, 0}}));
 }
 
-TEST(Grid, CountsWhatACoarseStepLoses) {
+TEST(WriterGrid, CountsWhatACoarseStepLoses) {
     const auto warnings = [](double step) {
         RoundingLoss loss;
-        const Grid grid(step, &loss);
+        const WriterGrid grid(step, &loss);
         std::vector<GridPoint> scratch;
         const std::vector<Point2> small{{0, 0}, {0.01, 0}, {0, 0.01}};
         const std::vector<Point2> large{{0, 0}, {5, 0}, {5.04, 0}, {5, 5}};
@@ -64,14 +64,14 @@ TEST(Grid, CountsWhatACoarseStepLoses) {
                                  "part nearer to the origin, lose less"}));
 }
 
-TEST(Grid, ForgetsContoursThatShrinkToAPointOrALine) {
+TEST(WriterGrid, ForgetsContoursThatShrinkToAPointOrALine) {
     EXPECT_TRUE(snapped(1, {{0, 0}, {0.3, 0}, {0, 0.3}}).empty());
     EXPECT_TRUE(snapped(1, {{0, 0}, {5, 0}, {5, 0.3}}).empty());
     EXPECT_TRUE(snapped(1, {{0, 0}, {0.3, 0}}, false).empty());
     EXPECT_TRUE(snapped(1, {}).empty());
 }
 
-TEST(Grid, KeepsTheDirectionOfARingThatRoundingTurnsOver) {
+TEST(WriterGrid, KeepsTheDirectionOfARingThatRoundingTurnsOver) {
     // A counter-clockwise sliver whose corners round to a clockwise triangle.
     const std::vector<Point2> sliver{{0, 0.4}, {10, 0.6}, {20, 0.6}};
     const std::vector<Point2> flipped{{0, 0}, {10, 1}, {20, 1}};
@@ -87,7 +87,7 @@ TEST(Grid, KeepsTheDirectionOfARingThatRoundingTurnsOver) {
     EXPECT_GT(grid_area(snapped(1, bent)), 0);
 }
 
-TEST(Grid, RefusesWhatItCannotHold) {
+TEST(WriterGrid, RefusesWhatItCannotHold) {
     EXPECT_THROW((void)snapped(0.001, {{0, 0}, {1e13, 0}, {0, 1}}), Error);
     EXPECT_THROW((void)snapped(0.001, {{0, 0}, {0, -1e13}, {0, 1}}), Error);
     EXPECT_THROW((void)snapped(1, {{0, 0}, {std::nan(""), 0}, {0, 1}}), Error);
