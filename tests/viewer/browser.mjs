@@ -64,6 +64,34 @@ export async function shown(page) {
   return Number(await page.locator('canvas[data-layer]').getAttribute('data-layer')) + 1;
 }
 
+/** Waits until the stack, or the mesh, is drawn as it is to stay. */
+export const settled = (page) => page.waitForSelector('canvas[data-settled]');
+
+/**
+ * Opens a page of the folder, and acts in it.
+ * @returns {Promise<{work: number, whole: number}[]>} all that its thread did meanwhile, one task after the other: seconds
+ *     of the processor, and seconds from begin to end
+ */
+export async function tasks(name, act) {
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(300000);
+  const session = await context.newCDPSession(page);
+  const events = [];
+  session.on('Tracing.dataCollected', ({ value }) => value.forEach((event) => events.push(event)));
+  await session.send('Tracing.start', { traceConfig: { includedCategories: ['toplevel', '__metadata'], excludedCategories: ['*'] } });
+  await page.goto(pathToFileURL(file(name)).href, { waitUntil: 'commit' });
+  await act(page);
+  const ended = new Promise((resolve) => session.once('Tracing.tracingComplete', resolve));
+  await session.send('Tracing.end');
+  await ended;
+  await context.close();
+  const mains = new Set(events.filter(({ ph, args }) => ph === 'M' && args.name === 'CrRendererMain').map(({ pid, tid }) => `${pid} ${tid}`));
+  return events
+    .filter(({ name, pid, tid }) => name === 'ThreadControllerImpl::RunTask' && mains.has(`${pid} ${tid}`))
+    .map(({ tdur, dur }) => ({ work: tdur / 1e6, whole: dur / 1e6 }));
+}
+
 /**
  * Counts the pixels of a canvas that are near a colour.
  * @param {number[]} colour 0 to 255

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colourOf, file, lamella, open, pixelsNear, shown, startBrowser, stopBrowser, until } from './browser.mjs';
+import { colourOf, file, lamella, open, pixelsNear, settled, shown, startBrowser, stopBrowser, tasks, until } from './browser.mjs';
 
 /** A binary STL file of triangles given by their corners. */
 function stl(triangles) {
@@ -227,9 +227,10 @@ test('the defects of a mesh are listed and can be gone to', async () => {
   await page.waitForSelector('canvas[data-ready]');
   assert.match(await page.locator('#verdict').textContent(), /has defects/);
   const canvas = page.locator('canvas[data-ready]');
+  await settled(page);
   const before = await canvas.screenshot();
   await page.getByRole('button', { name: /rim of 4 edges/ }).click();
-  await page.waitForTimeout(300);
+  await settled(page);
   assert.notDeepEqual(await canvas.screenshot(), before);
   await page.keyboard.press('ArrowLeft');
   await close();
@@ -242,7 +243,7 @@ test('the stack shows the layers up to the one that is chosen', async () => {
   await page.getByRole('button', { name: 'Front' }).click();
   /** Pixels of the colour of the walls, counted in what is on the screen. */
   const blue = async () => {
-    await page.waitForTimeout(400);
+    await settled(page);
     const picture = (await page.locator('canvas[data-built]').screenshot()).toString('base64');
     return page.evaluate(async (picture) => {
       const image = new Image();
@@ -388,3 +389,103 @@ test('a thousand layers and the sheet with 1225 holes stay usable', async () => 
     await close();
   }
 });
+
+test('the lattice holds the page for moments only, and keys are answered, where no graphics card draws', async () => {
+  lamella('make', 'lattice', '-o', 'lattice.stl');
+  lamella('view', 'lattice.stl');
+  const frames = []; // from each key to its answer
+  const held = await tasks('lattice.html', async (page) => {
+    await page.waitForSelector('canvas[data-layer]');
+    for (const until of ['canvas[data-ready]', 'canvas[data-built]', 'canvas[data-settled]']) {
+      for (const key of ['PageDown', 'ArrowUp']) frames.push(await framesToAnswer(page, key));
+      await page.waitForSelector(until);
+    }
+    for (const key of ['ArrowDown', 'End', 'Home']) frames.push(await framesToAnswer(page, key));
+  });
+  assert.ok(Math.max(...frames) <= 60, `frames from keys to answers: ${frames.join(' ')}`);
+  // On a machine of its own no task is longer than a quarter of a second. Others may be at work beside it: so the
+  // work of each is bounded by that, and from its begin to its end, with all waiting, by twenty times as long.
+  assert.ok(held.length > 100, `${held.length} tasks`);
+  assert.ok(Math.max(...held.map(({ work }) => work)) <= 0.25, `seconds of work: ${longest(held, 'work')}`);
+  assert.ok(Math.max(...held.map(({ whole }) => whole)) <= 5, `seconds from begin to end: ${longest(held, 'whole')}`);
+});
+
+const longest = (tasks, what) => tasks.map((task) => task[what]).sort((a, b) => b - a).slice(0, 8).join(' ');
+
+/** Presses a key that goes to another layer; counts frames until that is drawn. */
+async function framesToAnswer(page, key) {
+  await page.evaluate(() => {
+    const canvas = document.querySelector('canvas[data-layer]');
+    document.addEventListener(
+      'keydown',
+      () => {
+        window.framesToAnswer = new Promise((resolve) => {
+          let frames = 0;
+          const count = () => {
+            ++frames;
+            if (canvas.dataset.layer === document.getElementById('layer').value) resolve(frames);
+            else requestAnimationFrame(count);
+          };
+          requestAnimationFrame(count);
+        });
+      },
+      { once: true },
+    );
+  });
+  await page.keyboard.press(key);
+  return page.evaluate(() => window.framesToAnswer);
+}
+
+test('a picture that is drawn in slices is the same as one that is drawn at once', async () => {
+  const { page, complaints, close } = await open('coarse.html', { view: 'stack' });
+  await page.waitForSelector('canvas[data-built]');
+  await page.keyboard.press('Home');
+  const pictureOf = async (layer) => {
+    await page.locator('#layer').fill(String(layer));
+    await settled(page);
+    return page.locator('canvas[data-built]').screenshot();
+  };
+  // How long it takes to draw anything, as far as the page can tell.
+  const drawIn = (milliseconds) =>
+    page.evaluate((milliseconds) => {
+      const begun = new WeakMap();
+      WebGL2RenderingContext.prototype.getSyncParameter = function (sync) {
+        if (!begun.has(sync)) begun.set(sync, performance.now());
+        return performance.now() - begun.get(sync) < milliseconds ? this.UNSIGNALED : this.SIGNALED;
+      };
+    }, milliseconds);
+  await drawIn(60); // more and more in a slice
+  for (const layer of [60, 70, 80, 90]) await pictureOf(layer);
+  const [few, many] = [await pictureOf(2), await pictureOf(80)];
+  assert.ok((await differentPixels(page, few, many)) > 5000);
+  await drawIn(600); // as little as there can be in a slice
+  await pictureOf(40);
+  // The last digit of a colour may differ, and which of two walls is seen where they meet.
+  for (const [layer, picture] of [[80, many], [2, few]]) {
+    const different = await differentPixels(page, await pictureOf(layer), picture);
+    assert.ok(different < 20, `layer ${layer}: ${different} pixels`);
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+/** How many pixels of two pictures have another colour. */
+const differentPixels = (page, ...pictures) =>
+  page.evaluate(
+    async (pictures) => {
+      const [a, b] = await Promise.all(
+        pictures.map(async (picture) => {
+          const image = new Image();
+          image.src = `data:image/png;base64,${picture}`;
+          await image.decode();
+          const ctx = new OffscreenCanvas(image.width, image.height).getContext('2d');
+          ctx.drawImage(image, 0, 0);
+          return ctx.getImageData(0, 0, image.width, image.height).data;
+        }),
+      );
+      let different = 0;
+      for (let i = 0; i < Math.max(a.length, b.length); i += 4) if (![0, 1, 2].every((k) => Math.abs(a[i + k] - b[i + k]) <= 4)) ++different;
+      return different;
+    },
+    pictures.map((picture) => picture.toString('base64')),
+  );

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colourOf, file, lamella, open, shown, startBrowser, stopBrowser } from './browser.mjs';
+import { colourOf, file, lamella, open, settled, shown, startBrowser, stopBrowser } from './browser.mjs';
 
 const height = 0.5; // mm, of a layer
 const pitches = { rook: 0.02, calibration: 0.1 }; // mm, of the raster's pixels: finer than those of the screen
@@ -161,7 +161,7 @@ for (const colorScheme of ['light', 'dark'])
     await page.waitForSelector('canvas[data-built]');
     await page.locator('#layer').fill(String(layers.length - 1));
     await page.getByRole('button', { name: 'Front' }).click();
-    await page.waitForTimeout(1000);
+    await settled(page);
     const drawn = await silhouette(page);
     // Below, the bed is seen behind the part.
     const rowsOf = (view) => [...view.keys()].filter((row) => Number.isFinite(view[row][0]) && row < 0.65 * drawn.height);

@@ -7,6 +7,7 @@ import { buildMeshPage } from './mesh_page.js';
 import { helpDialog } from './panels/help.js';
 import { Store } from './store.js';
 import { firstTheme, followTheme, switchTheme } from './theme.js';
+import { nextTurn } from './turn.js';
 
 /**
  * What the page shows at the moment.
@@ -21,6 +22,7 @@ import { firstTheme, followTheme, switchTheme } from './theme.js';
  * @property {number|null} shell of a mesh: the one that is shown in colours; null for all
  */
 async function build() {
+  await nextTurn(); // it took a while to load the modules
   const page = readPage(document);
   const store = new Store({
     layer: 0,

@@ -3,7 +3,8 @@ import { test } from 'node:test';
 import { faultText, findings, firstFault, gapText, remarkableLayers, totals, verdict, widestGaps, worstLayers } from '../src/findings.js';
 import { Camera } from '../src/layer/camera.js';
 import { roundStep } from '../src/layer/round_step.js';
-import { Walls, spacingFor } from '../src/stack/walls.js';
+import { levelsOf } from '../src/stack/levels.js';
+import { Walls, linesOfRow, spacingFor } from '../src/stack/walls.js';
 import { Store } from '../src/store.js';
 import { LayerAxis, columnsOf } from '../src/timeline/plot.js';
 import { brief, counted } from '../src/text.js';
@@ -124,13 +125,49 @@ function squareLayer() {
 
 test('walls stand on every line, with normals that point out of the material', () => {
   const walls = new Walls();
-  walls.add(squareLayer(), { number: 3, bottom: 1, top: 2 }, 0);
+  walls.add(squareLayer(), 3, 0);
   assert.equal(walls.size, 5);
-  assert.deepEqual(walls.counts, [5]);
-  assert.deepEqual(walls.ends.slice(0, 4), [0, 0, 10, 0]);
-  assert.deepEqual(walls.normals.slice(0, 4), [0, -127, 0, -127].map((n) => n + 0));
-  assert.deepEqual(walls.heights.slice(0, 2), [1, 2]);
-  assert.deepEqual(walls.info, [3, 0, 3, 0, 3, 0, 3, 0, 3, 0.5]);
+  assert.deepEqual([walls.layers, walls.counts], [[3], [5]]);
+  const { rows } = walls;
+  const floats = new Float32Array(rows.buffer, rows.byteOffset, rows.length);
+  const vector = (number) => [(number << 16) >> 16, number >> 16];
+  assert.deepEqual([...floats.subarray(0, 4)], [0, 0, 10, 0]);
+  assert.deepEqual([...rows.subarray(6, 8)].map(vector), [[0, -32767], [0, -32767]]);
+  const lines = [0, 1, 2, 3, 4].map((i) => [...rows.subarray(8 * i + 4, 8 * i + 6)]);
+  assert.deepEqual(lines, [[3, 0], [3, 0], [3, 0], [3, 0], [3, 1]]);
+});
+
+test('lines that turn by little have a normal in common', () => {
+  const n = 36;
+  const circle = Array.from({ length: n }, (_, i) => [Math.cos((2 * Math.PI * i) / n), Math.sin((2 * Math.PI * i) / n)]);
+  const walls = new Walls();
+  walls.add({ parts: [{ points: new Float32Array(circle.flat()), ends: new Uint32Array([n]), rings: 1 }] }, 0, 0);
+  for (let i = 0; i < n; ++i) {
+    assert.equal(walls.rows[8 * i + 7], walls.rows[8 * ((i + 1) % n) + 6]);
+    const [x, y] = [(walls.rows[8 * i + 6] << 16) >> 16, walls.rows[8 * i + 6] >> 16].map((c) => c / 32767);
+    assert.ok(Math.hypot(x - circle[i][0], y - circle[i][1]) < 1e-3);
+  }
+});
+
+test('walls of many layers stay as they were put up', () => {
+  const walls = new Walls();
+  for (let number = 0; number < 1000; ++number) walls.add(squareLayer(), number, 0);
+  assert.equal(walls.size, 5000);
+  assert.equal(walls.rows.length, 8 * 5 * linesOfRow);
+  for (let line = 0; line < 5000; ++line) assert.equal(walls.rows[8 * line + 4], Math.floor(line / 5));
+});
+
+test('levels hold each layer once, and with those before they are evenly spaced', () => {
+  for (const [count, stride] of [[1, 1], [1, 8], [7, 4], [100, 16], [557, 128]]) {
+    const levels = levelsOf(count, stride);
+    for (let k = 0; k < levels.length; ++k) {
+      const step = stride / 2 ** k;
+      const held = levels.slice(0, k + 1).flat().sort((a, b) => a - b);
+      assert.deepEqual(held, Array.from({ length: Math.ceil(count / step) }, (_, i) => i * step), `${count}, ${stride}, ${k}`);
+      assert.deepEqual(levels[k], [...levels[k]].sort((a, b) => a - b));
+    }
+    assert.equal(levels.flat().length, count);
+  }
 });
 
 test('points are left out by their distance until enough are', () => {
@@ -142,7 +179,7 @@ test('points are left out by their distance until enough are', () => {
   const apart = spacingFor(layer, 100, 0.01);
   assert.ok(apart > 0.3 && apart < 1.5, `${apart}`);
   const walls = new Walls();
-  walls.add(layer, { number: 0, bottom: 0, top: 1 }, apart);
+  walls.add(layer, 0, apart);
   assert.ok(walls.size <= 100 && walls.size > 30);
 });
 

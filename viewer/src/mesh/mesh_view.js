@@ -43,10 +43,11 @@ export class MeshView {
   constructor(page, mesh, store) {
     this.#mesh = mesh;
     this.#origin = page.head.box[0];
-    this.#space = new Space(page.head.box, 'The mesh in space. Buttons look at it from several sides.');
+    this.#space = new Space(page.head.box, 'The mesh in space. Buttons look at it from several sides.', () => this.#bulk());
     this.#surface = this.#build();
     this.#marks = placeMarks(page.notes.places, this.#origin);
-    this.#space.scene.add(this.#surface, this.#marks);
+    this.#space.bulk.add(this.#surface);
+    this.#space.over.add(this.#marks);
     this.node = element(
       'section',
       { className: 'pane', 'aria-label': 'The mesh in space' },
@@ -66,7 +67,7 @@ export class MeshView {
   #build() {
     const { vertices, triangles } = this.#mesh;
     const positions = new Float32Array(3 * triangles.length);
-    triangles.forEach((corner, i) => positions.set(vertices.subarray(3 * corner, 3 * corner + 3), 3 * i));
+    for (let i = 0; i < positions.length; ++i) positions[i] = vertices[3 * triangles[Math.floor(i / 3)] + (i % 3)];
     this.#colours = new BufferAttribute(new Uint8Array(3 * triangles.length), 3, true);
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(positions, 3));
@@ -75,14 +76,19 @@ export class MeshView {
     return new Mesh(geometry, new ShaderMaterial({ vertexShader: vertex, fragmentShader: fragment, side: DoubleSide, uniforms }));
   }
 
+  #bulk() {
+    return [{ mesh: this.#surface, first: 0, count: this.#mesh.shells.length, vertices: 3 }];
+  }
+
   /** All shells, or one of them with the others greyed. */
   #paint({ theme, shell }) {
     const bytes = (css) => new Color(css).toArray().map((c) => Math.round(255 * c));
     const walls = theme.walls.map(bytes);
     const grey = bytes(theme.gridStrong);
+    const bytesOf = this.#colours.array;
     this.#mesh.shells.forEach((of, t) => {
       const colour = shell === null || shell === of ? walls[of % walls.length] : grey;
-      for (let k = 0; k < 3; ++k) this.#colours.array.set(colour, 9 * t + 3 * k);
+      for (let k = 0; k < 9; ++k) bytesOf[9 * t + k] = colour[k % 3];
     });
     this.#colours.needsUpdate = true;
     this.#surface.material.uniforms.inside.value.set(theme.wallCut);

@@ -2,7 +2,7 @@ import { CanvasTexture, DoubleSide, LinearFilter, Mesh, MeshBasicMaterial, Plane
 import { Camera } from '../layer/camera.js';
 import { pathOf } from '../layer/draw_layer.js';
 
-const longest = 1536; // pixels
+const longest = 1024; // pixels
 const margin = 4;
 
 /** The material of one layer as a flat face: its fill, painted on a rectangle at its height. */
@@ -48,7 +48,7 @@ export class Cap {
       ctx.fill(path, 'nonzero');
       if (rim === null) return;
       ctx.strokeStyle = rim;
-      ctx.lineWidth = 8;
+      ctx.lineWidth = 5;
       ctx.save();
       ctx.clip(path, 'nonzero');
       ctx.stroke(path);

@@ -12,8 +12,10 @@ import {
   PerspectiveCamera,
   PlaneGeometry,
   Scene,
+  ShaderMaterial,
   Vector3,
   WebGLRenderer,
+  WebGLRenderTarget,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { element } from '../element.js';
@@ -30,30 +32,66 @@ const views = {
   Right: [1, 0, 0.001],
 };
 
-/** A bed with a part on it, a camera around it, and a canvas that is drawn when something changed. */
+const millisecondsOfSlice = 80; // that whoever draws shall be busy before the page has its turn
+const leastOfSlice = 2000; // lines or triangles; the first slice has so many, to measure by
+const slicesInMotion = 3; // that a picture may take while something moves
+const millisecondsOfTurn = 8;
+const millisecondsOfRest = 200; // until something is taken to rest
+
+/**
+ * What takes long to draw.
+ * @typedef {object} Bulk
+ * @property {Mesh} mesh in the group `bulk`
+ * @property {number} first of its lines or triangles to be drawn
+ * @property {number} count of them
+ * @property {number} vertices of each of them, in the order in which they are drawn
+ *
+ * A bed with a part on it, a camera around it, and a canvas that is drawn when something changed.
+ *
+ * Where there is no graphics card, a picture of everything may take many seconds, and the page would stand still for as
+ * long. So a picture is drawn in slices beside the one that is on the screen, one after the other; how much a slice
+ * holds is measured with each of them. What does not fit into one is drawn with less detail as long as something
+ * moves, and in full once it rests.
+ */
 export class Space {
-  #asked = false;
-  #fine = false;
-  #refining = 0;
+  #bulkOf;
+  #frame = 0;
+  #changed = false; // since the last picture was begun
+  #rested = false; // so that a better picture than the last one is wanted
+  #resting = 0;
+  #picture = null; // that is being drawn
+  #slice = null; // that is being drawn
+  #room = leastOfSlice; // of a slice
+  #compiled = false;
+  #target = new WebGLRenderTarget(1, 1, { samples: 4 });
+  #copy = copyOf(this.#target.texture);
   #bed;
   #listeners = [];
 
-  /** @param {number[][]} box low and high corner of the part, mm; the scene counts from the low one */
-  constructor(box, label) {
+  /**
+   * @param {number[][]} box low and high corner of the part, mm; the scene counts from the low one
+   * @param {(most: number) => Bulk[]} bulkOf what there is to draw; no more than `most` lines or triangles if it can be
+   *     shown with less detail. Called when a picture is begun.
+   */
+  constructor(box, label, bulkOf) {
+    this.#bulkOf = bulkOf;
     this.size = new Vector3(...box[0].map((low, k) => box[1][k] - low));
     this.middle = this.size.clone().multiplyScalar(0.5);
     this.reach = Math.max(this.size.length(), 1e-6);
     this.canvas = element('canvas', { className: 'drawing', tabIndex: 0, role: 'img', 'aria-label': label });
-    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: false });
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: false, depth: false });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
-    this.secondsOfPicture = 0; // what the last one took
-    this.scene = new Scene();
+    this.renderer.debug.checkShaderErrors = false; // it would wait for the compiler
+    this.under = new Group(); // drawn first
+    this.bulk = new Group();
+    this.over = new Group(); // drawn last
+    this.scene = new Scene().add(this.under, this.bulk, this.over);
     this.camera = new PerspectiveCamera(32, 1, this.reach / 200, this.reach * 40);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener('change', () => this.redraw());
-    this.scene.add((this.#bed = bedOf(this.size)));
+    this.under.add((this.#bed = bedOf(this.size)));
     this.tools = Object.keys(views).map((name) =>
       element('button', { type: 'button', className: 'toggle', onclick: () => this.look(name) }, name),
     );
@@ -117,47 +155,148 @@ export class Space {
   }
 
   redraw() {
-    if (this.#asked) return;
-    this.#asked = true;
-    requestAnimationFrame(() => this.draw());
+    this.#changed = true;
+    delete this.canvas.dataset.settled;
+    this.#wake();
   }
 
-  /** Finer, once nothing has moved for a while and where the card is quick: thin layers flicker less. */
-  #refineLater() {
-    clearTimeout(this.#refining);
-    if (this.secondsOfPicture < 0.05 && !this.#fine)
-      this.#refining = setTimeout(() => {
-        this.#fine = true;
-        this.draw();
-      }, 200);
+  #wake() {
+    if (this.#frame === 0) this.#frame = requestAnimationFrame(() => this.#turn());
   }
 
-  draw() {
-    const start = performance.now();
-    this.#fine &&= !this.#asked;
-    this.#asked = false;
-    const { canvas } = this;
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-    if (width === 0 || height === 0) return;
-    const density = Math.min(2, window.devicePixelRatio || 1) * (this.#fine ? 1.5 : 1);
-    if (canvas.width !== Math.round(width * density) || canvas.height !== Math.round(height * density)) {
-      const first = canvas.dataset.ready === undefined;
-      this.renderer.setPixelRatio(density);
-      this.renderer.setSize(width, height, false);
+  /** One turn of the browser: some steps, until they took long or whoever draws has to be waited for. */
+  #turn() {
+    this.#frame = 0;
+    const since = performance.now();
+    while (this.#goOn() && performance.now() - since < millisecondsOfTurn);
+    if (this.#picture !== null || this.#slice !== null || this.#changed) this.#wake();
+  }
+
+  /** One step. Returns whether there was one to take. */
+  #goOn() {
+    if (this.#slice !== null && !this.#isDone()) return false;
+    if (this.#picture?.better && this.#changed) this.#picture = null; // nobody waits for it any more
+    if (!this.#compiled) this.#compile();
+    else if (this.#picture !== null && this.#picture.slices > 0 && this.#picture.bulk.length === 0) this.#show();
+    else if (this.#picture !== null) this.#drawSlice();
+    else if (this.#changed || this.#rested) this.#begin();
+    else return false;
+    return true;
+  }
+
+  #compile() {
+    this.renderer.compile(this.scene, this.camera);
+    this.renderer.compile(this.#copy, this.camera);
+    this.#compiled = true;
+    this.#send(0);
+  }
+
+  #begin() {
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const better = !this.#changed;
+    this.#changed = this.#rested = false;
+    clearTimeout(this.#resting);
+    if (width === 0 || height === 0) return; // what is not seen now is drawn when its size changes
+    if (this.camera.aspect !== width / height) {
       this.camera.aspect = width / height;
       this.camera.updateProjectionMatrix();
-      if (first) this.look('Aslant');
+      if (this.canvas.dataset.ready === undefined) this.look('Aslant');
     }
     this.camera.updateMatrixWorld();
     const up = new Vector3(0, 0, 1).transformDirection(this.camera.matrixWorldInverse);
     for (const listen of this.#listeners) listen(up);
-    this.renderer.render(this.scene, this.camera);
-    this.renderer.getContext().finish();
+    let bulk = this.#bulkOf(Infinity);
+    const quick = totalOf(bulk) <= this.#room;
+    if (!quick && !better) bulk = this.#bulkOf(slicesInMotion * this.#room);
+    const screen = quick || better ? Math.min(2, window.devicePixelRatio || 1) : 1;
+    // Thin layers flicker less in finer pictures.
+    const density = screen * (better && quick ? 1.5 : 1);
+    this.#target.setSize(Math.round(width * density), Math.round(height * density));
+    const [since, camera] = [performance.now(), this.camera.clone()];
+    this.#picture = { bulk, quick, better, width, height, density, camera, since, slices: 0 };
+  }
+
+  #drawSlice() {
+    const { renderer } = this;
+    const picture = this.#picture;
+    let drawn = 0;
+    for (const mesh of this.bulk.children) mesh.visible = false;
+    while (drawn < this.#room && picture.bulk.length > 0) {
+      const { mesh, first, count, vertices } = picture.bulk.shift();
+      const now = Math.min(count, this.#room - drawn);
+      mesh.visible = true;
+      mesh.geometry.setDrawRange(first * vertices, now * vertices);
+      drawn += now;
+      if (now < count) picture.bulk.unshift({ mesh, first: first + now, count: count - now, vertices });
+    }
+    this.under.visible = picture.slices === 0;
+    this.over.visible = picture.bulk.length === 0;
+    renderer.autoClear = picture.slices++ === 0;
+    renderer.setRenderTarget(this.#target);
+    renderer.render(this.scene, picture.camera);
+    renderer.setRenderTarget(null);
+    this.#send(drawn);
+  }
+
+  #send(drawn) {
+    const gl = this.renderer.getContext();
+    this.#slice = { drawn, since: performance.now(), fence: gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0) };
+    gl.flush();
+  }
+
+  /** Whether all that was sent is done; does not wait for it. If so, measures how much the next slice may hold. */
+  #isDone() {
+    const { renderer } = this;
+    const gl = renderer.getContext();
+    const { drawn, since, fence } = this.#slice;
+    const done = gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED && renderer.info.programs.every((program) => program.isReady());
+    if (!done && !gl.isContextLost()) return false;
+    gl.deleteSync(fence);
+    this.#slice = null;
+    const share = millisecondsOfSlice / (performance.now() - since);
+    // What had room to spare and was quick tells nothing of more.
+    if (share < 1 || drawn === this.#room) this.#room = Math.max(leastOfSlice, Math.round(this.#room * Math.min(4, Math.max(0.25, share))));
+    return true;
+  }
+
+  /** Brings the picture to the screen. */
+  #show() {
+    const { canvas, renderer } = this;
+    const { quick, better, width, height, density, since } = this.#picture;
+    this.#picture = null;
+    if (canvas.width !== this.#target.width || canvas.height !== this.#target.height) {
+      renderer.setPixelRatio(density);
+      renderer.setSize(width, height, false);
+    }
+    renderer.autoClear = true;
+    renderer.render(this.#copy, this.camera);
     if (canvas.dataset.ready === undefined) performance.mark('first picture of the stack');
     canvas.dataset.ready = '';
-    this.secondsOfPicture = (performance.now() - start) / 1000;
-    this.#refineLater();
+    const seconds = (performance.now() - since) / 1000;
+    if (this.#changed) return;
+    if (quick || better) canvas.dataset.settled = '';
+    if (better || (quick && seconds > 0.05)) return;
+    this.#resting = setTimeout(() => {
+      this.#rested = true;
+      this.#wake();
+    }, millisecondsOfRest);
   }
+}
+
+const totalOf = (bulk) => bulk.reduce((sum, { count }) => sum + count, 0);
+
+/** A scene that shows a texture all over the canvas, whatever the camera. */
+function copyOf(texture) {
+  const material = new ShaderMaterial({
+    vertexShader: 'varying vec2 place; void main() { place = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }',
+    fragmentShader: 'uniform sampler2D picture; varying vec2 place; void main() { gl_FragColor = texture2D(picture, place); }',
+    uniforms: { picture: { value: texture } },
+    depthTest: false,
+    depthWrite: false,
+  });
+  const mesh = new Mesh(new PlaneGeometry(2, 2), material);
+  mesh.frustumCulled = false;
+  return new Scene().add(mesh);
 }
 
 /** A plane under the part with lines every 1, 2, 5, 10, ... mm; seen from above only. */

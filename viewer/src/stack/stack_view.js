@@ -1,58 +1,65 @@
-import {
-  DataTexture,
-  Float32BufferAttribute,
-  InstancedBufferAttribute,
-  InstancedBufferGeometry,
-  Mesh,
-  RedFormat,
-  Vector3,
-} from 'three';
+import { BufferAttribute, BufferGeometry, DataTexture, Mesh, RGBAIntegerFormat, RedFormat, UnsignedIntType, Vector3 } from 'three';
 import { element } from '../element.js';
 import { brief } from '../text.js';
+import { nextTurn } from '../turn.js';
 import { Cap } from './cap.js';
+import { levelsOf } from './levels.js';
 import { placeMarks } from './place_marks.js';
 import { Space } from './space.js';
-import { topBrightness, wallMaterial } from './wall_material.js';
-import { Walls, spacingFor } from './walls.js';
+import { heightsTexture, topBrightness, wallMaterial } from './wall_material.js';
+import { Walls, linesOfRow, spacingFor } from './walls.js';
 
 const mostLines = 1.5e6; // in the whole stack
 const linesOfPiece = 6e4;
+const linesOfFirstLevel = 16e3; // about
 const millisecondsAtWork = 14; // then the browser has its turn
+const millisecondsUnseen = 500; // until what was put up meanwhile is drawn
 
-/**
- * What is put up for each line of a contour: a wall, and on its top a ledge inwards. position.x goes along the line,
- * position.y upwards, position.z inwards.
- */
-const corners = new Float32BufferAttribute([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 1, 1, 0, 1, 1], 3);
-const ledges = new Float32BufferAttribute([0, 0, 0, 0, 1, 1, 1, 1], 1);
+const verticesOfLine = 12;
+let shared = new BufferAttribute(new Uint32Array(), 1);
 
-const attributesOf = (walls) => ({
-  ends: new InstancedBufferAttribute(new Float32Array(walls.ends), 4),
-  heights: new InstancedBufferAttribute(new Float32Array(walls.heights), 2),
-  normals: new InstancedBufferAttribute(new Int8Array(walls.normals), 4, true),
-  info: new InstancedBufferAttribute(new Float32Array(walls.info), 2),
-});
+/** The vertices of so many lines or more, four triangles each; all geometries share them. */
+function verticesOf(lines) {
+  if (shared.count < verticesOfLine * lines) {
+    const indices = new Uint32Array(verticesOfLine * Math.max(linesOfPiece, lines));
+    const corners = [0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7];
+    for (let i = 0; i < indices.length; ++i) indices[i] = 8 * Math.floor(i / verticesOfLine) + corners[i % verticesOfLine];
+    shared = new BufferAttribute(indices, 1);
+  }
+  return shared;
+}
 
-/** Geometries of the same attributes share them on the graphics card. */
-function geometryOf(attributes, instances) {
-  const geometry = new InstancedBufferGeometry();
-  geometry.setAttribute('position', corners);
-  geometry.setAttribute('ledge', ledges);
-  geometry.setIndex([0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7]);
-  for (const [name, attribute] of Object.entries(attributes)) geometry.setAttribute(name, attribute);
-  geometry.instanceCount = instances;
-  return geometry;
+function textureOf(walls) {
+  const { rows } = walls;
+  const texture = new DataTexture(rows.slice(), 2 * linesOfRow, rows.length / (8 * linesOfRow), RGBAIntegerFormat, UnsignedIntType);
+  texture.internalFormat = 'RGBA32UI';
+  texture.needsUpdate = true;
+  return texture;
+}
+
+/** A mesh of lines of a texture: Space says of which. */
+function meshOf(texture, lines, material) {
+  const mesh = new Mesh(new BufferGeometry().setIndex(verticesOf(lines)), material);
+  mesh.frustumCulled = false;
+  mesh.onBeforeRender = () => {
+    material.uniforms.lines.value = texture;
+    material.uniformsNeedUpdate = true;
+  };
+  return mesh;
 }
 
 const afterNextPaint = (act) => requestAnimationFrame(() => setTimeout(act));
 
-/** Lets the browser draw and answer; without the waiting that it puts on chains of timers. */
-const nextTurn = () =>
-  new Promise((resolve) => {
-    const channel = new MessageChannel();
-    channel.port1.onmessage = resolve;
-    channel.port2.postMessage(null);
-  });
+/** How many lines layers up to `last` have; of numbers of layers that grow, and the lines up to the end of each. */
+function countUpTo(layers, counts, last) {
+  let [low, high] = [0, layers.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (layers[middle] <= last) low = middle + 1;
+    else high = middle;
+  }
+  return counts[low - 1] ?? 0;
+}
 
 /** All layers up to the one that is shown, in space, with the ghosts of those above. */
 export class StackView {
@@ -63,7 +70,9 @@ export class StackView {
   #hidden;
   #walls;
   #ghosts;
-  #pieces = []; // { first, last, counts, solid, ghost }
+  #levels = []; // those that are complete, each a list of pieces { layers, counts, solid, ghost }
+  #stride = 1; // of the first level
+  #capsToPaint = new Map(); // by what paints them
   #origin;
   #top;
   #floor;
@@ -93,26 +102,33 @@ export class StackView {
     this.#origin = [head.origin[0] * head.step_mm, head.origin[1] * head.step_mm, bottom];
     const box = [this.#origin, [head.box[1][0], head.box[1][1], Math.max(...table.top)]];
     try {
-      this.#space = new Space(box, 'The stack of layers in space. Buttons look at it from several sides.');
+      this.#space = new Space(box, 'The stack of layers in space. Buttons look at it from several sides.', (most) => this.#bulkOf(most));
     } catch {
       this.caption.textContent = 'This browser draws nothing in space: WebGL is missing or switched off.';
       return;
     }
     this.#hidden = new DataTexture(new Uint8Array(head.parts.length), head.parts.length, 1, RedFormat);
-    this.#walls = wallMaterial(false, this.#hidden);
-    this.#ghosts = wallMaterial(true, this.#hidden);
+    const heights = heightsTexture(table.bottom.map((z) => z - bottom), table.top.map((z) => z - bottom));
+    this.#walls = wallMaterial(false, heights, head.layers - 1, this.#hidden);
+    this.#ghosts = wallMaterial(true, heights, head.layers - 1, this.#hidden);
     this.#top = new Cap(this.#space.size);
     this.#floor = new Cap(this.#space.size);
     this.#marks = placeMarks(notes.places, this.#origin);
-    this.#space.scene.add(this.#top.mesh, this.#floor.mesh, this.#marks);
+    this.#space.under.add(this.#top.mesh, this.#floor.mesh);
+    this.#space.over.add(this.#marks);
+    // Empty, so that their programs are made before the first lines are there.
+    for (const material of [this.#walls, this.#ghosts]) this.#space.bulk.add(meshOf(null, 0, material));
     const tools = element('div', { className: 'tools', role: 'toolbar', 'aria-label': 'How the stack is seen' }, ...this.#tools());
     this.node.prepend(this.#space.canvas, tools);
-    this.#space.beforeDrawing((up) => this.#shine(up));
+    this.#space.beforeDrawing((up) => {
+      this.#paintCap();
+      this.#shine(up);
+    });
     this.#store.on(['theme'], ({ theme }) => this.#paint(theme));
     this.#store.on(['hidden'], ({ hidden }) => this.#hide(hidden));
-    this.#store.on(['layer', 'ghosts', 'view'], () => this.#follow());
-    this.#store.on(['layer', 'hidden', 'theme', 'view'], () => this.#paintTop());
-    this.#store.on(['hidden', 'theme'], () => this.#paintFloor());
+    this.#store.on(['ghosts'], () => this.#space.redraw());
+    this.#store.on(['layer', 'hidden', 'theme', 'view'], () => this.#follow());
+    this.#store.on(['hidden', 'theme'], () => this.#followFloor());
     this.#build();
   }
 
@@ -144,83 +160,106 @@ export class StackView {
     for (const cap of [this.#top, this.#floor]) cap.mesh.material.color.setScalar(topBrightness(up));
   }
 
-  #follow() {
-    const { layer, ghosts, view } = this.#store.state;
+  async #follow() {
+    const { layer: number, view } = this.#store.state;
     if (view === 'layer') return;
-    for (const { uniforms } of [this.#walls, this.#ghosts]) uniforms.layer.value = layer;
-    for (const piece of this.#pieces) {
-      const { first, last, counts, solid, ghost } = piece;
-      solid.visible = first <= layer;
-      solid.geometry.instanceCount = counts[Math.min(layer, last) - first] ?? 0;
-      ghost.visible = ghosts && last > layer;
-    }
-    this.#space.redraw();
-  }
-
-  async #paintTop() {
-    const { layer: number, hidden, theme, view } = this.#store.state;
-    if (view === 'layer') return;
-    const { table } = this.#page;
     const layer = await this.#shelf.layer(number);
     if (this.#store.state.layer !== number) return;
-    this.#top.show(layer, table.top[number] - this.#origin[2], theme.walls, hidden, theme.wallCut);
-    this.#space.redraw();
+    this.#capToPaint('top', (theme, hidden) =>
+      this.#top.show(layer, this.#page.table.top[number] - this.#origin[2], theme.walls, hidden, theme.wallCut),
+    );
   }
 
-  async #paintFloor() {
+  async #followFloor() {
     const layer = await this.#shelf.decode(0);
-    const { hidden, theme } = this.#store.state;
-    this.#floor.show(layer, 0, theme.walls, hidden);
+    this.#capToPaint('floor', (theme, hidden) => this.#floor.show(layer, 0, theme.walls, hidden));
+  }
+
+  #capToPaint(name, paint) {
+    this.#capsToPaint.set(name, paint);
     this.#space.redraw();
   }
 
-  /** Puts up the walls piece by piece, with a break after each few milliseconds, and one as long as nobody sees them. */
+  /** One for each picture: it takes a while, with the way to the card. */
+  #paintCap() {
+    for (const [name, paint] of this.#capsToPaint) {
+      const { theme, hidden } = this.#store.state;
+      paint(theme, hidden);
+      this.#capsToPaint.delete(name);
+      if (this.#capsToPaint.size > 0) this.#space.redraw();
+      return;
+    }
+  }
+
+  /** The walls up to the layer that is shown, then the ghosts above it; of fewer levels where that is too much. */
+  #bulkOf(most) {
+    const { layer, ghosts } = this.#store.state;
+    const linesOf = (levels) => levels.flat().reduce((sum, { layers, counts }) => sum + countUpTo(layers, counts, ghosts ? Infinity : layer), 0);
+    let levels = this.#levels;
+    while (levels.length > 1 && linesOf(levels) > most) levels = levels.slice(0, -1);
+    for (const { uniforms } of [this.#walls, this.#ghosts]) {
+      uniforms.layer.value = layer;
+      uniforms.stride.value = this.#stride / 2 ** Math.max(0, levels.length - 1);
+    }
+    const [solids, others] = [[], []];
+    for (const { layers, counts, solid, ghost } of levels.flat()) {
+      const below = countUpTo(layers, counts, layer);
+      const all = countUpTo(layers, counts, Infinity);
+      if (below > 0) solids.push({ mesh: solid, first: 0, count: below, vertices: verticesOfLine });
+      if (ghosts && all > below) others.push({ mesh: ghost, first: below, count: all - below, vertices: verticesOfLine });
+    }
+    return [...solids, ...others];
+  }
+
+  /**
+   * Puts up the walls piece by piece, with a break after each few milliseconds, and one as long as nobody sees them.
+   * First some layers all over the height, then those between.
+   */
   async #build() {
     const { table, head } = this.#page;
     const total = table.shown.reduce((sum, n) => sum + n, 0);
     const least = this.#space.reach / 4000;
+    while (this.#stride < head.layers && Math.min(total, mostLines) / this.#stride > linesOfFirstLevel) this.#stride *= 2;
     let widest = 0;
-    let walls = new Walls();
-    let first = 0;
+    let done = 0;
     let since = performance.now();
-    let shown = since;
-    for (let number = 0; number < head.layers; ++number) {
-      const layer = await this.#shelf.decode(number);
-      const apart = total <= mostLines ? 0 : spacingFor(layer, (mostLines * table.shown[number]) / total, least);
-      widest = Math.max(widest, apart);
-      walls.add(layer, { number, bottom: table.bottom[number] - this.#origin[2], top: table.top[number] - this.#origin[2] }, apart);
-      if (walls.size >= linesOfPiece || number + 1 === head.layers) {
-        this.#putUp(walls, first, number);
-        walls = new Walls();
-        first = number + 1;
-        // Where pictures take long, most of the time shall go into the work.
-        if (performance.now() - shown > 4000 * this.#space.secondsOfPicture || first === head.layers) {
-          this.#follow();
-          shown = performance.now();
+    let seen = -Infinity;
+    for (const numbers of levelsOf(head.layers, this.#stride)) {
+      const pieces = [];
+      let walls = new Walls();
+      for (const number of numbers) {
+        const layer = await this.#shelf.decode(number);
+        const apart = total <= mostLines ? 0 : spacingFor(layer, (mostLines * table.shown[number]) / total, least);
+        widest = Math.max(widest, apart);
+        walls.add(layer, number, apart);
+        ++done;
+        if (walls.size >= linesOfPiece || number === numbers.at(-1)) {
+          pieces.push(this.#pieceOf(walls));
+          walls = new Walls();
+        }
+        if (performance.now() - since > millisecondsAtWork) {
+          this.caption.textContent = `Building the stack: ${Math.floor((100 * done) / head.layers)} %`;
+          await nextTurn();
+          while (this.#store.state.view === 'layer') await new Promise((resolve) => (this.#goOn = resolve));
+          since = performance.now();
         }
       }
-      if (performance.now() - since > millisecondsAtWork) {
-        this.caption.textContent = `Building the stack: ${Math.floor((100 * number) / head.layers)} %`;
-        await nextTurn();
-        while (this.#store.state.view === 'layer') await new Promise((resolve) => (this.#goOn = resolve));
-        since = performance.now();
+      this.#levels = [...this.#levels, pieces];
+      if (performance.now() - seen > millisecondsUnseen || done === head.layers) {
+        this.#space.redraw();
+        seen = performance.now();
       }
     }
     this.caption.textContent = widest > 0 ? `Without points that are closer than ${brief(widest)} mm to one another.` : '';
     this.#space.canvas.dataset.built = '';
   }
 
-  #putUp(walls, first, last) {
-    const attributes = attributesOf(walls);
-    const [solid, ghost] = [this.#walls, this.#ghosts].map((material) => {
-      const mesh = new Mesh(geometryOf(attributes, walls.size), material);
-      mesh.frustumCulled = false;
-      this.#space.scene.add(mesh);
-      return mesh;
-    });
+  #pieceOf(walls) {
+    const texture = textureOf(walls);
+    const [solid, ghost] = [this.#walls, this.#ghosts].map((material) => meshOf(texture, walls.size, material));
     ghost.renderOrder = 5;
-    solid.visible = ghost.visible = false;
-    this.#pieces.push({ first, last, counts: walls.counts, solid, ghost });
+    this.#space.bulk.add(solid, ghost);
+    return { layers: walls.layers, counts: walls.counts, solid, ghost };
   }
 
   /** @param {number[]} place mm of the part's coordinates */

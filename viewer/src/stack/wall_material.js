@@ -1,37 +1,69 @@
-import { Color, DoubleSide, FrontSide, ShaderMaterial, Vector3 } from 'three';
+import { Color, DataTexture, DoubleSide, FloatType, FrontSide, RGFormat, ShaderMaterial, Vector3 } from 'three';
+import { linesOfRow } from './walls.js';
 
 const mostParts = 8;
 /** How far ledges reach inwards, in thicknesses of the layer: over slopes of 18 degrees and more there are no gaps. */
 const ledgeWidth = 3;
+const heightsOfRow = 1024;
 
+/** Bottom and top of each layer, mm, for the material to look up. */
+export function heightsTexture(bottoms, tops) {
+  const rows = Math.ceil(bottoms.length / heightsOfRow);
+  const data = new Float32Array(2 * heightsOfRow * rows);
+  bottoms.forEach((bottom, i) => data.set([bottom, tops[i]], 2 * i));
+  const texture = new DataTexture(data, heightsOfRow, rows, RGFormat, FloatType);
+  texture.needsUpdate = true;
+  return texture;
+}
+
+/**
+ * Each line of a contour has eight vertices: a wall, and on its top a ledge inwards. They are made here from what the
+ * texture says of the line, since renderers without a graphics card take a thousand instances for a thousand pictures.
+ */
 const vertex = /* glsl */ `
-  attribute float ledge;
-  attribute vec4 ends;
-  attribute vec2 heights;
-  attribute vec4 normals;
-  attribute vec2 info;
-  uniform float layer;
-  uniform bool above;
+  uniform highp usampler2D lines;
+  uniform highp sampler2D heights;
   uniform sampler2D hidden;
+  uniform int layer;
+  uniform int last;
+  uniform int stride;
+  uniform bool above;
   varying vec3 normalSeen;
   varying float upward;
   flat varying float isLedge;
-  flat varying vec2 which;
+  flat varying ivec2 which;
+
+  vec2 heightsOf(int number) {
+    return texelFetch(heights, ivec2(number % ${heightsOfRow}, number / ${heightsOfRow}), 0).rg;
+  }
 
   void main() {
-    vec3 place = vec3(mix(ends.xy, ends.zw, position.x), mix(heights.x, heights.y, position.y));
-    vec2 outward = mix(normals.xy, normals.zw, position.x);
-    place.xy -= outward * position.z * ${ledgeWidth.toFixed(1)} * (heights.y - heights.x);
-    upward = position.y;
-    isLedge = ledge;
-    which = info;
-    normalSeen = normalize(normalMatrix * (ledge > 0.5 ? vec3(0.0, 0.0, 1.0) : vec3(outward, 0.0)));
+    int line = gl_VertexID >> 3;
+    int corner = gl_VertexID & 7;
+    float along = ((corner + 1) & 2) == 0 ? 0.0 : 1.0;
+    float inward = corner < 6 ? 0.0 : 1.0;
+    bool ledge = corner > 3;
+    ivec2 at = ivec2(2 * (line % ${linesOfRow}), line / ${linesOfRow});
+    vec4 ends = uintBitsToFloat(texelFetch(lines, at, 0));
+    uvec4 info = texelFetch(lines, at + ivec2(1, 0), 0);
+    int number = int(info.x);
+    int part = int(info.y) >> 1;
+    bool open = (info.y & 1u) == 1u;
+    // A layer stands for those above it that are not drawn, too.
+    float bottom = heightsOf(number).x;
+    float top = heightsOf(min(number + stride - 1, above ? last : layer)).y;
+    upward = corner < 2 ? 0.0 : 1.0;
+    vec3 place = vec3(mix(ends.xy, ends.zw, along), mix(bottom, top, upward));
+    vec2 outward = mix(unpackSnorm2x16(info.z), unpackSnorm2x16(info.w), along);
+    place.xy -= outward * inward * ${ledgeWidth.toFixed(1)} * (top - bottom);
+    isLedge = ledge ? 1.0 : 0.0;
+    which = ivec2(number, info.y);
+    normalSeen = normalize(normalMatrix * (ledge ? vec3(0.0, 0.0, 1.0) : vec3(outward, 0.0)));
     gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
-    // Out of sight: what is above the layer that is shown, or below it among the ghosts; and hidden parts.
-    bool isHidden = texelFetch(hidden, ivec2(int(info.y), 0), 0).r > 0.5;
+    bool isHidden = texelFetch(hidden, ivec2(part, 0), 0).r > 0.5;
     // Ledges of open contours would lie nowhere, those of ghosts would hide them, and the top layer has a cap.
-    bool isBare = ledge > 0.5 && (above || info.x == layer || fract(info.y) > 0.25);
-    if (isHidden || isBare || (info.x > layer) != above) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    bool isBare = ledge && (above || number + stride > layer || open);
+    if (isHidden || isBare) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   }
 `;
 
@@ -45,7 +77,7 @@ const light = /* glsl */ `
 `;
 
 const fragment = /* glsl */ `
-  uniform float layer;
+  uniform int layer;
   uniform bool above;
   uniform vec3 parts[${mostParts}];
   uniform vec3 current;
@@ -54,13 +86,12 @@ const fragment = /* glsl */ `
   varying vec3 normalSeen;
   varying float upward;
   flat varying float isLedge;
-  flat varying vec2 which;
+  flat varying ivec2 which;
   ${light}
 
   void main() {
-    int part = int(which.y + 0.1);
-    vec3 colour = parts[part - (part / ${mostParts}) * ${mostParts}];
-    bool isOpen = fract(which.y) > 0.25;
+    vec3 colour = parts[(which.y >> 1) % ${mostParts}];
+    bool isOpen = (which.y & 1) == 1;
     if (above) {
       gl_FragColor = vec4(isOpen ? open : colour, isOpen ? 0.3 : 0.07);
       return;
@@ -87,9 +118,11 @@ const fragment = /* glsl */ `
 
 /**
  * @param {boolean} above the ghosts of the layers above instead of the stack up to the layer
+ * @param {import('three').DataTexture} heights of the layers
+ * @param {number} last layer
  * @param {import('three').DataTexture} hidden a byte for each part: 255 for those that are not shown
  */
-export function wallMaterial(above, hidden) {
+export function wallMaterial(above, heights, last, hidden) {
   return new ShaderMaterial({
     vertexShader: vertex,
     fragmentShader: fragment,
@@ -97,9 +130,13 @@ export function wallMaterial(above, hidden) {
     transparent: above,
     depthWrite: !above,
     uniforms: {
-      layer: { value: 0 },
-      above: { value: above },
+      lines: { value: null },
+      heights: { value: heights },
       hidden: { value: hidden },
+      layer: { value: 0 },
+      last: { value: last },
+      stride: { value: 1 },
+      above: { value: above },
       parts: { value: Array.from({ length: mostParts }, () => new Color()) },
       current: { value: new Color() },
       open: { value: new Color() },

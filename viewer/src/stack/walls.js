@@ -1,79 +1,114 @@
 /**
  * The walls of layers: one standing rectangle for each line of a contour, from the bottom to the top of its
- * layer, for the graphics card to draw as instances.
+ * layer. The graphics card reads them from a texture.
  */
 
 /** Lines that turn by less meet in a round edge. */
 const roundCosine = Math.cos((40 * Math.PI) / 180);
 
-/** Points of a contour, without those closer than `apart` to the one kept before. */
-function keptPoints(contours, i, apart) {
-  const { points, ends } = contours;
-  const kept = [];
+/** Numbers that each line takes: eight, two texels. */
+const numbersOfLine = 8;
+/** Lines in each row of the texture. */
+export const linesOfRow = 1024;
+
+/** Room for the points of one contour; grows. */
+let kept = new Float32Array(2048);
+
+/** Puts points of a contour into `kept`, without those closer than `apart` to the one before. @returns {number} how many */
+function keepPoints({ points, ends }, i, apart) {
+  const begin = i === 0 ? 0 : ends[i - 1];
+  if (kept.length < 2 * (ends[i] - begin)) kept = new Float32Array(4 * (ends[i] - begin));
+  let count = 0;
   let [x, y] = [NaN, NaN];
-  for (let p = i === 0 ? 0 : ends[i - 1]; p < ends[i]; ++p) {
-    const [nextX, nextY] = [points[2 * p], points[2 * p + 1]];
+  for (let p = begin; p < ends[i]; ++p) {
+    const nextX = points[2 * p];
+    const nextY = points[2 * p + 1];
     if ((nextX - x) ** 2 + (nextY - y) ** 2 < apart * apart) continue;
-    [x, y] = [nextX, nextY];
-    kept.push(x, y);
+    x = kept[2 * count] = nextX;
+    y = kept[2 * count + 1] = nextY;
+    ++count;
   }
-  return kept;
+  return count;
 }
 
-/** Grows; holds what the instances of one piece of the stack are made of. */
-export class Walls {
-  constructor() {
-    this.ends = []; // two points
-    this.heights = []; // bottom, top
-    this.normals = []; // at the two points, outwards, -127 to 127
-    this.info = []; // number of the layer; number of the part, 0.5 more where the contour is open
-    this.counts = []; // instances up to the end of each layer
-  }
+/** As GLSL's unpackSnorm2x16 takes it. */
+const packed = (x, y) => (Math.round(32767 * x) & 0xffff) | (Math.round(32767 * y) << 16);
 
-  get size() {
-    return this.heights.length / 2;
+/**
+ * Grows; holds the lines of one piece of the stack. Of each line: its two points, as bits of floats; the number of the
+ * layer; twice the number of the part, one more where the contour is open; and the normals at the two points, outwards.
+ */
+export class Walls {
+  #numbers = new Uint32Array(numbersOfLine * linesOfRow);
+  #floats = new Float32Array(this.#numbers.buffer);
+  size = 0;
+  layers = []; // their numbers
+  counts = []; // lines up to the end of each of these
+
+  /** The lines in whole rows. */
+  get rows() {
+    return this.#numbers.subarray(0, numbersOfLine * linesOfRow * Math.max(1, Math.ceil(this.size / linesOfRow)));
   }
 
   /**
    * @param {import('../data/layer.js').Layer} layer
-   * @param {{number: number, bottom: number, top: number}} place
+   * @param {number} number of the layer
    * @param {number} apart mm: points closer than this to one another are left out
    */
-  add(layer, place, apart) {
+  add(layer, number, apart) {
     layer.parts.forEach((contours, part) => {
-      for (let i = 0; i < contours.ends.length; ++i) this.#addContour(keptPoints(contours, i, apart), i < contours.rings, place, part);
+      for (let i = 0; i < contours.ends.length; ++i) this.#addContour(keepPoints(contours, i, apart), i < contours.rings, number, part);
     });
+    this.layers.push(number);
     this.counts.push(this.size);
   }
 
-  #addContour(points, closed, { number, bottom, top }, part) {
-    const n = points.length / 2;
+  #makeRoom(lines) {
+    const needed = numbersOfLine * (this.size + lines);
+    if (needed <= this.#numbers.length) return;
+    let length = this.#numbers.length;
+    while (length < needed) length *= 2;
+    const larger = new Uint32Array(length);
+    larger.set(this.#numbers);
+    this.#numbers = larger;
+    this.#floats = new Float32Array(larger.buffer);
+  }
+
+  /** The first n points kept. */
+  #addContour(n, closed, number, part) {
     if (n < (closed ? 3 : 2)) return;
     const lines = closed ? n : n - 1;
-    const normals = new Float64Array(2 * lines);
-    for (let i = 0; i < lines; ++i) {
-      const j = (i + 1) % n;
-      const [dx, dy] = [points[2 * j] - points[2 * i], points[2 * j + 1] - points[2 * i + 1]];
-      const length = Math.hypot(dx, dy) || 1;
-      normals[2 * i] = dy / length; // material lies to the left
-      normals[2 * i + 1] = -dx / length;
-    }
-    /** The normal of line i at the point that it shares with line k. */
-    const shared = (i, k) => {
-      const [ax, ay] = [normals[2 * i], normals[2 * i + 1]];
-      const known = closed || (k >= 0 && k < lines);
-      const at = ((k % lines) + lines) % lines;
-      const [bx, by] = known ? [normals[2 * at], normals[2 * at + 1]] : [ax, ay];
-      if (ax * bx + ay * by < roundCosine) return [ax, ay];
-      const length = Math.hypot(ax + bx, ay + by);
-      return [(ax + bx) / length, (ay + by) / length];
+    this.#makeRoom(lines);
+    const numbers = this.#numbers;
+    const floats = this.#floats;
+    const normal = (i) => {
+      const j = i + 1 === n ? 0 : i + 1;
+      const dx = kept[2 * j] - kept[2 * i];
+      const dy = kept[2 * j + 1] - kept[2 * i + 1];
+      const length = Math.sqrt(dx * dx + dy * dy) || 1;
+      return [dy / length, -dx / length]; // material lies to the left
     };
+    /** Of two lines that meet: the one between them, or that of the first, where they meet in an edge. */
+    const shared = (a, b) => {
+      if (a[0] * b[0] + a[1] * b[1] < roundCosine) return packed(a[0], a[1]);
+      const length = Math.hypot(a[0] + b[0], a[1] + b[1]);
+      return packed((a[0] + b[0]) / length, (a[1] + b[1]) / length);
+    };
+    let own = normal(0);
+    let before = closed ? normal(n - 1) : own;
     for (let i = 0; i < lines; ++i) {
-      const j = (i + 1) % n;
-      this.ends.push(points[2 * i], points[2 * i + 1], points[2 * j], points[2 * j + 1]);
-      this.heights.push(bottom, top);
-      for (const k of [i - 1, i + 1]) for (const c of shared(i, k)) this.normals.push(Math.round(127 * c));
-      this.info.push(number, closed ? part : part + 0.5);
+      const j = i + 1 === n ? 0 : i + 1;
+      const after = closed || i + 1 < lines ? normal(j) : own;
+      const at = numbersOfLine * this.size++;
+      floats[at] = kept[2 * i];
+      floats[at + 1] = kept[2 * i + 1];
+      floats[at + 2] = kept[2 * j];
+      floats[at + 3] = kept[2 * j + 1];
+      numbers[at + 4] = number;
+      numbers[at + 5] = 2 * part + (closed ? 0 : 1);
+      numbers[at + 6] = shared(own, before);
+      numbers[at + 7] = shared(own, after);
+      [before, own] = [own, after];
     }
   }
 }
@@ -83,13 +118,13 @@ export class Walls {
  */
 export function spacingFor(layer, most, least) {
   let apart = 0;
-  const kept = () =>
+  const count = () =>
     layer.parts.reduce((all, contours) => {
-      for (let i = 0; i < contours.ends.length; ++i) all += keptPoints(contours, i, apart).length / 2;
+      for (let i = 0; i < contours.ends.length; ++i) all += keepPoints(contours, i, apart);
       return all;
     }, 0);
   const points = layer.parts.reduce((all, contours) => all + contours.points.length / 2, 0);
   if (points <= most) return 0;
-  for (apart = least; kept() > most && apart < 64 * least; ) apart *= 2;
+  for (apart = least; count() > most && apart < 64 * least; ) apart *= 2;
   return apart;
 }
