@@ -489,3 +489,16 @@ const differentPixels = (page, ...pictures) =>
     },
     pictures.map((picture) => picture.toString('base64')),
   );
+
+test('signs on buttons are drawn, so that they need no font', async () => {
+  for (const name of ['open.html', 'open_mesh.html']) {
+    const { page, close } = await open(name, { view: name === 'open.html' ? 'both' : null });
+    await page.waitForSelector('canvas[data-ready]');
+    const texts = await page.locator('button.icon, .transport button, .sign').allTextContents();
+    assert.ok(texts.length >= 4);
+    for (const text of texts) assert.match(text.trim(), /^[ -~]*$/, name);
+    const empty = await page.evaluate(() => [...document.querySelectorAll('button.icon, .sign')].filter((node) => node.textContent.trim() === '' && !(node.querySelector('path').getTotalLength() > 0)).length);
+    assert.equal(empty, 0);
+    await close();
+  }
+});

@@ -1,4 +1,5 @@
 import { element } from '../element.js';
+import { iconButton } from '../icon.js';
 import { brief, mm } from '../text.js';
 import { Camera } from './camera.js';
 import { drawLayer } from './draw_layer.js';
@@ -72,8 +73,6 @@ export class LayerView {
   }
 
   #tools() {
-    const button = (label, sign, act) =>
-      element('button', { type: 'button', className: 'icon', title: label, 'aria-label': label, onclick: act }, sign);
     const toggle = (key, label) => {
       const node = element('button', { type: 'button', className: 'toggle' }, label);
       node.addEventListener('click', () => this.#store.set({ [key]: !this.#store.state[key] }));
@@ -87,9 +86,9 @@ export class LayerView {
       { className: 'tools', role: 'toolbar', 'aria-label': 'How the layer is drawn' },
       ...toggles,
       element('span', { className: 'gap' }),
-      button('Zoom in (+)', '+', () => this.zoomBy(1.5)),
-      button('Zoom out (−)', '−', () => this.zoomBy(1 / 1.5)),
-      button('Show all (0)', '⤢', () => this.fit()),
+      iconButton('Zoom in (+)', 'plus', () => this.zoomBy(1.5)),
+      iconButton('Zoom out (−)', 'minus', () => this.zoomBy(1 / 1.5)),
+      iconButton('Show all (0)', 'all', () => this.fit()),
     );
   }
 

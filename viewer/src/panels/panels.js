@@ -1,10 +1,9 @@
 import { element } from '../element.js';
+import { icon } from '../icon.js';
 import { brief, count, counted, mm } from '../text.js';
 import { faultText, findings, gapText, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
-
-const signs = { good: '✓', warning: '!', bad: '✕', plain: 'i' };
 
 function card(title, ...children) {
   return element('section', { className: 'card' }, element('h2', {}, title), ...children);
@@ -19,7 +18,7 @@ function facts(pairs) {
 }
 
 function finding({ tone, text, layer }, go) {
-  const sign = element('span', { className: `sign ${tone}`, 'aria-hidden': true }, signs[tone]);
+  const sign = element('span', { className: `sign ${tone}`, 'aria-hidden': true }, icon(tone));
   const item = element('li', { className: 'finding' }, sign, element('span', {}, text));
   if (layer !== undefined)
     item.lastChild.append(' ', element('button', { type: 'button', className: 'link', onclick: () => go(layer) }, `Show layer ${layer + 1}`));

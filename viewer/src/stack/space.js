@@ -19,6 +19,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { element } from '../element.js';
+import { iconButton } from '../icon.js';
 import { roundStep } from '../layer/round_step.js';
 
 // Colours are those of the style sheet and go to the screen as they are.
@@ -96,11 +97,9 @@ export class Space {
       element('button', { type: 'button', className: 'toggle', onclick: () => this.look(name) }, name),
     );
     this.zoomTools = [
-      ['Zoom in', '+', 1.4],
-      ['Zoom out', '−', 1 / 1.4],
-    ].map(([label, sign, factor]) =>
-      element('button', { type: 'button', className: 'icon', title: label, 'aria-label': label, onclick: () => this.zoomBy(factor) }, sign),
-    );
+      iconButton('Zoom in', 'plus', () => this.zoomBy(1.4)),
+      iconButton('Zoom out', 'minus', () => this.zoomBy(1 / 1.4)),
+    ];
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
     this.look('Aslant');
   }

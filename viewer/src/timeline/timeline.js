@@ -1,4 +1,5 @@
 import { element } from '../element.js';
+import { iconButton } from '../icon.js';
 import { brief, count, mm } from '../text.js';
 import { LayerAxis, drawPlot, drawTicks } from './plot.js';
 
@@ -55,11 +56,11 @@ export class Timeline {
       element(
         'div',
         { className: 'transport' },
-        this.#button('First layer (Home)', '⏮', () => player.go(0)),
-        this.#button('Layer below (←)', '◀', () => player.step(-1)),
+        iconButton('First layer (Home)', 'first', () => player.go(0)),
+        iconButton('Layer below (←)', 'back', () => player.step(-1)),
         this.#playButton(),
-        this.#button('Layer above (→)', '▶', () => player.step(1), 'next'),
-        this.#button('Last layer (End)', '⏭', () => player.go(page.head.layers - 1)),
+        iconButton('Layer above (→)', 'forth', () => player.step(1)),
+        iconButton('Last layer (End)', 'last', () => player.go(page.head.layers - 1)),
         this.number,
         element('span', { className: 'of' }, `of ${count(page.head.layers)}`),
         this.height,
@@ -72,12 +73,8 @@ export class Timeline {
     store.on(['theme'], () => this.#draw());
   }
 
-  #button(label, sign, act, className = '') {
-    return element('button', { type: 'button', className: `icon ${className}`, title: label, 'aria-label': label, onclick: act }, sign);
-  }
-
   #playButton() {
-    const button = this.#button('Play (space)', '', () => this.#player.toggle(), 'play');
+    const button = element('button', { type: 'button', className: 'play', title: 'Play (space)', onclick: () => this.#player.toggle() });
     this.#store.on(['playing'], ({ playing }) => {
       button.textContent = playing ? 'Pause' : 'Play';
       button.setAttribute('aria-label', playing ? 'Pause' : 'Play');
