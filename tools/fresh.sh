@@ -83,7 +83,7 @@ mirror=$(sed -n 's/^deb \(.*\) bookworm main$/\1/p' <<<"$sources" | head -n 1)
 tree=$(git -c safe.directory="$PWD" stash create 2>/dev/null) || skip "this is no checkout by git"
 tree=${tree:-HEAD}
 certificates=/etc/ssl/certs/ca-certificates.crt
-registry=$(npm config get registry 2>/dev/null)
+registry=$(npm config get registry 2>/dev/null || true) # without one, npm knows its own
 
 # The mounts end with the processes that see them, and these with the first of them, the one that unshare starts.
 folder=$(mktemp -d "${TMPDIR:-/var/tmp}/lamella-fresh.XXXXXX")
