@@ -74,7 +74,7 @@ class CommandLine(ProgramTest):
         self.fail_with(2, "no option -x", "slice", "box.stl", "-x")
 
     def test_a_configuration_survives_its_round_trip(self):
-        words = ["--layer-height", ".25", "--rotate", "10,20,-30", "--slice-at", "top", "--strict", "--threads", "2",
+        words = ["--layer-height", ".25", "--rotate", "10,20,-30", "--slice-at", "top", "--inspect", "--threads", "2",
                  "--label", 'a "part"', "--z-range", "1:5", "-o", "out.cli"]
         dump = self.succeed("slice", "--dump-config", *words).text
         self.write("job.toml", dump)
