@@ -50,7 +50,7 @@ def view(program, mesh, page):
     """Writes a page of the layers, unless the program was built without the viewer, and says why then."""
     result = subprocess.run([program, "view", mesh, "-o", page], capture_output=True, text=True, check=False)
     if result.returncode == 2 and "no viewer" in result.stderr:
-        print(f"The page is left out: {result.stderr.strip().removeprefix('error: ')}")
+        print(f"The page is left out: {result.stderr.strip().removeprefix('lamella: error: ')}")
         return False
     if result.returncode != 0:
         sys.exit(f"demo: lamella view {mesh}\n{result.stdout}{result.stderr}exit code {result.returncode}")
