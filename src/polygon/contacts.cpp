@@ -155,15 +155,15 @@ class ContactSearch {
     void look_into(const Chain& a, const Chain& b) {
         if (patience_ == 0 || !groups_.open(a.ring, b.ring) || !a.box().meets(b.box()))
             return;
-        if (goes_on(b, a) && !goes_on(a, b) ? in_contact(b, a) : in_contact(a, b)) {
+        if (continues(b, a) && !continues(a, b) ? in_contact(b, a) : in_contact(a, b)) {
             groups_.connect(a.ring, b.ring);
             found_ = true;
         }
     }
 
     bool in_contact(const Chain& a, const Chain& b) {
-        if (goes_on(a, b)) {
-            // The one goes on where the other one ends. If it does so the same way, they meet nowhere else.
+        if (continues(a, b)) {
+            // The one begins where the other one ends. If it goes the same way, they meet nowhere else.
             // If it turns in x alone, one lies above that point and the other one below it, but for level
             // pieces right beside it: these fold. The same for y.
             const unsigned ways = a.ways | b.ways;
@@ -176,7 +176,7 @@ class ContactSearch {
     }
 
     /// Whether b begins where a ends.
-    [[nodiscard]] bool goes_on(const Chain& a, const Chain& b) const noexcept {
+    [[nodiscard]] bool continues(const Chain& a, const Chain& b) const noexcept {
         const std::uint64_t end = a.first + a.segments;
         return a.ring == b.ring &&
                (end == layer_.offsets[a.ring + 1] ? layer_.offsets[a.ring] : end) == b.first;

@@ -213,18 +213,18 @@ class CrossingSearch {
                 within(s.lo.y + share * (s.hi.y - s.lo.y), s.lo.y, s.hi.y, t.lo.y, t.hi.y)};
     }
 
-    /// When two neighbours on the line of a sweep cross, both leave it: every crossing has one of those that
-    /// left. They are at most twice as many as the fewest segments without which there would be no crossing,
-    /// so that one stray segment through a thousand walls costs two rounds, not a thousand.
+    /// When two neighbours on the line of a sweep cross, both are set aside: every crossing has one of those
+    /// that were. They are at most twice as many as the fewest segments without which there would be no
+    /// crossing, so that one stray segment through a thousand walls costs two rounds, not a thousand.
     void search_by_sweep(const Box2& cell, std::span<const SegmentId> ids) {
         std::vector<Segment> segments;
         segments.reserve(ids.size());
         for (const SegmentId id : ids)
             segments.push_back(segments_[id]);
         SweepStatus status(segments);
-        std::vector<bool> has_left(ids.size(), false);
-        bool any_left = false;
-        // Tests two neighbours, and then those on both sides of the gap that they leave.
+        std::vector<bool> set_aside(ids.size(), false);
+        bool any_set_aside = false;
+        // Tests two neighbours, and then those on both sides of the gap that they make.
         const auto test_neighbours = [&](std::uint32_t lower, std::uint32_t upper) {
             while (lower != SweepStatus::none && upper != SweepStatus::none &&
                    cross(segments[lower], segments[upper])) {
@@ -232,20 +232,20 @@ class CrossingSearch {
                 const std::uint32_t above = status.above(upper);
                 for (const std::uint32_t i : {lower, upper}) {
                     status.erase(i);
-                    has_left[i] = true;
+                    set_aside[i] = true;
                 }
-                any_left = true;
+                any_set_aside = true;
                 lower = below;
                 upper = above;
             }
         };
         for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::ends_first)) {
-            if (has_left[i])
+            if (set_aside[i])
                 continue;
             if (begins) {
                 status.insert(i);
                 test_neighbours(status.below(i), i);
-                if (!has_left[i])
+                if (!set_aside[i])
                     test_neighbours(i, status.above(i));
             } else {
                 const std::uint32_t below = status.below(i);
@@ -255,13 +255,13 @@ class CrossingSearch {
             }
         }
         assert(status.empty());
-        if (any_left)
-            search_side_by_side(cell, ids, has_left);
+        if (any_set_aside)
+            search_side_by_side(cell, ids, set_aside);
     }
 
-    /// Tests those that left against all others that may reach them.
+    /// Tests those set aside against all others that may reach them.
     void search_side_by_side(const Box2& cell, std::span<const SegmentId> ids,
-                             const std::vector<bool>& has_left) {
+                             const std::vector<bool>& set_aside) {
         const auto turned = [](const Segment& s) {
             return segment_between({s.lo.y, s.lo.x}, {s.hi.y, s.hi.x});
         };
@@ -277,10 +277,10 @@ class CrossingSearch {
         const LineTree flat_ones(cell.x0, cell.x1, flat);
         const LineTree steep_ones(cell.y0, cell.y1, steep);
         for (std::uint32_t i = 0; i < ids.size() && count_ < enough_; ++i) {
-            if (!has_left[i])
+            if (!set_aside[i])
                 continue;
             const auto visit = [&](std::uint32_t other) {
-                if (!has_left[other] || other > i)
+                if (!set_aside[other] || other > i)
                     test(cell, ids[i], ids[other]);
             };
             flat_ones.for_close_to(local(segments_[ids[i]]), visit);

@@ -62,7 +62,8 @@ class NestingSearch {
         return around.below->order >= 0 ? placement_.innermost(below) : placement_.outside(below);
     }
 
-    /// What is next below a left end tells all: the ring is inside of that one, or beside it.
+    /// The next edge below a left end is enough to know: the ring is inside of that edge's ring, or beside
+    /// it.
     void place_apart(const ChainGrid& grid) {
         for (const std::uint32_t ring : order_) {
             const Point2& left = ends_[ring].line.lo;

@@ -26,7 +26,7 @@ struct LayerSteps {
     friend bool operator==(const LayerSteps&, const LayerSteps&) = default;
 };
 
-/// What the steps did to a layer, or to several in all.
+/// How the steps changed a layer, or several layers together.
 struct LayerChanges {
     std::uint64_t changed_layers = 0;
     std::uint64_t groups_united = 0;   ///< by `fill`: groups of rings that overlapped
