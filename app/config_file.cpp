@@ -222,8 +222,9 @@ std::string config_text(const Command& command) {
             if (!option.configurable)
                 continue;
             const std::string text = text_for_all(command, option);
+            // What is only a preset contradicts nothing, so it stays a comment.
             if (!text.empty())
-                set += toml_line(option, text);
+                set += (option.given || option.given_for_all ? "" : "# ") + toml_line(option, text);
             else
                 unset.append(unset.empty() ? "" : ", ").append(option.name);
         }

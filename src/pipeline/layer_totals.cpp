@@ -14,40 +14,49 @@
 namespace lamella {
 
 LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, std::size_t parts)
-    : statistics_(job.layer_statistics), changes_(job.steps.any()), rows_(planes.size()), parts_(parts) {
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-        rows_[i].layer.index = planes[i].index;
-        rows_[i].layer.z = planes[i].z;
-    }
+    : closed_(job.repair.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),
+      statistics_(job.layer_statistics ? planes.size() : 0), parts_(parts), has_changes_(job.steps.any()) {
+    rows_.reserve(planes.size());
+    for (const PlannedLayer& plane : planes)
+        rows_.push_back({.index = plane.index, .z = plane.z, .open_gaps = {}});
 }
 
 void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes) {
     const Layer& first = parts.front();
     assert(parts.size() == parts_.size());
-    Row& row = rows_.at(static_cast<std::size_t>(first.index - rows_.front().layer.index));
-    assert(row.layer.index == first.index);
-    for (const GapJoin& join : joins) {
-        ++row.closed.closed;
-        row.closed.longest_mm = std::max(row.closed.longest_mm, join.length_mm);
-        row.closed.total_mm += join.length_mm;
-    }
-    row.layer.thickness = first.thickness();
-    row.layer.changes = changes;
+    const auto place = static_cast<std::size_t>(first.index - rows_.front().index);
+    Row& row = rows_.at(place);
+    assert(row.index == first.index);
+    if (!closed_.empty())
+        for (const GapJoin& join : joins) {
+            FileResult::Gaps& closed = closed_[place];
+            ++closed.closed;
+            closed.longest_mm = std::max(closed.longest_mm, join.length_mm);
+            closed.total_mm += join.length_mm;
+        }
+    if (!changes_.empty())
+        changes_[place] = changes;
+    LayerMeasure together;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const Layer& layer = parts[i];
-        row.layer.open_gaps += open_gaps(layer);
+        row.open_gaps += open_gaps(layer);
         // In normal form the first ring has the smallest point of all, so nothing lies around it.
         row.inside_out |= layer.rings > 0 && ring_area(layer.contour(0)) < 0;
         parts_[i].contours.fetch_add(layer.contours(), std::memory_order_relaxed);
         parts_[i].open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
         parts_[i].points.fetch_add(layer.points.size(), std::memory_order_relaxed);
-        if (statistics_)
-            row.layer.measure.add(measure(layer));
+        if (!statistics_.empty())
+            together.add(measure(layer));
     }
-    if (statistics_) {
-        row.layer.joins = std::move(joins);
-        row.layer.hash = content_hash(parts.size() == 1 ? first : merged(parts));
-    }
+    if (!statistics_.empty())
+        statistics_[place] = {.index = first.index,
+                              .z = first.z,
+                              .thickness = first.thickness(),
+                              .measure = together,
+                              .open_gaps = row.open_gaps,
+                              .joins = std::move(joins),
+                              .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
+                              .changes = changes};
 }
 
 std::uint64_t LayerTotals::points() const noexcept {
@@ -60,7 +69,7 @@ std::uint64_t LayerTotals::points() const noexcept {
 void LayerTotals::gather(Communicator& processes) {
     if (processes.size() == 1)
         return;
-    struct Figures { // of a row, without what has no fixed size
+    struct Figures { // of a layer, without what has no fixed size
         std::uint64_t index;
         double z;
         double thickness;
@@ -68,18 +77,25 @@ void LayerTotals::gather(Communicator& processes) {
         OpenGaps open_gaps;
         std::uint64_t hash;
         LayerChanges changes;
-        FileResult::Gaps closed;
-        bool inside_out;
     };
     Packer mine;
     for (const Counts& part : parts_)
         mine.put(part.contours.load()).put(part.open_chains.load()).put(part.points.load());
-    for (const Row& row : rows_)
-        mine.put(Figures{row.layer.index, row.layer.z, row.layer.thickness, row.layer.measure,
-                         row.layer.open_gaps, row.layer.hash, row.layer.changes, row.closed, row.inside_out})
-            .put_all(std::span(row.layer.joins));
+    mine.put_all(std::span<const Row>(rows_))
+        .put_all(std::span<const FileResult::Gaps>(closed_))
+        .put_all(std::span<const LayerChanges>(changes_));
+    for (const LayerStatistics& layer : statistics_)
+        mine.put(Figures{layer.index, layer.z, layer.thickness, layer.measure, layer.open_gaps, layer.hash,
+                         layer.changes})
+            .put_all(std::span(layer.joins));
     rows_.clear();
+    closed_.clear();
+    changes_.clear();
+    statistics_.clear();
     parts_ = std::vector<Counts>(parts_.size());
+    const auto append = [](auto& to, const auto& more) {
+        to.insert(to.end(), more.begin(), more.end());
+    };
     for (const std::string& message : processes.gather(mine.take())) {
         Unpacker from(message);
         for (Counts& part : parts_) {
@@ -87,18 +103,19 @@ void LayerTotals::gather(Communicator& processes) {
             part.open_chains += from.get<std::uint64_t>();
             part.points += from.get<std::uint64_t>();
         }
+        append(rows_, from.get_all<Row>());
+        append(closed_, from.get_all<FileResult::Gaps>());
+        append(changes_, from.get_all<LayerChanges>());
         while (!from.empty()) {
-            const Figures row = from.get<Figures>();
-            rows_.push_back({.layer = {.index = row.index,
-                                       .z = row.z,
-                                       .thickness = row.thickness,
-                                       .measure = row.measure,
-                                       .open_gaps = row.open_gaps,
-                                       .joins = from.get_all<GapJoin>(),
-                                       .hash = row.hash,
-                                       .changes = row.changes},
-                             .closed = row.closed,
-                             .inside_out = row.inside_out});
+            const Figures layer = from.get<Figures>();
+            statistics_.push_back({.index = layer.index,
+                                   .z = layer.z,
+                                   .thickness = layer.thickness,
+                                   .measure = layer.measure,
+                                   .open_gaps = layer.open_gaps,
+                                   .joins = from.get_all<GapJoin>(),
+                                   .hash = layer.hash,
+                                   .changes = layer.changes});
         }
     }
 }
@@ -108,22 +125,24 @@ void LayerTotals::tell(FileResult& result) const {
         if (affected && into.layers++ == 0)
             into.first_z = z;
     };
-    if (changes_)
-        result.changes.emplace();
     for (const Row& row : rows_) {
-        count(row.layer.open_gaps.count > 0, row.layer.z, result.open);
-        result.open_gaps += row.layer.open_gaps;
-        count(row.inside_out, row.layer.z, result.inside_out);
-        count(row.closed.closed > 0, row.layer.z, result.gaps);
-        result.gaps.closed += row.closed.closed;
-        result.gaps.longest_mm = std::max(result.gaps.longest_mm, row.closed.longest_mm);
-        result.gaps.total_mm += row.closed.total_mm;
-        if (result.changes)
-            *result.changes += row.layer.changes;
-        result.volume_mm3 += row.layer.measure.area_mm2 * row.layer.thickness;
-        if (statistics_)
-            result.layers.push_back(row.layer);
+        count(row.open_gaps.count > 0, row.z, result.open);
+        result.open_gaps += row.open_gaps;
+        count(row.inside_out, row.z, result.inside_out);
     }
+    for (std::size_t i = 0; i < closed_.size(); ++i) {
+        count(closed_[i].closed > 0, rows_[i].z, result.gaps);
+        result.gaps.closed += closed_[i].closed;
+        result.gaps.longest_mm = std::max(result.gaps.longest_mm, closed_[i].longest_mm);
+        result.gaps.total_mm += closed_[i].total_mm;
+    }
+    if (has_changes_)
+        result.changes.emplace();
+    for (const LayerChanges& changes : changes_)
+        *result.changes += changes;
+    for (const LayerStatistics& layer : statistics_)
+        result.volume_mm3 += layer.measure.area_mm2 * layer.thickness;
+    result.layers = statistics_;
     SliceReport& report = result.report;
     report.contours = report.open_chains = report.points = 0;
     report.layers = rows_.size();

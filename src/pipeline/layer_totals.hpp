@@ -37,8 +37,9 @@ class LayerTotals {
 
   private:
     struct Row {
-        LayerStatistics layer; ///< with `measure`, `hash` and `joins` only where the job has layer statistics
-        FileResult::Gaps closed;
+        std::uint64_t index = 0;
+        double z = 0;
+        OpenGaps open_gaps;
         bool inside_out = false;
     };
     struct Counts {
@@ -47,10 +48,13 @@ class LayerTotals {
         std::atomic<std::uint64_t> points{0};
     };
 
-    bool statistics_;
-    bool changes_;
+    // Of each plane. There may be millions, and memory is touched for what the job asks of them only.
     std::vector<Row> rows_;
+    std::vector<FileResult::Gaps> closed_;    ///< where gaps are closed
+    std::vector<LayerChanges> changes_;       ///< where there are steps
+    std::vector<LayerStatistics> statistics_; ///< where layers have statistics
     std::vector<Counts> parts_;
+    bool has_changes_;
 };
 
 } // namespace lamella

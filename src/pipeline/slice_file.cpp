@@ -142,9 +142,9 @@ std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, 
 }
 
 /// What the head of the slice file says.
-LayerFileInfo file_info(const Plate& plate, const Plan& plan) {
+LayerFileInfo file_info(const Plate& plate, const Plan& plan, PlaneRange written) {
     LayerFileInfo info{
-        .box = plate.box, .layers = plan.layers.size(), .bottom = plan.layers.front().bottom, .parts = {}};
+        .box = plate.box, .layers = written.size(), .bottom = plan.layers[written.begin].bottom, .parts = {}};
     for (const PlatePart& part : plate.parts)
         info.parts.push_back({part.label, part.box});
     info.rule = plan.rule;
@@ -399,10 +399,9 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     const std::vector<PlaneRange> division = divide(job, plan, feed, processes, execution);
     const PlaneRange mine = division[processes.process()];
     const PlaneRange all{division.front().begin, division.back().end};
-    const Plan written = part_of(plan, all);
 
-    JobOutput output(job, file_info(plate, written), mine, processes, feed.memory().of_output());
-    LayerTotals totals(job, part_of(plan, mine).layers, plate.parts.size());
+    JobOutput output(job, file_info(plate, plan, all), mine, processes, feed.memory().of_output());
+    LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), plate.parts.size());
     LayerWay way(job, totals, output);
     double slice_seconds = 0; // without waiting for others
     std::uint64_t shares_of_all = 0;
@@ -433,8 +432,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     result.repairs = std::move(prepared.repairs);
     result.planned_layers = plan.layers.size();
     result.shard = all;
-    result.bottom = written.layers.front().bottom;
-    result.top = written.layers.back().top;
+    result.bottom = plan.layers[all.begin].bottom;
+    result.top = plan.layers[all.end - 1].top;
     processes.sum(std::span(&shares_of_all, 1));
     result.slabs = feed.in_pieces() ? shares_of_all : 0;
     if (feed.meshes() == nullptr)

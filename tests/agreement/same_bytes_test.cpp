@@ -148,7 +148,8 @@ std::string corner_lines(const TriangleSoup& mesh, std::string_view before, std:
     std::string text;
     for (std::size_t i = 0; i < mesh.size(); ++i)
         for (const Point3f& p : mesh.stored(i))
-            text += fmt::format("{}{} {} {}{}\n", before, p.x, p.y, p.z, after);
+            text += fmt::format("{}{} {} {}{}\n", before, double{p.x}, double{p.y}, double{p.z},
+                                after); // to all digits
     return text;
 }
 
@@ -186,7 +187,7 @@ const std::vector<RepeatingFile> repeating_files{
              for (const Point3f& p : mesh.stored(i))
                  text += fmt::format("<vertex><coordinates><x>{}</x><y>{}</y><z>{}</z></coordinates>"
                                      "</vertex>\n",
-                                     p.x, p.y, p.z);
+                                     double{p.x}, double{p.y}, double{p.z});
          text += "</vertices><volume>\n";
          for (std::size_t i = 0; i < mesh.size(); ++i)
              text += fmt::format("<triangle><v1>{}</v1><v2>{}</v2><v3>{}</v3></triangle>\n", 3 * i, 3 * i + 1,

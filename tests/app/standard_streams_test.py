@@ -2,6 +2,7 @@
 
 import json
 import os
+import select
 import signal
 import socket
 import subprocess
@@ -66,16 +67,19 @@ class StandardStreams(ProgramTest):
         self.addCleanup(os.close, writing)
         for arguments in [["slice", "-", "-o", "y.cli"], ["info", "-"]]:
             process = self.start(*arguments, stdin=reading)
-            while not self.is_waiting(process):
-                self.assertIsNone(process.poll())
+            os.write(writing, b"solid")
+            self.assertTrue(self.waits_for_more(process, reading))
             process.send_signal(signal.SIGTERM)
             self.assertIn(self.end_of(process)[0], [130, -signal.SIGTERM])
         os.close(reading)
 
     @staticmethod
-    def is_waiting(process):
-        with open(f"/proc/{process.pid}/wchan") as place:
-            return any(word in place.read() for word in ["pipe", "poll"])
+    def waits_for_more(process, reading):
+        """Once it takes what is written for it, it is at its standard input, and then there is nothing more."""
+        while process.poll() is None:
+            if not select.select([reading], [], [], 0)[0]:
+                return True
+        return False
 
     READERS = [("box.stl", ["info", "-", "--json"]), ("box.stl", ["slice", "-", "--stats", "-", "--layer-height", "0.5"]),
                ("z.txt", ["slice", "box.stl", "--z-list", "-", "--stats", "-"]),

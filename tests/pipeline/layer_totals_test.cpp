@@ -68,6 +68,7 @@ TEST(LayerTotals, CountPartsApartAndPlanesTogether) {
 
 TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     FileJob job; // without statistics of layers
+    job.repair.close_gaps_mm = 1;
     const Plan plan = plan_uniform(0, 2, {.layer_height = 1});
     LayerTotals totals(job, plan.layers, 1);
     LayerBuilder chain;

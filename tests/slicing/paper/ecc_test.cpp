@@ -15,6 +15,7 @@ namespace {
 
 using test::counts_of;
 using test::expect_same;
+using test::slice_as_listed;
 using test::slice_with;
 using test::Triangles;
 
@@ -130,8 +131,9 @@ TEST_P(ListEngine, MatchesByEdgesWherePointsCoincide) {
     }
     mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
     const Plan plan = plan_listed({0.5, 1, 2.5});
-    expect_same(slice_with(GetParam(), mesh, plan), slice(mesh, plan));
-    for (const Layer& layer : slice_with(GetParam(), mesh, plan))
+    const LayerStack apart = slice_as_listed(GetParam(), mesh, plan);
+    expect_same(apart, slice_as_listed("sweep", mesh, plan));
+    for (const Layer& layer : apart)
         EXPECT_EQ(layer.rings, 2U);
 }
 

@@ -9,9 +9,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lamella::test {
@@ -36,6 +38,23 @@ inline std::string engine_test_name(const testing::TestParamInfo<std::string>& i
 inline LayerStack slice_with(std::string_view name, const Mesh& mesh, const Plan& plan,
                              SliceReport* report = nullptr) {
     return slice(mesh, plan, {}, report, engine(name));
+}
+
+/// What the engine itself does: vertices that are equal stay apart where the mesh lists them twice.
+inline LayerStack slice_as_listed(std::string_view name, const Mesh& mesh, const Plan& plan,
+                                  SliceReport* report = nullptr) {
+    LayerStack stack;
+    const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
+        return [&stack, kept = std::move(layer)]() mutable {
+            stack.push_back(std::move(kept));
+        };
+    };
+    const Execution execution;
+    SliceReport ours;
+    engine(name).slice({mesh, plan, keep, execution, 0, ours});
+    if (report != nullptr)
+        *report = ours;
+    return stack;
 }
 
 inline MatchingCounts counts_of(std::string_view name, const Mesh& mesh, const Plan& plan) {

@@ -23,6 +23,7 @@ namespace {
 using test::even_planes;
 using test::expect_error;
 using test::expect_same;
+using test::slice_as_listed;
 using test::slice_with;
 using test::Triangles;
 
@@ -82,7 +83,7 @@ TEST_P(PaperEngine, ReportsTheWeldOfASoupByItself) {
     EXPECT_GT(report.slice_seconds, 0.0);
     EXPECT_EQ(report.layers, 40U);
     ASSERT_TRUE(report.matching.has_value());
-    const LayerStack of_mesh = slice_with(GetParam(), weld(body()), even_planes(40), &report);
+    const LayerStack of_mesh = slice_as_listed(GetParam(), weld(body()), even_planes(40), &report);
     EXPECT_EQ(report.weld_seconds, 0.0);
     expect_same(of_mesh, of_soup);
 }
