@@ -45,8 +45,10 @@ const millisecondsOfRest = 200; // until something is taken to rest
  * @property {Mesh} mesh in the group `bulk`
  * @property {number} first of its lines or triangles to be drawn
  * @property {number} count of them
- * @property {number} vertices of each of them, in the order in which they are drawn
- *
+ * @property {number} vertices of each of them
+ */
+
+/**
  * A bed with a part on it, a camera around it, and a canvas that is drawn when something changed.
  *
  * Where there is no graphics card, a picture of everything may take many seconds, and the page would stand still for as

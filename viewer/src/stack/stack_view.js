@@ -32,7 +32,6 @@ function verticesOf(lines) {
 function textureOf(walls) {
   const { rows } = walls;
   const texture = new DataTexture(rows.slice(), 2 * linesOfRow, rows.length / (8 * linesOfRow), RGBAIntegerFormat, UnsignedIntType);
-  texture.internalFormat = 'RGBA32UI';
   texture.needsUpdate = true;
   return texture;
 }

@@ -50,12 +50,12 @@ const vertex = /* glsl */ `
     int part = int(info.y) >> 1;
     bool open = (info.y & 1u) == 1u;
     // A layer stands for those above it that are not drawn, too.
-    float bottom = heightsOf(number).x;
+    vec2 own = heightsOf(number);
     float top = heightsOf(min(number + stride - 1, above ? last : layer)).y;
     upward = corner < 2 ? 0.0 : 1.0;
-    vec3 place = vec3(mix(ends.xy, ends.zw, along), mix(bottom, top, upward));
+    vec3 place = vec3(mix(ends.xy, ends.zw, along), mix(own.x, top, upward));
     vec2 outward = mix(unpackSnorm2x16(info.z), unpackSnorm2x16(info.w), along);
-    place.xy -= outward * inward * ${ledgeWidth.toFixed(1)} * (top - bottom);
+    place.xy -= outward * inward * ${ledgeWidth.toFixed(1)} * (own.y - own.x);
     isLedge = ledge ? 1.0 : 0.0;
     which = ivec2(number, info.y);
     normalSeen = normalize(normalMatrix * (ledge ? vec3(0.0, 0.0, 1.0) : vec3(outward, 0.0)));
