@@ -4,6 +4,7 @@
 
 #include "names.hpp"
 #include "numbers.hpp"
+#include "standard_streams.hpp"
 #include "viewer_page.hpp"
 
 #include <fmt/format.h>
@@ -341,6 +342,8 @@ void check_outputs(const Command& command) {
                                         output.path == "-" ? "standard output" : "the same file"));
         for (const NamedFile& input : inputs)
             check_distinct(input.path, output.path);
+        if (output.path == "-" && output_is_closed())
+            throw Error(ErrorKind::output, "standard output: cannot be written: it is closed");
     }
 }
 

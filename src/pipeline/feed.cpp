@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/byte_amount.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "core/stopwatch.hpp"
@@ -70,10 +71,10 @@ void check_size(const std::string& path, const Mesh& mesh, const JobMemory& memo
     if (bytes > memory.limit)
         throw Error(
             ErrorKind::limit,
-            fmt::format("{}: to slice its {} triangles takes up to {} MB of memory, above the {} MB of "
+            fmt::format("{}: to slice its {} triangles takes up to {} of memory, above the {} of "
                         "`max_memory`; only STL files that are not packed are sliced in pieces: write "
                         "the mesh as one, or allow more",
-                        path, mesh.size(), bytes / 1'000'000 + 1, memory.limit / 1'000'000));
+                        path, mesh.size(), byte_amount(bytes), byte_amount(memory.limit)));
 }
 
 } // namespace
@@ -122,9 +123,9 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
     if (too_large != 0 && memory_.asked)
         throw Error(
             ErrorKind::limit,
-            fmt::format("{}: to be sliced whole takes up to {} MB of memory, above the {} MB of "
+            fmt::format("{}: to be sliced whole takes up to {} of memory, above the {} of "
                         "`max_memory`; it would be sliced in pieces, but for {}",
-                        job.inputs.front().path, bytes / 1'000'000 + 1, memory_.limit / 1'000'000,
+                        job.inputs.front().path, byte_amount(bytes), byte_amount(memory_.limit),
                         !needs_all.empty()
                             ? fmt::format("{}, which needs the whole mesh", needs_all)
                             : fmt::format("{}, which has to be read whole: only STL files that are not "
@@ -335,14 +336,13 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
             where = p;
         }
     if (overhead + largest > memory_.limit)
-        throw Error(
-            ErrorKind::limit,
-            fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
-                        "`threads` {} that takes {} MB of memory, above the {:.3g} MB of `max_memory`; "
-                        "allow more, or use fewer threads",
-                        plate_.files.front().path, plan.layers[mine.begin + where].z, survey.points(where),
-                        threads, (overhead + largest) / 1'000'000 + 1,
-                        static_cast<double>(memory_.limit) / 1e6));
+        throw Error(ErrorKind::limit,
+                    fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
+                                "`threads` {} that takes {} of memory, above the {} of `max_memory`; "
+                                "allow more, or use fewer threads",
+                                plate_.files.front().path, plan.layers[mine.begin + where].z,
+                                survey.points(where), threads, byte_amount(overhead + largest),
+                                byte_amount(memory_.limit)));
     std::vector<PlaneRange> shares =
         divide_to_fit(survey, part_of(plan, mine), slab, memory_.limit - overhead);
     for (PlaneRange& share : shares)

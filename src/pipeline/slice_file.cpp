@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/inspect.hpp"
 
+#include "core/byte_amount.hpp"
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
 #include "pipeline/agreement.hpp"
@@ -87,15 +88,13 @@ void check_count(const FileJob& job, double height) {
         return; // plan_uniform knows what to say of more
     const JobMemory memory(job);
     const std::uint64_t bytes = JobMemory::overhead(1, static_cast<std::uint64_t>(count));
-    constexpr double giga = 1e9;
     if (bytes > memory.limit)
         throw Error(
             ErrorKind::limit,
             fmt::format(
                 "a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), which take "
-                "{:.3g} GB of memory, above the {:.3g} GB {}; choose a larger one, or fewer layers",
-                job.layers.layer_height, count, height, static_cast<double>(bytes) / giga,
-                static_cast<double>(memory.limit) / giga,
+                "{} of memory, above the {} {}; choose a larger one, or fewer layers",
+                job.layers.layer_height, count, height, byte_amount(bytes), byte_amount(memory.limit),
                 memory.asked ? "of `max_memory`" : "that may be taken here"));
 }
 

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/byte_amount.hpp"
 #include "core/executor.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/tallies.hpp"
@@ -241,12 +242,11 @@ std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan
     };
     for (std::uint32_t p = 0; p < survey.planes(); ++p)
         if (const SlabNeeds needs = survey.needs({p, p + 1}); !fits(needs))
-            throw Error(
-                ErrorKind::limit,
-                fmt::format("the layer at z = {:.6g} mm alone is cut from {} triangles and takes {} MB "
-                            "of memory, and there are {} MB for a layer",
-                            plan.layers[p].z, needs.triangles, memory.bytes(needs) / 1'000'000 + 1,
-                            most_bytes / 1'000'000));
+            throw Error(ErrorKind::limit,
+                        fmt::format("the layer at z = {:.6g} mm alone is cut from {} triangles and takes {} "
+                                    "of memory, and there are {} for a layer",
+                                    plan.layers[p].z, needs.triangles, byte_amount(memory.bytes(needs)),
+                                    byte_amount(most_bytes)));
     const std::uint64_t any_work = std::numeric_limits<std::uint64_t>::max();
     const std::size_t most = fill(survey, any_work, at_least, fits).size();
     return level(survey, at_least, most, fits);

@@ -137,6 +137,7 @@ class Memory(ProgramTest):
 
     def test_limits_that_are_too_small(self):
         self.lattice()
+        self.fail_with(5, r"above the 1\.0 kB of --max-memory", "slice", "lattice.stl", "-o", "a.cli", "--max-memory", "1K")
         self.fail_with(5, r"the layer at z = .* alone is cut from .* triangles.*--max-memory", "slice", "lattice.stl",
                        "-o", "a.cli", "--max-memory", "1M")
 

@@ -70,6 +70,30 @@ class Results(MpiTest):
         self.assertEqual(result.code, 0, result.err)
         self.assertEqual(self.bytes_of("many.cli"), self.bytes_of("one.cli"))
 
+    def peak_of(self, processes, *arguments):
+        """Bytes that the largest of all processes of a job took."""
+        watch = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); "
+                 "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+        command = [sys.executable, "-c", watch, *self.command(processes, MPI_PROGRAM, *arguments)]
+        result = subprocess.run(command, cwd=self.folder, capture_output=True, timeout=240,
+                                env=dict(os.environ, OMPI_MCA_mpi_yield_when_idle="1"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return 1024 * int(result.stdout)
+
+    def test_no_process_takes_more_than_it_may(self):
+        self.box()
+        self.succeed("make", "lattice", "--cells", 12, "-o", "part.stl")  # 45 MB; to slice it whole takes 200 MB
+        common = ["slice", "part.stl", "--threads", "1", "--layer-height", "0.2"]
+        limit = 70_000_000
+        for name in ["cli", "npz"]:  # written by all, and by the first process
+            self.succeed(*common, "-o", f"expected.{name}")
+            for processes in [1, 2, 3]:
+                with self.subTest(name, processes=processes):
+                    of_mpi = self.peak_of(processes, "slice", "box.stl", "-o", f"out.{name}", "--threads", "1")
+                    peak = self.peak_of(processes, *common, "-o", f"out.{name}", "--max-memory", limit)
+                    self.assertLess(peak, 1.1 * limit + of_mpi)
+                    self.assertEqual(self.bytes_of(f"out.{name}"), self.bytes_of(f"expected.{name}"))
+
     def test_standard_output(self):
         self.box()
         one = self.succeed("slice", "box.stl", "-o", "-", "--format", "svg")
