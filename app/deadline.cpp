@@ -70,7 +70,7 @@ void Deadline::watch() {
     lock.unlock(); // whoever is waiting for the stop may want to report progress
     stop_.request_stop();
     lock.lock();
-    const bool reading = !started_ || last_.stage == Stage::read;
+    const bool reading = !started_ || (last_.stage == Stage::read && last_.done < last_.total);
     if (!done_.wait_for(lock, reading ? patience_reading : patience, is_ending)) {
         const std::string text = "\nlamella: error: " + message() + "\n";
         remove_unfinished();

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
@@ -81,7 +80,7 @@ bool passes_by(const Segment& s, const Point2& p) noexcept {
 class Ends {
   public:
     explicit Ends(std::span<const Side> sides) : ends_(ends_of(sides)), cells_(cells_for(ends_)) {
-        const auto numbers = std::views::iota(0U, static_cast<std::uint32_t>(ends_.size()));
+        const NumbersBelow numbers{static_cast<std::uint32_t>(ends_.size())};
         [[maybe_unused]] const bool sorted =
             cells_.sort(numbers, ends_.size(),
                         [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(ends_[i])); });

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <ranges>
 
 namespace lamella {
 
@@ -83,7 +82,7 @@ bool ChainGrid::sort() {
     if (!(size > 0 && std::isfinite(1 / size) && std::isfinite(all_.width()) && std::isfinite(all_.height())))
         return false;
     cells_.emplace(all_, size);
-    const auto numbers = std::views::iota(0U, static_cast<std::uint32_t>(pieces_.size()));
+    const NumbersBelow numbers{static_cast<std::uint32_t>(pieces_.size())};
     return cells_->sort(numbers, 16 * pieces_.size() + 4096, [this](std::uint32_t piece, const auto& visit) {
         cells_->for_cells(boxes_[piece], visit);
     });

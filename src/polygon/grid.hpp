@@ -17,6 +17,14 @@
 
 namespace lamella {
 
+/// The numbers from 0 to size() - 1, where all things there are go into a grid.
+struct NumbersBelow {
+    std::uint32_t end = 0;
+
+    [[nodiscard]] std::size_t size() const noexcept { return end; }
+    std::uint32_t operator[](std::size_t k) const noexcept { return static_cast<std::uint32_t>(k); }
+};
+
 /// Square cells over a box, and for each cell the numbers of the things that reach into it. Things are boxes,
 /// segments or points: whoever sorts them in says which cells a thing reaches into.
 class Grid {
@@ -117,8 +125,8 @@ class Grid {
         most = std::min<std::uint64_t>(most, std::numeric_limits<std::uint32_t>::max());
         ends_.assign(cells() + 1, 0);
         std::uint64_t entries = 0;
-        for (const std::uint32_t number : numbers) {
-            for_cells_of(number, [&](std::size_t cell) {
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            for_cells_of(numbers[k], [&](std::size_t cell) {
                 ++ends_[cell];
                 ++entries;
             });

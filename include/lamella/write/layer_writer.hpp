@@ -63,6 +63,8 @@ struct PageOptions {
 };
 
 struct LayerWriteOptions {
+    static constexpr double usual_units_mm = 0.001;
+
     /// Error{limit} where the layers take more than so many bytes; 0 is no limit. What ends a file, such as
     /// the directory of an archive, does not count.
     std::uint64_t most_bytes = 0;
@@ -70,7 +72,7 @@ struct LayerWriteOptions {
     bool strict = false;
     /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
     /// the ASCII and the short binary form; the long binary form keeps single precision.
-    double units_mm = 0.001;
+    double units_mm = usual_units_mm;
     /// Common Layer Interface, binary: 16-bit coordinates; Error{usage} where they do not fit.
     bool short_form = false;
     /// Layered SVG: write slic3r:z as Slic3r 1.x does (slicing height times 1e-6).
