@@ -87,8 +87,9 @@ export async function tasks(name, act) {
   await ended;
   await context.close();
   const mains = new Set(events.filter(({ ph, args }) => ph === 'M' && args.name === 'CrRendererMain').map(({ pid, tid }) => `${pid} ${tid}`));
+  // A task that the end of the record cuts off has no figures.
   return events
-    .filter(({ name, pid, tid }) => name === 'ThreadControllerImpl::RunTask' && mains.has(`${pid} ${tid}`))
+    .filter(({ name, pid, tid, tdur }) => name === 'ThreadControllerImpl::RunTask' && mains.has(`${pid} ${tid}`) && tdur !== undefined)
     .map(({ tdur, dur }) => ({ work: tdur / 1e6, whole: dur / 1e6 }));
 }
 

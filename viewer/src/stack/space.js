@@ -156,9 +156,14 @@ export class Space {
   }
 
   redraw() {
+    this.announceChange();
+    this.#wake();
+  }
+
+  /** Something changed, and redraw() follows when all of it is there: what is on the screen is not to stay. */
+  announceChange() {
     this.#changed = true;
     delete this.canvas.dataset.settled;
-    this.#wake();
   }
 
   #wake() {

@@ -162,6 +162,7 @@ export class StackView {
   async #follow() {
     const { layer: number, view } = this.#store.state;
     if (view === 'layer') return;
+    this.#space.announceChange();
     const layer = await this.#shelf.layer(number);
     if (this.#store.state.layer !== number) return;
     this.#capToPaint('top', (theme, hidden) =>
