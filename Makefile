@@ -9,9 +9,8 @@ THREADED := core mesh read slicing pipeline
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
-# Where nothing was compiled before nor will be again, the sources of a room are compiled together: in two thirds of the
-# time.
-ifdef CI
+# Where nothing was built before, the sources of a room are compiled together: in two thirds of the time.
+ifeq ($(wildcard build/CMakeCache.txt),)
 RELEASE := -D CMAKE_UNITY_BUILD=ON
 endif
 
@@ -23,21 +22,26 @@ endif
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
-packages:  ## install the Debian packages that a build needs
-	@tools/install_packages.sh tools/packages.txt
+packages:  ## install the Debian packages that building and testing need
+	@tools/install_packages.sh tools/packages.txt tools/packages-test.txt
 
-packages-viewer: packages
-	@tools/install_packages.sh tools/packages-viewer.txt
+packages-viewer:
+	@tools/install_packages.sh tools/packages.txt tools/packages-viewer.txt
 
 build: packages  ## build the program, build/lamella, and the Python package, build/python
 	cmake --preset release $(RELEASE)
 	cmake --build build --target lamella_programs lamella_python_package
 
-demo: packages-viewer build  ## make, slice and verify two parts; slice files, pictures and a page are left in out/
+# Of all there is, the program alone is built, in the quickest way.
+demo:  ## make, slice and verify two parts; slice files, pictures and a page are left in out/
+	@echo "Installing what is missing and building the program: about three minutes the first time."
+	@tools/install_packages.sh tools/packages.txt tools/packages-viewer.txt
+	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=OFF
+	cmake --build build --target lamella_app
 	@python3 tools/demo.py build/lamella out
 
 test: packages  ## build everything and run the tests: a few minutes
-	cmake --preset release $(RELEASE) -D LAMELLA_LARGE_TESTS=OFF
+	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D LAMELLA_LARGE_TESTS=OFF
 	cmake --build build
 	$(CTEST) --test-dir build
 
@@ -48,7 +52,7 @@ packages-all: packages packages-viewer
 	@tools/install_packages.sh tools/packages-all.txt tools/packages-docs.txt
 
 test-large: packages-all
-	cmake --preset release $(RELEASE) -D LAMELLA_LARGE_TESTS=ON
+	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D LAMELLA_LARGE_TESTS=ON
 	cmake --build build
 	$(CTEST) --test-dir build --label-regex large
 
@@ -64,7 +68,7 @@ test-tsan: packages-all
 
 # What was compiled for the static library serves the shared one.
 test-shared: packages-all
-	cmake --preset release $(RELEASE) -D BUILD_SHARED_LIBS=ON
+	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
 	cmake --build build --target lamella_programs lamella_app_files examples/all
 	$(CTEST) --test-dir build --label-regex '^house$$'
 

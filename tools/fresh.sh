@@ -37,7 +37,7 @@ make_machine() {
     rm "$hurry"
 }
 
-# Runs a command in a folder of that machine. Nothing comes along from here (a compiler cache, for instance, or CI) but
+# Runs a command in a folder of that machine. Nothing comes along from here (a compiler cache, for instance) but
 # the way to the network.
 on_it() {
     local name way=()
