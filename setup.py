@@ -19,7 +19,7 @@ BUILD = ROOT / "build" / "pip"  # everything that is made on the way
 
 def version():
     """CMake's project knows it."""
-    return re.search(r"project\(lamella VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+    return re.search(r'#define LAMELLA_VERSION "(.*)"', (ROOT / "include/lamella/core/version.hpp").read_text(encoding="utf-8"))[1]
 
 
 class CMakeBuild(build_ext):

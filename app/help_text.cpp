@@ -1,5 +1,7 @@
 #include "help_text.hpp"
 
+#include "lamella/core/version.hpp"
+
 #include "numbers.hpp"
 
 #include <fmt/format.h>
@@ -71,7 +73,7 @@ std::string option_body(const Option& option) {
 std::string program_help(std::span<const Command> commands) {
     std::string text = fmt::format("lamella {}: triangle mesh in, closed contours out, layer by layer\n\n"
                                    "usage: lamella COMMAND [options]\n\n",
-                                   LAMELLA_VERSION);
+                                   version());
     for (const Command& command : commands)
         text += entry(command.name, command.summary, 14);
     text += "\nTo begin with, make a chess rook, look at it, slice it and check the result:\n\n"

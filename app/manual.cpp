@@ -1,5 +1,6 @@
 #include "manual.hpp"
 
+#include "lamella/core/version.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -59,7 +60,7 @@ std::string manual_page(std::span<const Command> commands) {
     std::string text = fmt::format(".TH LAMELLA 1 \"\" \"lamella {}\" \"User Commands\"\n"
                                    ".SH NAME\nlamella \\- slice triangle meshes into closed contours\n"
                                    ".SH SYNOPSIS\n",
-                                   LAMELLA_VERSION);
+                                   version());
     for (const Command& command : commands)
         text += fmt::format("{}.B lamella {}\n{}\n", &command == commands.data() ? "" : ".br\n", command.name,
                             plain(synopsis(command)));

@@ -1,6 +1,7 @@
 #include "program.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/version.hpp"
 
 #include "command_line.hpp"
 #include "config_file.hpp"
@@ -44,7 +45,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
         return 0;
     }
     if (words[0] == "--version") {
-        messages.result("lamella " LAMELLA_VERSION "\nMIT licence\n");
+        messages.result(fmt::format("lamella {}\nMIT licence\n", version()));
         return 0;
     }
     const auto command = std::ranges::find(commands, words[0], &Command::name);

@@ -2,6 +2,7 @@
 
 #include "lamella/container/file_hash.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/core/version.hpp"
 
 #include "config_file.hpp"
 #include "text_file.hpp"
@@ -94,7 +95,7 @@ Json shard_origin(const Command& command, const FileJob& job, const Execution& e
     Json inputs = Json::array();
     for (const PlateInput& input : job.inputs)
         inputs.push_back(input_json(input, execution));
-    return {{"lamella", LAMELLA_VERSION},
+    return {{"lamella", version()},
             {"format", layer_format(job.format, job.output).name},
             {"shards", job.shard->count},
             {"inputs", std::move(inputs)},

@@ -1,5 +1,7 @@
 #include "stats_json.hpp"
 
+#include "lamella/core/version.hpp"
+
 #include "config_file.hpp"
 #include "options.hpp"
 #include "repair_options.hpp"
@@ -159,7 +161,7 @@ Json stats_json(const Command& command, const FileResult& result) {
     options["matrix"] = matrix_json(first.matrix);
     const bool inspected = result.inspection.has_value();
     const FileResult::Seconds& seconds = result.seconds;
-    Json stats = {{"lamella", LAMELLA_VERSION},
+    Json stats = {{"lamella", version()},
                   {"options", std::move(options)},
                   {"input",
                    {{"path", first.path},

@@ -5,6 +5,5 @@ int main() {
     const lamella::Box3 box = lamella::bounding_box(part.mesh());
     const lamella::Plan plan = lamella::plan_uniform(box.min.z, box.max.z, {.layer_height = 0.1});
     const lamella::LayerStack layers = lamella::slice(part.mesh(), plan);
-    lamella::write_layers("part.cli", lamella::layer_format("", "part.cli"), layers,
-                          {.box = box, .layers = layers.size(), .bottom = layers.front().bottom});
+    lamella::write_layers("part.cli", layers);
 }

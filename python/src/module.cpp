@@ -1,5 +1,7 @@
 // The extension lamella._lamella. What users call is in the package around it; see __init__.py there.
 
+#include "lamella/core/version.hpp"
+
 #include "errors.hpp"
 #include "files.hpp"
 #include "layers.hpp"
@@ -15,7 +17,7 @@ PYBIND11_MODULE(_lamella, module) {
     py::options options;
     options.disable_function_signatures();
 
-    module.attr("__version__") = LAMELLA_VERSION;
+    module.attr("__version__") = lamella::version();
     lamella::python::register_errors();
     lamella::python::bind_meshes(module);
     lamella::python::bind_layers(module);

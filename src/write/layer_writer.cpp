@@ -223,6 +223,23 @@ void write_planes(LayerWriter& writer, std::size_t planes,
     progress.finish();
 }
 
+std::vector<std::string> write_layers(const std::string& path, std::span<const Layer> layers,
+                                      const LayerWriteOptions& options, const Execution& execution) {
+    if (layers.empty())
+        throw Error(ErrorKind::usage, "there are no layers to write");
+    LayerFileInfo info{.layers = layers.size(), .bottom = layers.front().bottom};
+    for (const Layer& layer : layers)
+        for (const PointArray* points : {&layer.points, &layer.hatches})
+            for (const Point2& p : *points)
+                info.box.add(Point3{p.x, p.y, layer.z});
+    if (info.box.empty())
+        info.box.add(Point3{});
+    info.box.min.z = info.bottom;
+    info.box.max.z = layers.back().top;
+    info.parts.front().box = info.box;
+    return write_layers(path, layer_format("", path), layers, info, options, execution);
+}
+
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Layer> layers, const LayerFileInfo& info,
                                       const LayerWriteOptions& options, const Execution& execution) {

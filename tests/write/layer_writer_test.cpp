@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -201,6 +202,25 @@ TEST(LayerWriter, WritesStacksWithoutContoursAndWithoutLayers) {
             EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
         }
     }
+}
+
+TEST(WriteLayers, TakesFormatAndHeadFromPathAndLayers) {
+    const TemporaryFolder folder;
+    LayerBuilder nothing;
+    const LayerStack empty{nothing.finish(0, 0.5, 0, 1)};
+    for (const LayerStack& layers : {random_layers(1, 40, 30, {10, -5}, false), square_with_hole(), empty}) {
+        LayerFileInfo head = info_of(layers);
+        head.box.max.z = layers.back().top;
+        head.parts.front().box = head.box;
+        for (const char* name : {"part.cli", "part.svg", "part.slc", "part.3mf", "part.json"}) {
+            write_layers(folder.file(name), layers);
+            write_layers(folder.file("expected"), layer_format("", name), layers, head);
+            EXPECT_EQ(file_bytes(folder.file(name)), file_bytes(folder.file("expected"))) << name;
+        }
+    }
+    const auto none = [&] { write_layers(folder.file("none.cli"), LayerStack{}); };
+    EXPECT_NE(error_of(ErrorKind::usage, none).find("no layers"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("none.cli")));
 }
 
 TEST(LayerWriter, ReportsAFullDiskAndAMissingFolder) {

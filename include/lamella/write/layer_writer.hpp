@@ -161,8 +161,14 @@ void write_planes(LayerWriter& writer, std::size_t planes,
                   const std::function<std::vector<Layer>(std::size_t)>& parts_of,
                   const Execution& execution = {});
 
-/// Writes the stack of a single part and returns LayerWriter::warnings. Formats on all threads; layers need
-/// not be in memory for that: `slice_to` takes LayerWriter::prepare as its sink.
+/// Writes the stack of a single part, in the format that the extension of the path names, and returns
+/// LayerWriter::warnings. What the head of the file says is taken from the layers: the box is that of their
+/// contours, and the rule that of slice() by default. Throws Error{usage} where there are no layers.
+std::vector<std::string> write_layers(const std::string& path, std::span<const Layer> layers,
+                                      const LayerWriteOptions& options = {}, const Execution& execution = {});
+
+/// The same in any format, with a head of the caller's. Formats on all threads; layers need not be in memory
+/// for that: `slice_to` takes LayerWriter::prepare as its sink.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Layer> layers, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});

@@ -1,15 +1,17 @@
 #include <lamella/lamella.hpp>
 
 #include <iostream>
+#include <string>
 
 // Slices a box, writes it, reads it back: the whole way through the installed library.
 int main() {
+    if (lamella::version() != std::string(LAMELLA_VERSION))
+        return 1;
     const lamella::TriangleSoup box = lamella::make_box(20, 10, 3);
     const lamella::LayerStack layers =
         lamella::slice(box, lamella::plan_uniform(0, 3, {.layer_height = 0.1}));
     for (const char* path : {"consumer.cli", "consumer.svg"}) {
-        lamella::write_layers(path, lamella::layer_format("", path), layers,
-                              {.box = lamella::bounding_box(box), .layers = layers.size()});
+        lamella::write_layers(path, layers);
         const lamella::LayerFile file = lamella::read_layers(path);
         const lamella::Verification check =
             lamella::verify(file.merged(), {.mesh = box, .rounding = file.rounding});
