@@ -49,7 +49,7 @@ test-all: test-large test-asan test-tsan test-shared fresh  ## the long suites: 
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
-	@tools/install_packages.sh tools/packages-all.txt tools/packages-docs.txt
+	@tools/install_packages.sh tools/packages-all.txt tools/packages-dist.txt tools/packages-docs.txt
 
 test-large: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D LAMELLA_LARGE_TESTS=ON
@@ -159,10 +159,15 @@ install: build  ## install to PREFIX (default /usr/local)
 	cmake --build build --target lamella_app_files
 	cmake --install build --prefix '$(PREFIX)'
 
+dist: packages-viewer build  ## what is released, into dist/: source archive, Debian package, wheel
+	@tools/install_packages.sh tools/packages-dist.txt
+	cmake --build build --target lamella_app_files
+	tools/dist.sh build dist
+
 clean:  ## remove what was built
-	rm -rf build build-* out
+	rm -rf build build-* dist out
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
         test-shared fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core \
-        python-bench page-bench paper format format-check lint install clean
+        python-bench page-bench paper format format-check lint install dist clean

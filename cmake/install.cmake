@@ -39,6 +39,12 @@ file(RELATIVE_PATH bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_IN
 foreach(program lamella_app lamella_mpi)
     if(TARGET ${program})
         set_target_properties(${program} PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib})
-        install(TARGETS ${program} OPTIONAL)
     endif()
 endforeach()
+# The component `program` is what goes into a package of it.
+if(TARGET lamella_app)
+    install(TARGETS lamella_app OPTIONAL COMPONENT program)
+endif()
+if(TARGET lamella_mpi)
+    install(TARGETS lamella_mpi OPTIONAL)
+endif()

@@ -1,0 +1,42 @@
+#!/bin/bash
+# Makes in a folder what is released: a source archive, which has the page of the viewer ready made, so that nobody who
+# builds it needs Node.js or npm; a Debian package of the program in BUILD; and a wheel, built from that archive. The
+# sources are those that git tracks, as they are now; the same ones give the same archive.
+# usage: tools/dist.sh BUILD FOLDER
+set -euo pipefail
+build=$(realpath "$1")
+mkdir -p "$2"
+dist=$(realpath "$2")
+cd "$(dirname "$0")/.."
+umask 022
+
+fail() {
+    echo "dist: $1" >&2
+    exit 1
+}
+
+page=$build/viewer/viewer_page.cpp
+grep --quiet 'constexpr char page' "$page" 2>/dev/null || fail "the build in $build has no viewer; its log says why"
+tree=$(git -c safe.directory="$PWD" stash create 2>/dev/null) || fail "this is no checkout by git"
+tree=${tree:-HEAD}
+SOURCE_DATE_EPOCH=$(git -c safe.directory="$PWD" log -1 --format=%ct)
+export SOURCE_DATE_EPOCH
+name=lamella-$(sed -n 's/^project(lamella VERSION \([^ ]*\).*/\1/p' CMakeLists.txt)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+git -c safe.directory="$PWD" archive --prefix="$name/" "$tree" | tar --extract --directory "$work"
+cp "$page" "$work/$name/viewer/"
+# Root's tar keeps the modes of files where that of others takes the umask.
+tar --create --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=a+rX,u+w,go-w \
+    --directory "$work" "$name" |
+    gzip --no-name >"$dist/$name.tar.gz"
+
+cpack --config "$build/CPackConfig.cmake" -B "$work/debian" >"$work/log" || {
+    cat "$work/log" >&2
+    fail "cpack made no Debian package"
+}
+mv "$work"/debian/*.deb "$dist/"
+
+# Debian's packages belong to Debian's interpreter, whichever comes first in the path.
+/usr/bin/python3 -m pip --quiet wheel "$work/$name" --no-build-isolation --no-deps --no-index --wheel-dir "$dist"
