@@ -21,7 +21,7 @@ tree=$(git -c safe.directory="$PWD" stash create 2>/dev/null) || fail "this is n
 tree=${tree:-HEAD}
 SOURCE_DATE_EPOCH=$(git -c safe.directory="$PWD" log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
-name=lamella-$(sed -n 's/^project(lamella VERSION \([^ ]*\).*/\1/p' CMakeLists.txt)
+name=lamella-$(sed -n 's/^#define LAMELLA_VERSION "\(.*\)"/\1/p' include/lamella/core/version.hpp)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
