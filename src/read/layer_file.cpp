@@ -6,9 +6,7 @@
 #include "container/gzip.hpp"
 #include "container/text_place.hpp"
 #include "container/zip_reader.hpp"
-#include "read/common_layer.hpp"
-#include "read/layered_svg.hpp"
-#include "read/layers_json.hpp"
+#include "read/mesh_formats.hpp"
 #include "read/npz.hpp"
 #include "read/read_limits.hpp"
 #include "read/slc.hpp"
@@ -36,14 +34,8 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                                 "stacks and NumPy arrays are read",
                                 source.name));
     }
-    if (is_slc(bytes))
-        return read_slc(bytes, source.name, limits, execution);
-    if (is_json(bytes))
-        return read_layers_json(bytes, source.name, limits, execution);
-    if (is_common_layer(bytes))
-        return read_common_layer(bytes, source.name, limits, execution);
-    if (is_svg(bytes))
-        return read_layered_svg(bytes, source.name, limits, execution);
+    if (const MeshFormatRow* const format = layer_format_of(source))
+        return format->read_layers(bytes, source.name, limits, execution);
     if (const std::string_view other = other_slc(bytes); !other.empty())
         throw Error(ErrorKind::input,
                     fmt::format("{}: found {}; of the formats that go by this name, that of 3D Systems is "
@@ -51,10 +43,9 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                                 source.name, other));
     throw Error(
         ErrorKind::input,
-        fmt::format("{}: found '{}' at its beginning; a slice file is expected: Common Layer Interface "
-                    "($$HEADERSTART), layered SVG (<svg), SLC (-SLCVER), 3MF with slice stacks, NumPy "
-                    "arrays or JSON of layers",
-                    source.name, printable(bytes.substr(0, 16), 48)));
+        fmt::format("{}: found '{}' at its beginning; a slice file is expected: {}, 3MF with slice stacks "
+                    "or NumPy arrays",
+                    source.name, printable(bytes.substr(0, 16), 48), layer_marks()));
 }
 
 LayerFile read_opened(const ByteSource& opened, const LayerReadOptions& options, ReadLimits& limits,

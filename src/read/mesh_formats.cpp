@@ -87,13 +87,7 @@ constexpr std::array rows = {
     // Slice files, and web pages, which may hold SVG.
     MeshFormatRow{.first_bytes = "<!doctype html"sv, .advice = web_page},
     MeshFormatRow{.first_bytes = "<html"sv, .advice = web_page},
-    MeshFormatRow{.extension = "cli",
-                  .first_bytes = "$$"sv,
-                  .recognises = by_text<is_common_layer>,
-                  .goes_by_name = true,
-                  .advice = "is a slice file (Common Layer Interface): it holds layers already, no mesh; "
-                            "view, convert or verify it as it is",
-                  .layers = true},
+    // A text that holds the mark of the Common Layer Interface somewhere can still be of the two before it.
     MeshFormatRow{.extension = "slc",
                   .first_bytes = "-slc"sv,
                   .recognises = by_text<is_slc>,
@@ -101,19 +95,34 @@ constexpr std::array rows = {
                   .advice =
                       "is a slice file (SLC): it holds layers already, no mesh; view, convert or verify "
                       "it as it is",
-                  .layers = true},
-    MeshFormatRow{.extension = "svg",
-                  .recognises = by_text<is_svg>,
-                  .goes_by_name = true,
-                  .advice = "is an SVG document, which may hold layers, but no mesh; view, convert or verify "
-                            "layers as they are",
-                  .layers = true},
+                  .layers = true,
+                  .read_layers = read_slc,
+                  .layer_mark = "SLC (-SLCVER)"},
     MeshFormatRow{.extension = "json",
                   .recognises = by_text<is_json>,
                   .goes_by_name = true,
                   .advice = "is a JSON document, which may hold layers, but no mesh that is read here; view, "
                             "convert or verify layers as they are",
-                  .layers = true},
+                  .layers = true,
+                  .read_layers = read_layers_json,
+                  .layer_mark = "JSON of layers ({)"},
+    MeshFormatRow{.extension = "cli",
+                  .first_bytes = "$$"sv,
+                  .recognises = by_text<is_common_layer>,
+                  .goes_by_name = true,
+                  .advice = "is a slice file (Common Layer Interface): it holds layers already, no mesh; "
+                            "view, convert or verify it as it is",
+                  .layers = true,
+                  .read_layers = read_common_layer,
+                  .layer_mark = "Common Layer Interface ($$HEADERSTART)"},
+    MeshFormatRow{.extension = "svg",
+                  .recognises = by_text<is_svg>,
+                  .goes_by_name = true,
+                  .advice = "is an SVG document, which may hold layers, but no mesh; view, convert or verify "
+                            "layers as they are",
+                  .layers = true,
+                  .read_layers = read_layered_svg,
+                  .layer_mark = "layered SVG (<svg)"},
     // What is often found under the name of a mesh file, or given by mistake. Binary ones would be taken for
     // binary STL with a wrong count.
     MeshFormatRow{.first_bytes = "\x1f\x8b"sv, .advice = "is packed with gzip twice; unpack it once first"},
@@ -210,6 +219,20 @@ const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOpti
         refuse(source, fmt::format("is neither a mesh file nor the slice file that its extension .{} says",
                                    extension));
     return rows.front();
+}
+
+const MeshFormatRow* layer_format_of(const ByteSource& source) {
+    return first_row([&](const MeshFormatRow& row) {
+        return row.read_layers != nullptr && row.recognises(source, MeshReadOptions{});
+    });
+}
+
+std::string layer_marks() {
+    std::string marks;
+    for (const MeshFormatRow& row : rows)
+        if (row.read_layers != nullptr)
+            marks.append(marks.empty() ? "" : ", ").append(row.layer_mark);
+    return marks;
 }
 
 std::vector<std::string_view> mesh_extensions() {

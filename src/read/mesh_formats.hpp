@@ -1,18 +1,22 @@
 #pragma once
 
 // The table of what may be given as a mesh: the formats that are read, and what is often found in their
-// place.
+// place, slice files among it.
 
 #include "lamella/core/execution.hpp"
+#include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 
 #include "container/byte_source.hpp"
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace lamella {
+
+class ReadLimits;
 
 /// All there is to know of one kind of file. It has `read`, or else `advice`.
 struct MeshFormatRow {
@@ -28,7 +32,11 @@ struct MeshFormatRow {
 
     /// What the file is, and what to do about it: the end of a sentence that begins with its name.
     std::string_view advice = {};
-    bool layers = false; ///< it is for read_layers
+    bool layers = false; ///< it is for read_layers, the function that all may call
+    /// Reads a slice file that is no archive. `layer_mark`: its name and first bytes, for errors.
+    LayerFile (*read_layers)(std::string_view bytes, const std::string& name, ReadLimits&,
+                             const Execution&) = nullptr;
+    std::string_view layer_mark = {};
 
     MeshFile (*read)(const ByteSource&, const MeshReadOptions&, const Execution&) = nullptr;
     /// Reads batch by batch; see MeshInput::stream.
@@ -44,5 +52,11 @@ struct MeshFormatRow {
 /// The format to read a file with: that of its content, where that tells, else that of its name. Throws
 /// Error{input} for what is no mesh file, with advice.
 [[nodiscard]] const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOptions& options);
+
+/// Of slice files that are no archives, the row that the content tells; null where none does.
+[[nodiscard]] const MeshFormatRow* layer_format_of(const ByteSource& source);
+
+/// The marks of all rows with `read_layers`: "SLC (-SLCVER), JSON of layers ({)".
+[[nodiscard]] std::string layer_marks();
 
 } // namespace lamella

@@ -35,6 +35,31 @@ LayerFile read_packed(const std::string& content, std::uint64_t max_memory = 0) 
     return read_layers(std::as_bytes(std::span(content)), "layers.cli.gz", {.max_memory = max_memory});
 }
 
+LayerFile read_text(const std::string& content) {
+    return read_layers(std::as_bytes(std::span(content)), "layers");
+}
+
+TEST(LayerFile, OfNoKindNamesAllKindsThatAreRead) {
+    try {
+        (void)read_text("G1 X10 Y10\n");
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        const std::string text = error.what();
+        for (const char* kind : {"$$HEADERSTART", "-SLCVER", "<svg", "JSON", "3MF", "NumPy"})
+            EXPECT_NE(text.find(kind), std::string::npos) << kind << ": " << text;
+    }
+}
+
+TEST(LayerFile, IsOfTheKindThatItsBeginningSaysWhateverItsTextsHold) {
+    try {
+        (void)read_text("{\"label\": \"$$HEADERSTART <svg\"}");
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find("$$"), std::string::npos) << error.what();
+    }
+}
+
 TEST(LayerFile, MayBePackedWithGzip) {
     const std::string content = packed(square);
     if (content.empty())
