@@ -99,7 +99,7 @@ std::vector<std::uint64_t> MpiProcesses::exchange(std::span<const std::uint64_t>
     return incoming;
 }
 
-// Not MPI_Alltoallv: its counts and places end at 2^31. In step s every rank sends to the one that is s
+// Not MPI_Alltoallv: its counts and places end at 2^31. In step s every process sends to the one that is s
 // further on and receives from the one s before, so no two send to the same one at a time.
 void MpiProcesses::exchange(std::span<const std::span<const std::byte>> outgoing,
                             std::span<const std::span<std::byte>> incoming) {

@@ -1,1 +1,1 @@
-"""One job on many ranks: see ../README.md."""
+"""One job on many processes: see ../README.md."""

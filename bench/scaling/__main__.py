@@ -2,8 +2,8 @@
 
     python3 -m bench.scaling [options]      (from the root of the source tree; `make scaling` does it)
 
-Ranks share one machine here, with one thread each, so that their processor time counts and not the wall time beyond as
-many ranks as there are processors. From runs of one rank come the rates; the model predicts every other run, and the
+Processes share one machine here, with one thread each, so that their processor time counts and not the wall time beyond as
+many processes as there are processors. From runs of one process come the rates; the model predicts every other run, and the
 report sets the measured points beside it.
 """
 
@@ -23,15 +23,15 @@ def parse():
     parser.add_argument("--lamella", default="build/lamella")
     parser.add_argument("--out", default="out/scaling", help="folder of all files (default: %(default)s)")
     parser.add_argument("--cells", type=int, nargs="+", default=[12, 20], help="of the lattices (default: %(default)s)")
-    parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 3, 5, 8], help="default: %(default)s")
+    parser.add_argument("--processes", type=int, nargs="+", default=[1, 2, 3, 5, 8], help="default: %(default)s")
     parser.add_argument("--rounds", type=int, default=3, help="default: %(default)s")
-    parser.add_argument("--network", type=float, default=1.0, help="bytes a second of a rank's link, GB (default: 1)")
+    parser.add_argument("--network", type=float, default=1.0, help="bytes a second of a process's link, GB (default: 1)")
     parser.add_argument("--disk", type=float, default=10.0, help="bytes a second of the shared disk, GB (default: 10)")
     return parser.parse_args()
 
 
-def run(wishes, folder, part, ranks):
-    command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), wishes.lamella + "-mpi", "slice", part,
+def run(wishes, folder, part, processes):
+    command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(processes), wishes.lamella + "-mpi", "slice", part,
                "-o", folder / "out.cli", "--threads", "1", "--stats", folder / "stats.json", "--progress", "none"]
     subprocess.run(list(map(str, command)), check=True, capture_output=True,
                    env=dict(os.environ, OMPI_MCA_mpi_yield_when_idle="1"))
@@ -40,19 +40,19 @@ def run(wishes, folder, part, ranks):
 
 def figures(stats):
     """Of a run: what the model is about."""
-    ranks = stats["processes"]
-    triangles = sum(r["triangles_read"] for r in ranks)
-    sliced = [r["triangles_sliced"] for r in ranks]
-    points = [r["points"] for r in ranks]
-    return {"ranks": len(ranks), "triangles": triangles, "sliced": sum(sliced), "planes": len(stats["layers"]),
-            "points": sum(points), "sent": sum(r["bytes_sent"] for r in ranks), "balance": max(points) / (sum(points) / len(points)),
-            "read": max(r["seconds"]["read"] for r in ranks), "slice": max(r["seconds"]["slice"] for r in ranks),
-            "exchange": max(r["seconds"]["exchange"] for r in ranks),
+    processes = stats["processes"]
+    triangles = sum(r["triangles_read"] for r in processes)
+    sliced = [r["triangles_sliced"] for r in processes]
+    points = [r["points"] for r in processes]
+    return {"processes": len(processes), "triangles": triangles, "sliced": sum(sliced), "planes": len(stats["layers"]),
+            "points": sum(points), "sent": sum(r["bytes_sent"] for r in processes), "balance": max(points) / (sum(points) / len(points)),
+            "read": max(r["seconds"]["read"] for r in processes), "slice": max(r["seconds"]["slice"] for r in processes),
+            "exchange": max(r["seconds"]["exchange"] for r in processes),
             "total": stats["seconds"]["total"], "bytes": (Path(stats["options"]["output"])).stat().st_size}
 
 
 class Model:
-    """Rates from runs of one rank; everything else follows from counts."""
+    """Rates from runs of one process; everything else follows from counts."""
 
     def __init__(self, singles):
         self.read_rate = sum(s["triangles"] for s in singles) / sum(s["read"] for s in singles)
@@ -68,46 +68,46 @@ class Model:
         self.cut = sum(s["sliced"] for s in singles) / sum(s["triangles"] for s in singles)
         self.out_bytes = sum(s["bytes"] for s in singles) / sum(s["points"] for s in singles)
 
-    def predict(self, triangles, planes, points, ranks, balance=1.0):
+    def predict(self, triangles, planes, points, processes, balance=1.0):
         # Each cut triangle goes to one slab, and to one more for each bound between slabs that lies among its planes. It
         # brings a point to each plane, so all of them together span points - cut gaps between planes. The triangles of
-        # the file are in no order, so one in `ranks` is where it belongs.
+        # the file are in no order, so one in `processes` is where it belongs.
         cut = self.cut * triangles
-        sliced = cut + (ranks - 1) * (points - cut) / (planes - 1)
-        return {"sliced": sliced, "sent": TRIANGLE * sliced * (ranks - 1) / ranks,
-                "read": triangles / ranks / self.read_rate,
-                "slice": balance * (self.triangle * sliced + self.point * points) / ranks,
+        sliced = cut + (processes - 1) * (points - cut) / (planes - 1)
+        return {"sliced": sliced, "sent": TRIANGLE * sliced * (processes - 1) / processes,
+                "read": triangles / processes / self.read_rate,
+                "slice": balance * (self.triangle * sliced + self.point * points) / processes,
                 "bytes": self.out_bytes * points}
 
 
 def cluster(model, scale, wishes):
-    """10^9 triangles on 64 ranks: a lattice as measured, with more cells, cut into as many more planes."""
+    """10^9 triangles on 64 processes: a lattice as measured, with more cells, cut into as many more planes."""
     factor = (1e9 / scale["triangles"]) ** (1 / 3)
     planes, points = scale["planes"] * factor, scale["points"] * factor**3
     lines = []
-    for ranks in [1, 8, 64]:
-        p = model.predict(1e9, planes, points, ranks, 1.05)
+    for processes in [1, 8, 64]:
+        p = model.predict(1e9, planes, points, processes, 1.05)
         link, disk = wishes.network * 1e9, wishes.disk * 1e9
-        times = {"read": max(p["read"], 3 * 50e9 / disk), "exchange": p["sent"] / ranks / link, "slice": p["slice"],
-                 "write": max(p["bytes"] / disk, p["bytes"] / ranks / link)}
-        lines.append((ranks, p["sent"], times, sum(times.values())))
+        times = {"read": max(p["read"], 3 * 50e9 / disk), "exchange": p["sent"] / processes / link, "slice": p["slice"],
+                 "write": max(p["bytes"] / disk, p["bytes"] / processes / link)}
+        lines.append((processes, p["sent"], times, sum(times.values())))
     return planes, points, lines
 
 
 def report(measured, model, scale, wishes):
-    text = ["| triangles | ranks | to be sliced | predicted | sent, MB | predicted | balance | read, s | predicted | slice, s | "
+    text = ["| triangles | processes | to be sliced | predicted | sent, MB | predicted | balance | read, s | predicted | slice, s | "
             "predicted |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     for m in measured:
-        p = model.predict(m["triangles"], m["planes"], m["points"], m["ranks"], m["balance"])
-        text.append(f"| {m['triangles']:,} | {m['ranks']} | {m['sliced']:,} | {p['sliced']:,.0f} | {m['sent'] / 1e6:.1f} | "
+        p = model.predict(m["triangles"], m["planes"], m["points"], m["processes"], m["balance"])
+        text.append(f"| {m['triangles']:,} | {m['processes']} | {m['sliced']:,} | {p['sliced']:,.0f} | {m['sent'] / 1e6:.1f} | "
                     f"{p['sent'] / 1e6:.1f} | {m['balance']:.2f} | {m['read']:.3f} | {p['read']:.3f} | {m['slice']:.3f} | "
                     f"{p['slice']:.3f} |")
     planes, points, lines = cluster(model, scale, wishes)
-    text += ["", f"10^9 triangles, {planes:,.0f} planes, {points:.2g} points, one thread a rank, links of {wishes.network:g} GB/s, "
-             f"a shared disk of {wishes.disk:g} GB/s:", "", "| ranks | sent, GB | read, s | exchange, s | slice, s | write, s | "
+    text += ["", f"10^9 triangles, {planes:,.0f} planes, {points:.2g} points, one thread a process, links of {wishes.network:g} GB/s, "
+             f"a shared disk of {wishes.disk:g} GB/s:", "", "| processes | sent, GB | read, s | exchange, s | slice, s | write, s | "
              "all, s |", "|---|---|---|---|---|---|---|"]
-    for ranks, sent, times, total in lines:
-        text.append(f"| {ranks} | {sent / 1e9:.1f} | {times['read']:.1f} | {times['exchange']:.1f} | {times['slice']:.1f} | "
+    for processes, sent, times, total in lines:
+        text.append(f"| {processes} | {sent / 1e9:.1f} | {times['read']:.1f} | {times['exchange']:.1f} | {times['slice']:.1f} | "
                     f"{times['write']:.1f} | {total:.0f} |")
     return "\n".join(text) + "\n"
 
@@ -122,15 +122,15 @@ def main():
         subprocess.run([wishes.lamella, "make", "lattice", "--cells", str(cells), "--shuffle", "1", "-o", str(part)], check=True,
                        capture_output=True)
         subprocess.run([wishes.lamella, "slice", part, "-o", folder / "one.cli"], check=True, capture_output=True)
-        for ranks in wishes.ranks:
-            runs = [figures(run(wishes, folder, part, ranks)) for _ in range(wishes.rounds)]
+        for processes in wishes.processes:
+            runs = [figures(run(wishes, folder, part, processes)) for _ in range(wishes.rounds)]
             if (folder / "out.cli").read_bytes() != (folder / "one.cli").read_bytes():
-                raise SystemExit(f"{ranks} ranks wrote other bytes than one process")
+                raise SystemExit(f"{processes} processes wrote other bytes than one process")
             best = {key: min(r[key] for r in runs) for key in runs[0]}
             measured.append(best)
-            print(f"{best['triangles']:,} triangles, {ranks} ranks: {best['total']:.2f} s", flush=True)
+            print(f"{best['triangles']:,} triangles, {processes} processes: {best['total']:.2f} s", flush=True)
         part.unlink()
-    model = Model([m for m in measured if m["ranks"] == 1])
+    model = Model([m for m in measured if m["processes"] == 1])
     text = report(measured, model, measured[-1], wishes)
     print(text)
     (folder / "scaling.md").write_text(text)

@@ -12,7 +12,7 @@
 namespace lamella::app {
 namespace {
 
-/// What rank `from` sends to rank `to`: bytes that no other pair has, and of another length.
+/// What process `from` sends to process `to`: bytes that no other pair has, and of another length.
 std::string message(std::size_t from, std::size_t to) {
     std::string text;
     for (std::size_t i = 0; i < 5 * from + 3 * to; ++i)
@@ -80,7 +80,7 @@ int main() {
     right = exchanges(processes) && right;
     right = sends(processes) && right;
     if (!right)
-        std::fprintf(stderr, "rank %zu of %zu: a message was not what was sent\n", processes.process(),
+        std::fprintf(stderr, "process %zu of %zu: a message was not what was sent\n", processes.process(),
                      processes.size());
     return right ? 0 : 1;
 }
