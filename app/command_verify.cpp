@@ -29,7 +29,7 @@ struct VerifyArguments {
     RunOptions run;
 };
 
-/// Puts the cut of every layer where --slice-at says; formats that know only the slab of a layer are read as
+/// Puts the cut of every layer where --slice-at says; formats that keep bottom and top only are read as
 /// if it had been cut in the middle.
 void place_cuts(LayerStack& layers, SliceAt at) {
     for (Layer& layer : layers)

@@ -45,7 +45,7 @@ void require_ranges_that_hold_something(const UniformLayers& layers) {
                                 text_of(*range)));
 }
 
-// Layer i as the stack of slabs defines it, without a look at the part.
+// Layer i of the stack, without a look at the part.
 PlannedLayer stacked_layer(std::uint64_t i, double z_min, double first_height, double height, double f) {
     if (i == 0)
         return {0, z_min + f * first_height, z_min, z_min + first_height};

@@ -53,7 +53,7 @@ class PointArray {
 struct Layer {
     std::uint64_t index = 0; ///< in the whole plan, also when only a part of it was sliced
     double z = 0;            ///< where it was cut
-    double bottom = 0;       ///< the slab of material that it stands for: bottom <= z <= top
+    double bottom = 0;       ///< of the material that it stands for: bottom <= z <= top
     double top = 0;
     PointArray points = {};
     std::vector<std::uint64_t> offsets{0};

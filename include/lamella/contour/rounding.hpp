@@ -23,8 +23,8 @@ struct Rounding {
     friend bool operator==(const Rounding&, const Rounding&) = default;
 };
 
-/// How far a format may have moved the cut of a layer. Where it keeps the slab only, the cut was computed from
-/// its ends.
+/// How far a format may have moved the cut of a layer. Where it keeps bottom and top only, the cut was
+/// computed from these.
 [[nodiscard]] inline double moved_cut(const Layer& layer, const Rounding& rounding) noexcept {
     return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
 }

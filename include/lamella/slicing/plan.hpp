@@ -12,13 +12,13 @@
 
 namespace lamella {
 
-/// Where within its slab of material a layer is cut.
+/// Where within its thickness a layer is cut.
 enum class SliceAt { bottom, middle, top };
 
 struct PlannedLayer {
     std::uint64_t index = 0; ///< in the whole plan, kept when only a part of it is sliced
     double z = 0;            ///< where the mesh is cut
-    double bottom = 0;       ///< the slab of material: bottom <= z <= top
+    double bottom = 0;       ///< of the material that it stands for: bottom <= z <= top
     double top = 0;
 };
 
@@ -49,9 +49,9 @@ struct UniformLayers {
 /// left, or when there would be more than 2^31 - 2 layers.
 [[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers);
 
-/// Cuts at exactly these z. Layer i is cut at z[i]; its slab reaches half-way to its neighbours (for slice_at
+/// Cuts at exactly these z. Layer i is cut at z[i]; it reaches half-way to its neighbours (for slice_at
 /// middle), from the cut to the next cut (bottom), or from the previous cut to this one (top); the outermost
-/// slabs continue with the neighbouring thickness. A single cut has no neighbours: its slab is
+/// layers continue with the neighbouring thickness. A single cut has no neighbours: its layer is
 /// `single_height` thick. Throws Error{usage} when the list is empty, not strictly
 /// ascending or not finite, naming the first offender, when it reaches further than a double can say, or when
 /// the height is not a positive finite number.
