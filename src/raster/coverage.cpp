@@ -9,7 +9,7 @@ namespace lamella {
 // A row falls into places where one edge passes from its upper to its lower border, alone, and knots: pieces
 // of edges that lie side by side, where corners, crossings, the upper and lower ends of contours are. Between
 // these nothing begins or ends at any height of the row, so the winding number there is one, and each can be
-// drawn by itself. A knot is cut into slabs at its corners and crossings. Within a slab edges follow one
+// drawn by itself. A knot is cut into strips at its corners and crossings. Within a strip edges follow one
 // another in one order, and coverage rises (or falls) along each that is a border of the material: so it is
 // exact.
 
@@ -86,14 +86,14 @@ std::uint32_t CoverageRows::cover(std::uint32_t row) {
 void CoverageRows::draw_knot(Pieces knot, int left, std::uint32_t row) {
     if (draw_line(knot, left, row))
         return;
-    if (find_slabs(knot, row)) {
+    if (find_strips(knot, row)) {
         for (std::size_t i = 1; i < heights_.size(); ++i)
-            draw_slab(knot, left, heights_[i - 1], heights_[i]);
+            draw_strip(knot, left, heights_[i - 1], heights_[i]);
         return;
     }
     const double strips = strips_;
     for (unsigned i = 0; i < strips_; ++i)
-        draw_slab(knot, left, row + i / strips, row + (i + 1) / strips);
+        draw_strip(knot, left, row + i / strips, row + (i + 1) / strips);
 }
 
 bool CoverageRows::draw_line(Pieces knot, int left, std::uint32_t row) {
@@ -136,7 +136,7 @@ bool CoverageRows::draw_line(Pieces knot, int left, std::uint32_t row) {
     return true;
 }
 
-bool CoverageRows::find_slabs(Pieces knot, std::uint32_t row) {
+bool CoverageRows::find_strips(Pieces knot, std::uint32_t row) {
     const std::size_t most = std::size_t{strips_} + 2;
     if (knot.size() > 2 * most)
         return false;
@@ -172,7 +172,7 @@ void CoverageRows::draw_border(const PictureEdge& edge, double middle_column, do
     coverage_.begin_along(0, middle_column - half, middle_column + half, weight);
 }
 
-void CoverageRows::draw_slab(Pieces knot, int left, double from, double to) {
+void CoverageRows::draw_strip(Pieces knot, int left, double from, double to) {
     const double middle = 0.5 * (from + to);
     borders_.clear();
     for (const auto& piece : knot) {

@@ -49,9 +49,9 @@ class CoverageRows {
   private:
     using Pieces = std::span<const RowSweep<RowPiece>::Entry>;
 
-    /// An edge in a slab of a row.
+    /// An edge in a strip of a row.
     struct Border {
-        double column; ///< half-way down the slab
+        double column; ///< half-way down the strip
         const PictureEdge* edge;
     };
 
@@ -69,10 +69,10 @@ class CoverageRows {
     /// are; false where it is another.
     bool draw_line(Pieces knot, int left, std::uint32_t row);
     /// The heights between which nothing happens in a knot; false where that would be too many.
-    bool find_slabs(Pieces knot, std::uint32_t row);
+    bool find_strips(Pieces knot, std::uint32_t row);
     void add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
                       const PictureEdge& edge_b);
-    void draw_slab(Pieces knot, int left, double from, double to);
+    void draw_strip(Pieces knot, int left, double from, double to);
     void draw_border(const PictureEdge& edge, double middle_column, double height, double weight);
 
     RowSweep<RowPiece> pieces_;
