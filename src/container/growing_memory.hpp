@@ -22,7 +22,7 @@ class GrowingMemory {
     void use(std::size_t bytes) noexcept { size_ += bytes; }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
-    /// Gives back what is not used. Not for none.
+    /// Shrinks to the used size, which must not be 0.
     void trim();
     [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {data_, size_}; }
 

@@ -207,12 +207,12 @@ Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, con
     found.opposite_pairs = all.opposite_pairs;
 
     find_loops(mesh, all.places.boundary, options.keep, found);
-    const auto tell_edges = [&](const std::vector<VertexPair>& edges, std::vector<EdgePlace>& told) {
+    const auto keep_edges = [&](const std::vector<VertexPair>& edges, std::vector<EdgePlace>& kept) {
         for (std::size_t i = 0; i < std::min(edges.size(), options.keep); ++i)
-            told.push_back({mesh.vertices[edges[i].first], mesh.vertices[edges[i].second]});
+            kept.push_back({mesh.vertices[edges[i].first], mesh.vertices[edges[i].second]});
     };
-    tell_edges(all.places.nonmanifold, found.nonmanifold_edges);
-    tell_edges(all.places.conflicts, found.conflicting_edges);
+    keep_edges(all.places.nonmanifold, found.nonmanifold_edges);
+    keep_edges(all.places.conflicts, found.conflicting_edges);
     found.duplicate_triangles = all.places.duplicates;
     if (found.duplicate_triangles.size() > options.keep)
         found.duplicate_triangles.resize(options.keep);

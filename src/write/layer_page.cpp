@@ -73,9 +73,8 @@ class Thinning {
         : layers_(parts.begin(), parts.end()), step_mm_(step_mm) {}
 
     /// To a tolerance of one step, then to four times the last one, at which curves keep half of their
-    /// points; without hatches, and once the
-    /// tolerance can be seen, without specks.
-    void go_on() {
+    /// points. Drops hatches, and specks as soon as the tolerance can be seen.
+    void coarsen() {
         const double tolerance = tolerance_mm_ == 0 ? step_mm_ : 4 * tolerance_mm_;
         for (Layer& layer : layers_) {
             layer.hatches = {};
@@ -155,7 +154,7 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     for (Cost cost = cost_of(pictures.back()); !cost.within(share) && !thinning.at_end();) {
         if (!saves && cost.within(most))
             break; // what is left is many small rings: better a larger page than a crude one
-        thinning.go_on();
+        thinning.coarsen();
         pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
         const Cost next = cost_of(pictures.back());
         saves = next.bytes < cost.bytes / 10 * 9 || next.points < cost.points / 10 * 9;
