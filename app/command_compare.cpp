@@ -40,7 +40,7 @@ double size_of(const ComparedPlane& plane) {
                                        : std::numeric_limits<double>::infinity();
 }
 
-std::string told(const ComparedPlane& plane, const CompareArguments& arguments) {
+std::string difference_text(const ComparedPlane& plane, const CompareArguments& arguments) {
     if (!plane.first || !plane.second)
         return fmt::format("z = {} mm: only {} has contours there", brief(plane.z),
                            one_line(arguments.inputs[plane.first ? 0 : 1]));
@@ -126,8 +126,9 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
                               brief(tolerance)),
             counted(found.planes.size(), "layer"), grouped(same));
         if (!differing.empty()) {
-            text += fmt::format("  the first difference:   {}\n", told(*differing.front(), arguments));
-            text += fmt::format("  the largest difference: {}\n", told(**largest, arguments));
+            text +=
+                fmt::format("  the first difference:   {}\n", difference_text(*differing.front(), arguments));
+            text += fmt::format("  the largest difference: {}\n", difference_text(**largest, arguments));
         }
         context.messages.result(text);
     }

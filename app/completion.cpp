@@ -11,11 +11,11 @@
 namespace lamella::app {
 namespace {
 
-std::string replaced(std::string_view text, std::string_view what, std::string_view with) {
+std::string with_prefixes(std::string_view text, std::string_view special, std::string_view prefix) {
     std::string out;
     for (const char c : text) {
-        if (what.find(c) != std::string_view::npos)
-            out += fmt::format("{}{}", with, c);
+        if (special.find(c) != std::string_view::npos)
+            out += fmt::format("{}{}", prefix, c);
         else
             out += c;
     }
@@ -70,7 +70,7 @@ std::string bash_case(const Command& command) {
 std::string zsh_value(const Option& option) {
     if (option.kind == ValueKind::flag)
         return "";
-    const std::string what = replaced(option.placeholder, ":", "\\");
+    const std::string what = with_prefixes(option.placeholder, ":", "\\");
     if (!option.choices.empty())
         return fmt::format(":{}:({})", what, fmt::join(option.choices, " "));
     return fmt::format(":{}:{}", what, is_file(option.kind) ? "_files" : "");
@@ -79,7 +79,7 @@ std::string zsh_value(const Option& option) {
 std::string zsh_option(const Option& option) {
     const bool takes_value = option.kind != ValueKind::flag;
     const std::string rest =
-        shell_quoted(fmt::format("[{}]{}", replaced(option.help, "[]:\\", "\\"), zsh_value(option)));
+        shell_quoted(fmt::format("[{}]{}", with_prefixes(option.help, "[]:\\", "\\"), zsh_value(option)));
     if (option.letter == 0)
         return fmt::format("'--{}{}{}'", option.name, takes_value ? "=" : "", rest);
     return fmt::format("'(-{0} --{1})'{{-{0}{2},--{1}{3}}}'{4}'", option.letter, option.name,
@@ -111,7 +111,7 @@ std::string fish_option(const Command& command, const Option& option) {
         text += " -x";
     if (!option.choices.empty())
         text += fmt::format(" -a '{}'", fmt::join(option.choices, " "));
-    return text + fmt::format(" -d '{}'\n", replaced(option.help, "'\\", "\\"));
+    return text + fmt::format(" -d '{}'\n", with_prefixes(option.help, "'\\", "\\"));
 }
 
 } // namespace
@@ -151,7 +151,7 @@ std::string zsh_completion(std::span<const Command> commands) {
                        "    commands=(\n";
     for (const Command& command : commands)
         text += fmt::format("        '{}:{}'\n", command.name,
-                            shell_quoted(replaced(command.summary, ":", "\\")));
+                            shell_quoted(with_prefixes(command.summary, ":", "\\")));
     text += "    )\n"
             "    if ((CURRENT == 2)); then\n"
             "        _describe command commands\n"
@@ -180,7 +180,7 @@ std::string fish_completion(std::span<const Command> commands) {
         "complete -c lamella -n __fish_use_subcommand -l version -d 'print version and licence'\n";
     for (const Command& command : commands) {
         text += fmt::format("complete -c lamella -n __fish_use_subcommand -a {} -d '{}'\n", command.name,
-                            replaced(command.summary, "'\\", "\\"));
+                            with_prefixes(command.summary, "'\\", "\\"));
         for (const Operand& operand : command.operands)
             text += fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}' {}\n", command.name,
                                 operand.choices.empty()

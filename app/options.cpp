@@ -264,19 +264,19 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
             target.max_output)};
 }
 
-LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& with) const {
-    if (units_mm && !with.units)
+LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& chosen) const {
+    if (units_mm && !chosen.units)
         throw Error(
             ErrorKind::usage,
-            fmt::format("--units-mm goes with the formats cli and cli-ascii, not with {}", with.name));
-    if (short_form && !with.short_form)
+            fmt::format("--units-mm goes with the formats cli and cli-ascii, not with {}", chosen.name));
+    if (short_form && !chosen.short_form)
         throw Error(ErrorKind::usage,
-                    fmt::format("--short goes with the format cli, not with {}", with.name));
+                    fmt::format("--short goes with the format cli, not with {}", chosen.name));
     LayerWriteOptions options;
     options.units_mm = units_mm.value_or(options.units_mm);
     options.short_form = short_form;
     options.most_bytes = max_output.value_or(0);
-    picture.apply(with, options);
+    picture.apply(chosen, options);
     options.page.viewer = viewer_page();
     options.page.no_viewer = no_viewer();
     return options;

@@ -100,7 +100,7 @@ struct LayerOutputOptions {
     PictureArguments picture = {};
 
     /// Throws Error{usage} where options do not go with the format.
-    [[nodiscard]] LayerWriteOptions write_options(const LayerFormat& with) const;
+    [[nodiscard]] LayerWriteOptions write_options(const LayerFormat& chosen) const;
 };
 /// To be appended to a group.
 [[nodiscard]] std::vector<Option> layer_output_options(LayerOutputOptions& target);
