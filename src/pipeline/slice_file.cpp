@@ -358,13 +358,13 @@ void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& 
     }
 }
 
-/// `feed_of` gives the triangles, once the wishes are known to be possible.
+/// `feed_of` opens the triangles, once the job has been checked.
 FileResult slice_job(const FileJob& job, Communicator& processes, const Execution& execution,
                      const std::function<Feed(const Engine& engine)>& feed_of) {
     const Stopwatch total;
     FileResult result;
 
-    // What can be wrong with the wishes shows before a large file is read.
+    // Errors of the job itself are found before a large file is read.
     if (processes.size() > 1 && job.shard)
         throw Error(ErrorKind::usage,
                     "processes share out all layers among themselves, not those of a shard");

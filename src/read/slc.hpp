@@ -14,7 +14,7 @@ class ReadLimits;
 
 [[nodiscard]] bool is_slc(std::string_view bytes);
 
-/// What else goes by the name of SLC, to be told to a person; "" for what is none of it.
+/// The other format called SLC that a file is of, in words for an error; "" if it is of none.
 [[nodiscard]] std::string_view other_slc(std::string_view bytes);
 
 [[nodiscard]] LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& limits,

@@ -42,7 +42,7 @@ class RunDeflater {
     [[nodiscard]] std::string_view finish();
 
   private:
-    /// As small as may be: a picture has thousands in a block.
+    /// Kept small: a picture has thousands in a block.
     struct Run {
         std::uint32_t count;
         std::uint8_t value;

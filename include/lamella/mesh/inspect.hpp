@@ -21,7 +21,7 @@ struct Inspection {
     std::uint64_t boundary_edges = 0;
     /// Edges with more than two triangles.
     std::uint64_t nonmanifold_edges = 0;
-    /// Edges that not as many triangles run through one way as the other, boundary edges left out.
+    /// Edges that triangles run through one way more often than the other; without boundary edges.
     std::uint64_t orientation_conflicts = 0;
     /// Triangles beyond the first with the same three vertices, whichever way round.
     std::uint64_t duplicate_triangles = 0;

@@ -19,8 +19,8 @@ inline constexpr std::size_t repair_places = 16;
 
 struct ToleranceWeld {
     IndexedMesh mesh;
-    std::uint64_t joined_vertices = 0;     ///< that gave way to another one
-    std::uint64_t collapsed_triangles = 0; ///< dropped, because corners of theirs became one
+    std::uint64_t joined_vertices = 0;     ///< replaced by another one
+    std::uint64_t collapsed_triangles = 0; ///< dropped, because two of their corners became one
     std::uint64_t pairs_apart = 0;         ///< within the tolerance, but not joined: see below
     double longest_move_mm = 0;
     std::vector<Point3> places; ///< where vertices were moved to, lexicographically, the first few

@@ -56,7 +56,7 @@ struct SelfIntersections {
 
 struct MeetingOptions {
     std::size_t keep = 16; ///< bounds SelfIntersections::first, for each half of it
-    /// The part that each triangle belongs to, such as its shell; empty where nobody asks.
+    /// The part that each triangle belongs to, such as its shell; empty: no parts are told.
     std::span<const std::uint32_t> parts = {};
 };
 

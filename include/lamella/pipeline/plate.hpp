@@ -24,7 +24,7 @@ struct PlateInput {
     std::optional<double> unit_mm = {};
     /// Of everything in the file, in millimetres, after the places that the file itself gives.
     Transform placement = {};
-    /// Further copies stand beside it: rows along x, the rows along y, as square as may be.
+    /// Further copies stand beside it: rows along x, one behind the other in y, as nearly square as possible.
     std::uint64_t copies = 1;
     double spacing_mm = 5; ///< between the boxes of copies
     /// Of the file's parts. Where empty: what the file calls them; else the name of the file, or "part" for

@@ -26,11 +26,11 @@ inline constexpr std::uint32_t most_pixels = 65535;
 inline constexpr unsigned most_antialias = 64;
 
 struct RasterOptions {
-    /// A pixel's coverage is the part of its area where the winding number is not zero: exact, but where more
-    /// than so many corners and crossings of contours, or twice as many edges, lie side by side in a row
-    /// without a gap between them and are not just one line with its bends. Such a stretch of a row is cut
-    /// into so many strips; each is decided in its middle, and wrong by less than its share where contours
-    /// begin, end, bend or cross within it.
+    /// A pixel's coverage is the part of its area where the winding number is not zero. It is exact, except
+    /// in a stretch of a row where more corners and crossings of contours than this number, or twice as many
+    /// edges, lie side by side without a gap and are not just one line with its bends. There the row is cut
+    /// into this number of strips; each is decided in its middle, and wrong by less than its share where
+    /// contours begin, end, bend or cross within it.
     ///
     /// 1 is no anti-aliasing: a pixel is covered, or not, as its centre is. A centre on a contour counts when
     /// the material lies to its right or, on a level line, below it: bodies side by side share no pixel.

@@ -45,7 +45,7 @@ class MeshInput {
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
     [[nodiscard]] std::uint64_t bytes() const noexcept;
 
-    /// Whether `stream` can read it: STL that is not packed, also such as has a wrong count or is cut off.
+    /// Whether `stream` can read it: STL that is not packed, even with a wrong count or cut off.
     /// Throws what `read` throws for files of unknown formats.
     [[nodiscard]] bool can_stream() const;
     /// How many triangles a binary STL file holds, as far as its head and its length tell, usable or not;
@@ -60,7 +60,7 @@ class MeshInput {
     /// only object, which is empty. May be called any number of times. Progress counts bytes.
     ///
     /// `share`: only these triangles of a binary file; counts and warnings are of those, and it is no error
-    /// when none of them is usable. Throws Error{usage} when there are not so many, for a share of an ASCII
+    /// when none of them is usable. Throws Error{usage} when the file has fewer, for a share of an ASCII
     /// file, and for a file that cannot be streamed.
     MeshFile stream(const TriangleSink& sink, const MeshReadOptions& options = {},
                     const Execution& execution = {}, const std::optional<RecordRange>& share = {}) const;

@@ -147,13 +147,13 @@ struct SlabMemory {
     [[nodiscard]] std::uint64_t bytes(const SlabNeeds& slab) const noexcept;
 };
 
-/// Exactly so many slabs, with the largest work as small as possible. The same on every machine. Throws
+/// Exactly `slabs` of them, with the largest work as small as possible. The same on every machine. Throws
 /// Error{usage} when there are fewer planes, or none are asked for.
 [[nodiscard]] std::vector<PlaneRange> divide_evenly(const SlabSurvey& survey, std::uint32_t slabs);
 
-/// Fewest slabs, but no fewer than `at_least` where there are so many planes, each of which takes no more
-/// than `most_bytes`; among those, the division with the smallest largest work. Throws Error{limit} when a single
-/// plane takes more, saying where it lies and how much it takes.
+/// Fewest slabs that take no more than `most_bytes` each, but no fewer than `at_least`, or one for each plane
+/// where planes are fewer; among those, the division with the smallest largest work. Throws Error{limit} when
+/// a single plane takes more, saying where it lies and how much it takes.
 [[nodiscard]] std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan,
                                                     const SlabMemory& memory, std::uint64_t most_bytes,
                                                     std::uint32_t at_least = 1);

@@ -52,12 +52,12 @@ struct LayerFileInfo {
 struct PageOptions {
     /// The built viewer, an HTML page with a place for the data (viewer/). It must outlive the writer.
     std::string_view viewer = {};
-    /// Told to who asks for a page where `viewer` is empty: why it is. It must outlive the options.
+    /// Why `viewer` is empty, for the error when a page is asked for. It must outlive the options.
     std::string_view no_viewer = "PageOptions::viewer is empty";
     /// What the page calls itself.
     std::string title = "Lamella";
-    /// The layers may take so many bytes of the page, and each of them may have so many points. What is
-    /// beyond is thinned out.
+    /// Most bytes of the page that all layers take, and most points of one layer. Layers are thinned out to
+    /// stay within both.
     std::uint64_t budget_bytes = std::uint64_t{24} << 20;
     std::uint64_t layer_points = 250'000;
 };
@@ -65,7 +65,7 @@ struct PageOptions {
 struct LayerWriteOptions {
     static constexpr double usual_units_mm = 0.001;
 
-    /// Error{limit} where the layers take more than so many bytes; 0 is no limit. What ends a file, such as
+    /// Error{limit} where the layers take more bytes than this; 0 is no limit. What ends a file, such as
     /// the directory of an archive, does not count.
     std::uint64_t most_bytes = 0;
     /// Error{defect} in place of a file that would have warnings (LayerWriter::warnings).

@@ -35,7 +35,7 @@ struct PictureOptions {
     RasterOptions raster = {};
 };
 
-/// sl1, sl1s: what the printer is told, in seconds. What is not given is that for a common resin in layers of
+/// sl1, sl1s: what the printer is told, in seconds. The defaults are for a common resin in layers of
 /// 0.05 mm.
 struct ExposureOptions {
     std::optional<double> normal_s = {};
