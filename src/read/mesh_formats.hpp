@@ -32,7 +32,7 @@ struct MeshFormatRow {
 
     /// What the file is, and what to do about it: the end of a sentence that begins with its name.
     std::string_view advice = {};
-    bool layers = false; ///< it is for read_layers, the function that all may call
+    bool layers = false; ///< it holds layers: a file for lamella::read_layers
     /// Reads a slice file that is no archive. `layer_mark`: its name and first bytes, for errors.
     LayerFile (*read_layers)(std::string_view bytes, const std::string& name, ReadLimits&,
                              const Execution&) = nullptr;
