@@ -3,11 +3,10 @@
 //
 //     stream_areas FILE LAYER_HEIGHT
 
-#include "slicing/section_sum.hpp"
-
 #include <lamella/core/error.hpp>
 #include <lamella/read/mesh_input.hpp>
 #include <lamella/slicing/plan.hpp>
+#include <lamella/slicing/section_sum.hpp>
 
 #include <cstdio>
 #include <cstdlib>

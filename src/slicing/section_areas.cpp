@@ -1,9 +1,9 @@
+#include "lamella/slicing/section_sum.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "core/executor.hpp"
 #include "slicing/edge_cut.hpp"
 #include "slicing/ranks.hpp"
-#include "slicing/section_sum.hpp"
 #include "slicing/tallies.hpp"
 
 #include <algorithm>
