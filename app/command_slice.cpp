@@ -9,7 +9,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "deadline.hpp"
-#include "height_options.hpp"
+#include "layering_options.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
@@ -19,7 +19,6 @@
 #include "standard_streams.hpp"
 #include "stats_json.hpp"
 #include "text_file.hpp"
-#include "z_list.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -57,13 +56,7 @@ struct SliceArguments {
     std::string output;
     LayerOutputOptions writing;
 
-    std::optional<double> layer_height;
-    std::optional<double> first_layer_height;
-    std::string slice_at = "middle";
-    std::optional<std::pair<double, double>> z_range;
-    std::optional<std::pair<std::uint64_t, std::uint64_t>> layers;
-    std::string z_list;
-    HeightOptions heights;
+    LayeringOptions layering;
     std::optional<std::pair<std::uint32_t, std::uint32_t>> shard;
     bool resume = false;
 
@@ -142,29 +135,6 @@ OptionGroup input_options(SliceArguments& target) {
     return group;
 }
 
-OptionGroup plan_options(SliceArguments& target) {
-    Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
-    layer_height.preset = exact(UniformLayers{}.layer_height);
-    OptionGroup group{
-        "Where it is cut",
-        {std::move(layer_height),
-         length("first-layer-height", "thickness of the first layer, where it differs",
-                target.first_layer_height),
-         choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
-                target.slice_at),
-         row("z-range", ValueKind::text, "A:B", "only layers cut from z = A to z = B (millimetres)",
-             [&target](const std::string& text) { target.z_range = parse_range(text); }),
-         row("layers", ValueKind::text, "A:B", "only layers A to B - 1 of all, counted from 0",
-             [&target](const std::string& text) { target.layers = parse_index_range(text); }),
-         input_file(
-             "z-list",
-             "cut at the heights listed in this file instead: one a line, # starts a comment; or a JSON list",
-             target.z_list)}};
-    for (Option& option : height_options(target.heights))
-        group.options.push_back(std::move(option));
-    return group;
-}
-
 OptionGroup shard_options(SliceArguments& target) {
     Option resume =
         flag("resume", "do nothing where this shard is finished, as the stamp beside its file shows",
@@ -206,12 +176,6 @@ OptionGroup timed_run_options(SliceArguments& target) {
     return group;
 }
 
-/// Names two options that cannot go together.
-void check_conflict(bool first, bool second, const char* names, const char* reason) {
-    if (first && second)
-        throw Error(ErrorKind::usage, fmt::format("{} contradict each other: {}", names, reason));
-}
-
 /// A shard is stamped with the content of its inputs and its output.
 void check_shard(const SliceArguments& arguments) {
     if (!arguments.shard)
@@ -229,21 +193,6 @@ FileJob make_job(const SliceArguments& arguments) {
     if (arguments.output.empty() && arguments.stats.empty() && arguments.report.empty())
         throw Error(ErrorKind::usage,
                     "where should the result go? Say -o part.cli (or --stats - for figures only)");
-    check_conflict(!arguments.z_list.empty(), arguments.layer_height.has_value(),
-                   "--z-list and --layer-height", "the list says where to cut");
-    check_conflict(!arguments.z_list.empty(), arguments.first_layer_height.has_value(),
-                   "--z-list and --first-layer-height", "the list says where to cut");
-    const bool ranges = !arguments.heights.ranges.empty();
-    const bool adaptive = arguments.heights.adaptive.has_value();
-    check_conflict(!arguments.z_list.empty(), ranges, "--z-list and --heights", "the list says where to cut");
-    check_conflict(!arguments.z_list.empty(), adaptive, "--z-list and --adaptive",
-                   "the list says where to cut");
-    check_conflict(ranges, adaptive, "--heights and --adaptive", "each says how high layers are");
-    check_conflict(adaptive, arguments.layer_height.has_value(), "--adaptive and --layer-height",
-                   "layers differ in height then");
-    check_conflict(ranges || adaptive, arguments.first_layer_height.has_value(),
-                   "--first-layer-height and layers of varying height",
-                   "--heights can say how high the first one is");
     check_shard(arguments);
 
     FileJob job;
@@ -255,15 +204,7 @@ FileJob make_job(const SliceArguments& arguments) {
     job.supports = arguments.limits.of_meshes().supports;
     job.max_triangles = arguments.limits.max_triangles.value_or(0);
     job.max_memory = arguments.limits.max_memory.value_or(0);
-    job.layers = {.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height),
-                  .first_layer_height = arguments.first_layer_height,
-                  .slice_at = slice_at_of(arguments.slice_at),
-                  .z_range = arguments.z_range,
-                  .index_range = arguments.layers};
-    if (!arguments.z_list.empty())
-        job.z = read_z_list(arguments.z_list);
-    job.heights = arguments.heights.ranges;
-    job.adaptive = arguments.heights.adaptive_layers(job.layers.slice_at);
+    job.layering = arguments.layering.layering();
     if (arguments.shard)
         job.shard = Shard{arguments.shard->first, arguments.shard->second};
     job.repair = arguments.repair;
@@ -495,9 +436,9 @@ Command slice_command(Slicing slicing) {
                               add_input(*arguments, text);
                           }}},
         .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
-                   plan_options(*arguments), shard_options(*arguments), repair_options(arguments->repair),
-                   layer_step_options(arguments->making), input_options(*arguments),
-                   checking_options(*arguments), batch_options(arguments->batch),
+                   layering_options(arguments->layering), shard_options(*arguments),
+                   repair_options(arguments->repair), layer_step_options(arguments->making),
+                   input_options(*arguments), checking_options(*arguments), batch_options(arguments->batch),
                    timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},

@@ -65,8 +65,9 @@ Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::stri
     const Diagnosis diagnosis = diagnosis_of(plate, execution);
     FileJob job;
     job.inputs = {input_of(arguments)};
-    job.layers.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height);
-    job.layers.slice_at = slice_at_of(arguments.slice_at);
+    job.layering.cut =
+        UniformLayers{.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height)};
+    job.layering.at = slice_at_of(arguments.slice_at);
     job.max_memory = arguments.limits.max_memory.value_or(0);
     job.steps = arguments.making.steps();
     job.layer_statistics = job.steps.any(); // the page tells what became of each

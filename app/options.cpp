@@ -329,6 +329,11 @@ SliceAt slice_at_of(std::string_view name) {
     return name == "top" ? SliceAt::top : SliceAt::middle;
 }
 
+void check_conflict(bool first, bool second, std::string_view names, std::string_view reason) {
+    if (first && second)
+        throw Error(ErrorKind::usage, fmt::format("{} contradict each other: {}", names, reason));
+}
+
 void check_outputs(const Command& command) {
     const std::vector<NamedFile> outputs = files_of(command, ValueKind::output);
     const std::vector<NamedFile> inputs = files_of(command, ValueKind::input);

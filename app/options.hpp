@@ -122,6 +122,9 @@ struct LayerStepOptions {
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
 [[nodiscard]] SliceAt slice_at_of(std::string_view name);
 
+/// Throws Error{usage} that names two options, where both are given and cannot go together.
+void check_conflict(bool first, bool second, std::string_view names, std::string_view reason);
+
 /// Throws Error{usage} when a result would overwrite a file that it is made from, or another result.
 void check_outputs(const Command& command);
 /// The same of one result that is called otherwise than an option says.

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <variant>
 
 namespace lamella::app {
 namespace {
@@ -90,8 +91,8 @@ Json shard_origin(const Command& command, const FileJob& job, const Execution& e
     Json options = options_in_effect(command);
     for (const std::string_view name : not_of_the_origin)
         options.erase(std::string(name));
-    if (!job.z.empty())
-        options["z-list"] = job.z;
+    if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
+        options["z-list"] = listed->z;
     Json inputs = Json::array();
     for (const PlateInput& input : job.inputs)
         inputs.push_back(input_json(input, execution));

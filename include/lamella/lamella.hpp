@@ -31,6 +31,7 @@
 
 // Planes, and layers: one by one as they come, or all.
 #include "lamella/contour/layer.hpp"
+#include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/slicing/varying_plan.hpp"

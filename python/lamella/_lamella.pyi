@@ -1,6 +1,6 @@
 """What the extension gives to the package. The classes are public; functions are wrapped by the package."""
 
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, overload
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -159,6 +159,18 @@ class LayerStream:
     def __enter__(self) -> LayerStream: ...
     def __exit__(self, *error: object) -> None: ...
 
+class UniformLayers:
+    def __init__(self, layer_height: float, first_layer_height: Optional[float], /) -> None: ...
+
+class ListedPlanes:
+    def __init__(self, z: npt.ArrayLike, /) -> None: ...
+
+class HeightRanges:
+    def __init__(self, ranges: Sequence[Tuple[float, ...]], layer_height: float, /) -> None: ...
+
+class AdaptiveLayers:
+    def __init__(self, min_height: float, max_height: float, cusp: float, /) -> None: ...
+
 class Plan:
     def __len__(self) -> int: ...
 
@@ -179,14 +191,10 @@ def read_mesh(
 ) -> Mesh: ...
 def plan(
     mesh: Mesh,
-    layer_height: float,
-    first_layer_height: Optional[float],
+    cut: Union[UniformLayers, ListedPlanes, HeightRanges, AdaptiveLayers],
     at: str,
     z_range: Optional[Tuple[float, float]],
     layers: Optional[Tuple[int, int]],
-    z: Optional[npt.ArrayLike],
-    heights: Sequence[Tuple[float, ...]],
-    adaptive: Optional[Tuple[float, float, float]],
     threads: int,
     progress: Optional[Progress],
     /,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -189,10 +189,16 @@ def _prepared(
     mesh = placed(mesh, where)
     if above_bottom is not None:
         cuts = above_bottom + mesh.bounds[0][2]
-    plan = _lamella.plan(
-        mesh, height, first_height, place, z_limits, numbers, cuts, ranges or (), varying, threads, progress
-    )
-    return mesh, plan
+    cut: Union[_lamella.UniformLayers, _lamella.ListedPlanes, _lamella.HeightRanges, _lamella.AdaptiveLayers]
+    if cuts is not None:
+        cut = _lamella.ListedPlanes(cuts)
+    elif varying is not None:
+        cut = _lamella.AdaptiveLayers(*varying)
+    elif ranges:
+        cut = _lamella.HeightRanges(ranges, height)
+    else:
+        cut = _lamella.UniformLayers(height, first_height)
+    return mesh, _lamella.plan(mesh, cut, place, z_limits, numbers, threads, progress)
 
 
 def _heights(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -1,6 +1,7 @@
 #include "slicing.hpp"
 
 #include "lamella/pipeline/slice_file.hpp"
+#include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
@@ -14,7 +15,6 @@
 
 #include <pybind11/stl.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -39,25 +39,11 @@ SliceAt slice_at(const std::string& name) {
 using ZRange = std::optional<std::pair<double, double>>;
 using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
-using Heights = std::vector<std::tuple<double, double, double>>;
-
-/// What slice_file would cut, by the wishes of a job.
-Plan plan_for(const MeshPointer& mesh, double layer_height, std::optional<double> first_layer_height,
-              const std::string& at, const ZRange& z_range, const IndexRange& layers,
-              const std::optional<std::vector<double>>& z, const Heights& heights,
-              const std::optional<std::array<double, 3>>& adaptive, unsigned threads,
-              const py::object& progress) {
+/// What slice_file would cut, by the layering of a job.
+Plan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
+              const IndexRange& layers, unsigned threads, const py::object& progress) {
     FileJob job;
-    job.layers = {layer_height, first_layer_height, slice_at(at), z_range, layers};
-    if (z) {
-        static_cast<void>(
-            plan_listed(*z, job.layers.slice_at)); // refuses an empty list, which to a job is none
-        job.z = *z;
-    }
-    for (const auto& [from, to, height] : heights)
-        job.heights.push_back({from, to, height});
-    if (adaptive)
-        job.adaptive = {(*adaptive)[0], (*adaptive)[1], (*adaptive)[2], job.layers.slice_at};
+    job.layering = {.cut = cut, .at = slice_at(at), .only = {.z_range = z_range, .index_range = layers}};
     return result_of(threads, progress,
                      [&](const Execution& execution) { return plan_of(job, mesh->plate(), execution); });
 }
@@ -74,6 +60,28 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const Plan& plan, co
     stack->box = mesh->box();
     stack->matrix = mesh->origin().matrix;
     return stack;
+}
+
+/// The ways to cut.
+void bind_cuts(py::module_& module) {
+    py::class_<UniformLayers>(module, "UniformLayers")
+        .def(py::init([](double layer_height, std::optional<double> first_layer_height) {
+            return UniformLayers{layer_height, first_layer_height};
+        }));
+    py::class_<ListedPlanes>(module, "ListedPlanes").def(py::init([](std::vector<double> z) {
+        return ListedPlanes{.z = std::move(z)};
+    }));
+    using Ranges = std::vector<std::tuple<double, double, double>>;
+    py::class_<HeightRanges>(module, "HeightRanges").def(py::init([](const Ranges& ranges, double elsewhere) {
+        HeightRanges heights{.ranges = {}, .layer_height = elsewhere};
+        for (const auto& [from, to, height] : ranges)
+            heights.ranges.push_back({from, to, height});
+        return heights;
+    }));
+    py::class_<AdaptiveLayers>(module, "AdaptiveLayers")
+        .def(py::init([](double min_height, double max_height, double cusp_mm) {
+            return AdaptiveLayers{min_height, max_height, cusp_mm};
+        }));
 }
 
 void bind_stream(py::module_& module) {
@@ -118,6 +126,7 @@ void bind_stream(py::module_& module) {
 
 void bind_slicing(py::module_& module) {
     py::class_<Plan>(module, "Plan").def("__len__", [](const Plan& self) { return self.layers.size(); });
+    bind_cuts(module);
     module.def("plan", &plan_for);
     module.def("slice_stack", &slice_stack);
     bind_stream(module);

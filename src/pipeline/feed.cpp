@@ -21,6 +21,7 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <variant>
 
 namespace lamella {
 namespace {
@@ -42,7 +43,7 @@ std::string wish_for_whole_mesh(const FileJob& job, const Engine& engine) {
         return "`drop_duplicates`";
     if (job.repair.orient)
         return "`orient`";
-    if (job.adaptive)
+    if (std::holds_alternative<AdaptiveLayers>(job.layering.cut))
         return "`adaptive`";
     return {};
 }

@@ -28,6 +28,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace lamella {
@@ -52,35 +53,12 @@ void check_heights(const Plate& plate) {
     }
 }
 
-/// Whether a plane at z can cut anything of the box, by the rule of the plane.
-bool meets(double z, PlaneRule rule, const Box3& box) {
-    return rule == PlaneRule::section_above ? box.min.z <= z && z < box.max.z
-                                            : box.min.z < z && z <= box.max.z;
-}
-
-/// Without the layers that nobody asked for.
-Plan selected(const FileJob& job, Plan plan, const Box3& box) {
-    std::erase_if(plan.layers, [&](const PlannedLayer& layer) {
-        const auto& z_range = job.layers.z_range;
-        const auto& index_range = job.layers.index_range;
-        return (z_range && !(z_range->first <= layer.z && layer.z <= z_range->second)) ||
-               (index_range && !(index_range->first <= layer.index && layer.index < index_range->second));
-    });
-    if (std::ranges::none_of(plan.layers,
-                             [&](const PlannedLayer& layer) { return meets(layer.z, plan.rule, box); }))
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("none of the planes meets the part, which reaches from z = {:.6g} to {:.6g} mm",
-                        box.min.z, box.max.z));
-    return plan;
-}
-
 /// A layer height that is a thousand times too small asks for more layers than memory has notes for.
-void check_count(const FileJob& job, double height) {
-    double count = height / job.layers.layer_height;
-    if (const auto& range = job.layers.z_range)
-        count = std::min(count, (range->second - range->first) / job.layers.layer_height);
-    if (const auto& range = job.layers.index_range)
+void check_count(const FileJob& job, double layer_height, double height) {
+    double count = height / layer_height;
+    if (const auto& range = job.layering.only.z_range)
+        count = std::min(count, (range->second - range->first) / layer_height);
+    if (const auto& range = job.layering.only.index_range)
         count = std::min(count, static_cast<double>(range->second - range->first));
     constexpr double few = 1e5; // take nothing to speak of
     constexpr double most = std::numeric_limits<std::int32_t>::max();
@@ -94,37 +72,30 @@ void check_count(const FileJob& job, double height) {
             fmt::format(
                 "a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), which take "
                 "{} of memory, above the {} {}; choose a larger one, or fewer layers",
-                job.layers.layer_height, count, height, byte_amount(bytes), byte_amount(memory.limit),
+                layer_height, count, height, byte_amount(bytes), byte_amount(memory.limit),
                 memory.asked ? "of `max_memory`" : "that may be taken here"));
 }
 
-Plan uniform_plan(const FileJob& job, const Box3& box) {
+/// Of uniform layers.
+void check_layer_height(const FileJob& job, double layer_height, const Box3& box) {
     const double height = box.max.z - box.min.z;
-    if (job.layers.layer_height > height)
+    if (layer_height > height)
         throw Error(
             ErrorKind::usage,
             fmt::format("the layer height of {:.6g} mm is above the part's height of {:.6g} mm; choose "
                         "a smaller one, or check the unit of the file",
-                        job.layers.layer_height, height));
-    check_count(job, height);
-    return plan_uniform(box.min.z, box.max.z, job.layers);
+                        layer_height, height));
+    check_count(job, layer_height, height);
 }
 
 } // namespace
 
 Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
     check_heights(plate);
-    const Box3& box = plate.box;
-    if (!job.z.empty())
-        return selected(job, plan_listed(job.z, job.layers.slice_at, job.layers.layer_height), box);
-    if (job.adaptive)
-        return selected(job, plan_adaptive(joined(plate, execution), *job.adaptive, execution), box);
-    if (!job.heights.empty())
-        return selected(
-            job,
-            plan_by_ranges(box.min.z, box.max.z, job.heights, job.layers.layer_height, job.layers.slice_at),
-            box);
-    return uniform_plan(job, box);
+    if (const auto* const uniform = std::get_if<UniformLayers>(&job.layering.cut))
+        check_layer_height(job, uniform->layer_height, plate.box);
+    return plan_of(
+        job.layering, plate.box, [&] { return joined(plate, execution); }, execution);
 }
 
 namespace {
@@ -375,8 +346,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     const Engine& engine = job.engine.empty() ? engines().front() : lamella::engine(job.engine);
     if (!job.output.empty())
         static_cast<void>(layer_format(job.format, job.output));
-    if (!job.z.empty())
-        static_cast<void>(plan_listed(job.z, job.layers.slice_at, job.layers.layer_height));
+    if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
+        check_list(listed->z);
     result.engine = engine.name;
     result.threads = thread_count(execution);
 

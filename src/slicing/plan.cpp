@@ -33,13 +33,13 @@ std::string text_of(const std::pair<double, double>& z_range) {
     return fmt::format("{} to {} mm", z_range.first, z_range.second);
 }
 
-void require_ranges_that_hold_something(const UniformLayers& layers) {
-    if (const auto& range = layers.index_range; range && !(range->first < range->second))
+void require_ranges_that_hold_something(const PlaneSelection& only) {
+    if (const auto& range = only.index_range; range && !(range->first < range->second))
         throw Error(ErrorKind::usage,
                     fmt::format("the layer range {} is empty: its second number is the first layer left out "
                                 "and must be above the first number",
                                 text_of(*range)));
-    if (const auto& range = layers.z_range; range && !(range->first <= range->second))
+    if (const auto& range = only.z_range; range && !(range->first <= range->second))
         throw Error(ErrorKind::usage,
                     fmt::format("the z range {} is empty: it must go from a number to one that is not below",
                                 text_of(*range)));
@@ -56,7 +56,8 @@ PlannedLayer stacked_layer(std::uint64_t i, double z_min, double first_height, d
 
 } // namespace
 
-Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
+Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, SliceAt slice_at,
+                  const PlaneSelection& only) {
     const double height = layers.layer_height;
     const double first_height = layers.first_layer_height.value_or(height);
     require_height(height, "the layer height");
@@ -68,10 +69,10 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
                         "slicing direction may have some",
                         z_min, z_max));
 
-    require_ranges_that_hold_something(layers);
+    require_ranges_that_hold_something(only);
 
-    const double f = fraction(layers.slice_at);
-    const bool at_top = layers.slice_at == SliceAt::top;
+    const double f = fraction(slice_at);
+    const bool at_top = slice_at == SliceAt::top;
     if (!at_top && !(z_max - z_min > negligible * height))
         throw Error(
             ErrorKind::usage,
@@ -110,17 +111,17 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
 
     std::uint64_t begin = 0;
     std::uint64_t end = count;
-    if (layers.index_range) {
-        begin = std::min(layers.index_range->first, count);
-        end = std::min(layers.index_range->second, count);
+    if (only.index_range) {
+        begin = std::min(only.index_range->first, count);
+        end = std::min(only.index_range->second, count);
         if (begin >= end)
             throw Error(ErrorKind::usage,
                         fmt::format("the layers {} are none of this part's layers 0:{}; the last one is {}",
-                                    text_of(*layers.index_range), count, count - 1));
+                                    text_of(*only.index_range), count, count - 1));
     }
 
     Plan plan;
-    plan.rule = rule_for(layers.slice_at);
+    plan.rule = rule_for(slice_at);
     plan.layers.reserve(std::min<std::uint64_t>(end - begin, 1U << 20)); // a z range may leave few of many
     // What z_min + i h may be off: four roundings of numbers up to twice the largest height.
     const double rounding =
@@ -132,7 +133,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
             layer.z = z_max;
             layer.top = std::max(layer.top, z_max);
         }
-        if (layers.z_range && !(layer.z >= layers.z_range->first && layer.z <= layers.z_range->second))
+        if (only.z_range && !(layer.z >= only.z_range->first && layer.z <= only.z_range->second))
             continue;
         if (!plan.layers.empty() && !(plan.layers.back().z < layer.z))
             throw Error(ErrorKind::usage,
@@ -145,16 +146,15 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers) {
         throw Error(ErrorKind::usage,
                     fmt::format("no cut of {} (z from {} to {} mm) lies in the z range {}; the cuts go from "
                                 "{:.6g} to {:.6g} mm",
-                                layers.index_range ? "the layers " + text_of(*layers.index_range)
-                                                   : std::string("this part"),
-                                z_min, z_max, text_of(*layers.z_range),
+                                only.index_range ? "the layers " + text_of(*only.index_range)
+                                                 : std::string("this part"),
+                                z_min, z_max, text_of(*only.z_range),
                                 stacked_layer(begin, z_min, first_height, height, f).z,
                                 stacked_layer(end - 1, z_min, first_height, height, f).z));
     return plan;
 }
 
-Plan plan_listed(const std::vector<double>& z, SliceAt slice_at, double single_height) {
-    require_height(single_height, "the layer height");
+void check_list(const std::vector<double>& z) {
     if (z.empty())
         throw Error(ErrorKind::usage, "the list of z holds no number; it must name at least one cut");
     if (z.size() > max_layers)
@@ -175,6 +175,11 @@ Plan plan_listed(const std::vector<double>& z, SliceAt slice_at, double single_h
                     fmt::format("the list of z reaches from {} to {}, further than a double "
                                 "can say; choose a larger unit",
                                 z.front(), z.back()));
+}
+
+Plan plan_listed(const std::vector<double>& z, SliceAt slice_at, double single_height) {
+    require_height(single_height, "the layer height");
+    check_list(z);
 
     Plan plan;
     plan.rule = rule_for(slice_at);

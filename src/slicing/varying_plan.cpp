@@ -178,7 +178,8 @@ Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& 
     return stacked(z_min, z_max, lowest, slice_at, height_at);
 }
 
-Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, const Execution& execution) {
+Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, SliceAt slice_at,
+                   const Execution& execution) {
     require_height(layers.min_height, "the lowest layer height");
     require_height(layers.max_height, "the largest layer height");
     require_height(layers.cusp_mm, "the cusp height");
@@ -222,7 +223,7 @@ Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, const Executi
         const double rest = z_max - bottom;
         return rest >= layers.min_height ? std::min(height, rest) : height;
     };
-    return stacked(z_min, z_max, layers.min_height, layers.slice_at, height_at);
+    return stacked(z_min, z_max, layers.min_height, slice_at, height_at);
 }
 
 } // namespace lamella

@@ -82,7 +82,7 @@ TEST_P(EverySolid, HasTheVolumeOfItsMeshInManyLayers) {
         for (const SliceAt at : {SliceAt::bottom, SliceAt::middle, SliceAt::top}) {
             const double height = (box.max.z - box.min.z) / 256;
             const LayerStack layers =
-                slice(mesh, plan_uniform(box.min.z, box.max.z, {.layer_height = height, .slice_at = at}));
+                slice(mesh, plan_uniform(box.min.z, box.max.z, {.layer_height = height}, at));
             ASSERT_EQ(layers.size(), 256U);
             // A layer is off by at most its height times how much the area changes within it; twice what it
             // changes from cut to cut is granted for what it does in between.
@@ -180,7 +180,7 @@ TEST(Box, HasItsBottomFaceAtItsBottomAndItsTopFaceAtItsTop) {
 TEST(Sheet, OfThreeMillimetresAtATenthHasThirtyLayersOfOneArea) {
     const TriangleSoup mesh = make_sheet({.holes = 9, .segments = 24, .size_mm = 20});
     for (const SliceAt at : {SliceAt::bottom, SliceAt::middle, SliceAt::top}) {
-        const LayerStack layers = slice(mesh, plan_uniform(0, 3, {.layer_height = 0.1, .slice_at = at}));
+        const LayerStack layers = slice(mesh, plan_uniform(0, 3, {.layer_height = 0.1}, at));
         ASSERT_EQ(layers.size(), 30U);
         for (const Layer& layer : layers) {
             EXPECT_EQ(layer.rings, 10U);

@@ -123,7 +123,7 @@ class Processes : public testing::Test {
     static FileJob job_of(std::vector<PlateInput> inputs, double layer_height) {
         FileJob job;
         job.inputs = std::move(inputs);
-        job.layers.layer_height = layer_height;
+        job.layering.cut = UniformLayers{.layer_height = layer_height};
         job.layer_statistics = true;
         return job;
     }
@@ -225,7 +225,7 @@ TEST_F(Processes, TakePlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
     jobs[3].inputs = {{.path = path("part.stl")}};
     jobs[3].engine = "eecc";
     jobs[4].inputs = {{.path = path("part.stl"), .placement = rotation('x', 40)}};
-    jobs[4].adaptive = AdaptiveLayers{.min_height = 0.5, .max_height = 2};
+    jobs[4].layering.cut = AdaptiveLayers{.min_height = 0.5, .max_height = 2};
     jobs[5].inputs = {{.path = path("part.stl"), .unit_mm = 25.4, .placement = rotation('y', 30)}};
     jobs[5].steps.offset_mm = -0.1;
     const auto numbers_of_processes =
@@ -264,7 +264,7 @@ TEST_F(Processes, FailOnAllWithTheSameWords) {
     job.inputs.front().path = "-";
     expect_failure(job, "standard input");
     job = plain;
-    job.layers.layer_height = 1000;
+    job.layering.cut = UniformLayers{.layer_height = 1000};
     expect_failure(job, "layer height");
     job = plain;
     job.output = path("nowhere/out.cli");

@@ -21,15 +21,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array everywhere{SliceAt::bottom, SliceAt::middle, SliceAt::top};
 
-UniformLayers layers(double height, SliceAt at) {
-    UniformLayers out;
-    out.layer_height = height;
-    out.slice_at = at;
-    return out;
+/// Eight layers from 0 to 4 mm, or some of them.
+Plan half_millimetres(const PlaneSelection& only) {
+    return plan_uniform(0, 4, {.layer_height = 0.5}, SliceAt::bottom, only);
 }
 
 std::size_t count(double z_max, double height, SliceAt at) {
-    return plan_uniform(0, z_max, layers(height, at)).layers.size();
+    return plan_uniform(0, z_max, {.layer_height = height}, at).layers.size();
 }
 
 std::vector<double> cuts(const Plan& plan) {
@@ -61,7 +59,7 @@ void expect_sound(const Plan& plan) {
 
 TEST(PlanUniform, MakesThirtyLayersOfThreeMillimetresAtATenthWhereverTheyAreCut) {
     for (const SliceAt at : everywhere) {
-        const Plan plan = plan_uniform(0, 3, layers(0.1, at));
+        const Plan plan = plan_uniform(0, 3, {.layer_height = 0.1}, at);
         ASSERT_EQ(plan.layers.size(), 30U);
         expect_sound(plan);
         const double f = at == SliceAt::bottom ? 0 : at == SliceAt::middle ? 0.5 : 1;
@@ -76,11 +74,11 @@ TEST(PlanUniform, MakesThirtyLayersOfThreeMillimetresAtATenthWhereverTheyAreCut)
 }
 
 TEST(PlanUniform, CutsTheBottomFaceFromAboveAndTheTopFaceFromBelow) {
-    EXPECT_EQ(plan_uniform(1, 4, layers(0.1, SliceAt::bottom)).layers.front().z, 1.0);
-    EXPECT_EQ(plan_uniform(1, 4, layers(0.1, SliceAt::top)).layers.back().z, 4.0);
-    EXPECT_EQ(plan_uniform(0, 3, layers(0.1, SliceAt::bottom)).rule, PlaneRule::section_above);
-    EXPECT_EQ(plan_uniform(0, 3, layers(0.1, SliceAt::middle)).rule, PlaneRule::section_above);
-    EXPECT_EQ(plan_uniform(0, 3, layers(0.1, SliceAt::top)).rule, PlaneRule::section_below);
+    EXPECT_EQ(plan_uniform(1, 4, {.layer_height = 0.1}, SliceAt::bottom).layers.front().z, 1.0);
+    EXPECT_EQ(plan_uniform(1, 4, {.layer_height = 0.1}, SliceAt::top).layers.back().z, 4.0);
+    EXPECT_EQ(plan_uniform(0, 3, {.layer_height = 0.1}, SliceAt::bottom).rule, PlaneRule::section_above);
+    EXPECT_EQ(plan_uniform(0, 3, {.layer_height = 0.1}, SliceAt::middle).rule, PlaneRule::section_above);
+    EXPECT_EQ(plan_uniform(0, 3, {.layer_height = 0.1}, SliceAt::top).rule, PlaneRule::section_below);
 }
 
 TEST(PlanUniform, KeepsALastLayerThatIsNotFullWhenItsCutMeetsThePart) {
@@ -100,7 +98,7 @@ TEST(PlanUniform, CountsARemainderBelowAThousandthOfALayerAsNothing) {
     EXPECT_EQ(count(3.00005, 0.1, SliceAt::bottom), 30U);
     EXPECT_EQ(count(3.0002, 0.1, SliceAt::bottom), 31U);
     EXPECT_EQ(count(2.9998, 0.1, SliceAt::top), 29U);
-    const Plan plan = plan_uniform(0, 2.99995, layers(0.1, SliceAt::top));
+    const Plan plan = plan_uniform(0, 2.99995, {.layer_height = 0.1}, SliceAt::top);
     EXPECT_EQ(plan.layers.size(), 30U);
     EXPECT_EQ(plan.layers.back().z, 2.99995) << "the last cut must still meet the top face";
 }
@@ -110,7 +108,7 @@ TEST(PlanUniform, IsNotMisledByTheNoiseOfSinglePrecision) {
     for (const float z_min : {-12.3F, -0.1F, 0.7F, 1.3F, 101.9F}) {
         const float z_max = static_cast<float>(static_cast<double>(z_min) + 3.0);
         for (const SliceAt at : everywhere)
-            EXPECT_EQ(plan_uniform(z_min, z_max, layers(0.1, at)).layers.size(), 30U) << z_min;
+            EXPECT_EQ(plan_uniform(z_min, z_max, {.layer_height = 0.1}, at).layers.size(), 30U) << z_min;
     }
 }
 
@@ -121,7 +119,7 @@ TEST(PlanUniform, KeepsItsPromisesForRandomHeights) {
         const double height = std::exp(random.real(-5, 2));
         const double z_max = z_min + height * random.real(1.01, 60);
         for (const SliceAt at : everywhere) {
-            const Plan plan = plan_uniform(z_min, z_max, layers(height, at));
+            const Plan plan = plan_uniform(z_min, z_max, {.layer_height = height}, at);
             expect_sound(plan);
             const std::vector<double> z = cuts(plan);
             const double f = at == SliceAt::bottom ? 0 : at == SliceAt::middle ? 0.5 : 1;
@@ -147,16 +145,14 @@ TEST(PlanUniform, KeepsItsPromisesForRandomHeights) {
 }
 
 TEST(PlanUniform, NeverAddsUpRoundingErrors) {
-    const Plan plan = plan_uniform(0, 10000, layers(0.1, SliceAt::bottom));
+    const Plan plan = plan_uniform(0, 10000, {.layer_height = 0.1}, SliceAt::bottom);
     ASSERT_EQ(plan.layers.size(), 100000U);
     EXPECT_NEAR(plan.layers[99999].z, 9999.9, 4e-12);
 }
 
 TEST(PlanUniform, GivesTheFirstLayerAHeightOfItsOwn) {
     for (const SliceAt at : everywhere) {
-        UniformLayers wanted = layers(0.25, at);
-        wanted.first_layer_height = 0.5;
-        const Plan plan = plan_uniform(2, 4, wanted);
+        const Plan plan = plan_uniform(2, 4, {.layer_height = 0.25, .first_layer_height = 0.5}, at);
         ASSERT_EQ(plan.layers.size(), 7U);
         const double f = at == SliceAt::bottom ? 0 : at == SliceAt::middle ? 0.5 : 1;
         EXPECT_EQ(plan.layers[0].bottom, 2.0);
@@ -169,37 +165,33 @@ TEST(PlanUniform, GivesTheFirstLayerAHeightOfItsOwn) {
 }
 
 TEST(PlanUniform, MakesOneLayerWhenTheFirstOneHoldsTheWholePart) {
-    UniformLayers wanted = layers(0.1, SliceAt::middle);
-    wanted.first_layer_height = 5;
+    const UniformLayers wanted{.layer_height = 0.1, .first_layer_height = 5};
     EXPECT_EQ(cuts(plan_uniform(0, 3, wanted)), std::vector<double>{2.5});
-    wanted.slice_at = SliceAt::bottom;
-    EXPECT_EQ(cuts(plan_uniform(0, 3, wanted)), std::vector<double>{0.0});
+    EXPECT_EQ(cuts(plan_uniform(0, 3, wanted, SliceAt::bottom)), std::vector<double>{0.0});
 }
 
 TEST(PlanUniform, KeepsTheCutsInAClosedRangeWithTheirIndices) {
-    UniformLayers wanted = layers(0.5, SliceAt::bottom);
-    wanted.z_range = {1.0, 2.0};
-    const Plan plan = plan_uniform(0, 4, wanted);
+    PlaneSelection only;
+    only.z_range = {1.0, 2.0};
+    const Plan plan = half_millimetres(only);
     EXPECT_EQ(cuts(plan), (std::vector<double>{1, 1.5, 2}));
     EXPECT_EQ(indices(plan), (std::vector<std::uint64_t>{2, 3, 4}));
 }
 
 TEST(PlanUniform, KeepsAHalfOpenRangeOfIndices) {
-    UniformLayers wanted = layers(0.5, SliceAt::bottom);
-    wanted.index_range = {3, 5};
-    EXPECT_EQ(indices(plan_uniform(0, 4, wanted)), (std::vector<std::uint64_t>{3, 4}));
-    wanted.index_range = {6, std::numeric_limits<std::uint64_t>::max()};
-    EXPECT_EQ(indices(plan_uniform(0, 4, wanted)), (std::vector<std::uint64_t>{6, 7}));
-    wanted.z_range = {0.0, 3.0};
-    EXPECT_EQ(indices(plan_uniform(0, 4, wanted)), (std::vector<std::uint64_t>{6})) << "both ranges hold";
+    PlaneSelection only;
+    only.index_range = {3, 5};
+    EXPECT_EQ(indices(half_millimetres(only)), (std::vector<std::uint64_t>{3, 4}));
+    only.index_range = {6, std::numeric_limits<std::uint64_t>::max()};
+    EXPECT_EQ(indices(half_millimetres(only)), (std::vector<std::uint64_t>{6, 7}));
+    only.z_range = {0.0, 3.0};
+    EXPECT_EQ(indices(half_millimetres(only)), (std::vector<std::uint64_t>{6})) << "both ranges hold";
 }
 
 TEST(PlanUniform, IsThePartOfTheWholePlanThatARangeNames) {
     for (const SliceAt at : everywhere) {
-        const Plan whole = plan_uniform(-1.7, 11.3, layers(0.07, at));
-        UniformLayers wanted = layers(0.07, at);
-        wanted.index_range = {100, 150};
-        const Plan part = plan_uniform(-1.7, 11.3, wanted);
+        const Plan whole = plan_uniform(-1.7, 11.3, {.layer_height = 0.07}, at);
+        const Plan part = plan_uniform(-1.7, 11.3, {.layer_height = 0.07}, at, {.index_range = {{100, 150}}});
         ASSERT_EQ(part.layers.size(), 50U);
         for (std::size_t i = 0; i < 50; ++i) {
             EXPECT_EQ(part.layers[i].z, whole.layers[100 + i].z);
@@ -212,14 +204,14 @@ TEST(PlanUniform, IsThePartOfTheWholePlanThatARangeNames) {
 TEST(PlanUniform, RefusesHeightsThatAreNotPositiveNumbers) {
     for (const double bad : {0.0, -0.0, -0.1, nan, infinity, -infinity}) {
         expect_error(ErrorKind::usage, {"the layer height is", "above 0"},
-                     [&] { (void)plan_uniform(0, 3, layers(bad, SliceAt::middle)); });
+                     [&] { (void)plan_uniform(0, 3, {.layer_height = bad}, SliceAt::middle); });
         UniformLayers wanted;
         wanted.first_layer_height = bad;
         expect_error(ErrorKind::usage, {"the first layer height is", "above 0"},
                      [&] { (void)plan_uniform(0, 3, wanted); });
     }
     expect_error(ErrorKind::usage, {"-0.25 mm"},
-                 [] { (void)plan_uniform(0, 3, layers(-0.25, SliceAt::middle)); });
+                 [] { (void)plan_uniform(0, 3, {.layer_height = -0.25}, SliceAt::middle); });
 }
 
 TEST(PlanUniform, RefusesAPartWithoutHeight) {
@@ -233,63 +225,63 @@ TEST(PlanUniform, RefusesAPartWithoutHeight) {
 
 TEST(PlanUniform, RefusesALayerHeightThatMissesThePart) {
     expect_error(ErrorKind::usage, {"z = 4 mm", "from 0 to 3 mm", "below 3 mm"},
-                 [] { (void)plan_uniform(0, 3, layers(4, SliceAt::top)); });
+                 [] { (void)plan_uniform(0, 3, {.layer_height = 4}, SliceAt::top); });
     expect_error(ErrorKind::usage, {"z = 3.5 mm", "from 0 to 3 mm"},
-                 [] { (void)plan_uniform(0, 3, layers(7, SliceAt::middle)); });
+                 [] { (void)plan_uniform(0, 3, {.layer_height = 7}, SliceAt::middle); });
     EXPECT_EQ(count(3, 1000, SliceAt::bottom), 1U) << "cut at the bottom, a single layer is there";
     expect_error(ErrorKind::usage, {"3 mm high", "a thousandth", "1e+300 mm", "below 3000 mm"},
-                 [] { (void)plan_uniform(0, 3, layers(1e300, SliceAt::bottom)); });
+                 [] { (void)plan_uniform(0, 3, {.layer_height = 1e300}, SliceAt::bottom); });
     EXPECT_EQ(count(3, 2999, SliceAt::bottom), 1U) << "what the message says is possible";
     expect_error(ErrorKind::usage, {"3 mm high", "a thousandth", "3000 mm"},
-                 [] { (void)plan_uniform(0, 3, layers(3000, SliceAt::bottom)); });
-    UniformLayers thick_first = layers(0.1, SliceAt::middle);
-    thick_first.first_layer_height = 7;
+                 [] { (void)plan_uniform(0, 3, {.layer_height = 3000}, SliceAt::bottom); });
+    const UniformLayers thick_first{.layer_height = 0.1, .first_layer_height = 7};
     expect_error(ErrorKind::usage, {"z = 3.5 mm", "choose a first layer height below 3 mm"},
                  [&] { (void)plan_uniform(0, 3, thick_first); });
-    expect_error(ErrorKind::usage, {"1e+300"}, [] { (void)plan_uniform(0, 3, layers(1e300, SliceAt::top)); });
+    expect_error(ErrorKind::usage, {"1e+300"},
+                 [] { (void)plan_uniform(0, 3, {.layer_height = 1e300}, SliceAt::top); });
 }
 
 TEST(PlanUniform, RefusesRangesThatHoldNoLayer) {
     constexpr std::uint64_t open = std::numeric_limits<std::uint64_t>::max();
-    UniformLayers wanted = layers(0.5, SliceAt::bottom);
-    wanted.index_range = {8, 12};
-    expect_error(ErrorKind::usage, {"8:12", "0:8"}, [&] { (void)plan_uniform(0, 4, wanted); });
-    wanted.index_range = {9, open};
-    expect_error(ErrorKind::usage, {"layers 9: are none", "0:8"}, [&] { (void)plan_uniform(0, 4, wanted); });
-    wanted.index_range.reset();
+    PlaneSelection only;
+    only.index_range = {8, 12};
+    expect_error(ErrorKind::usage, {"8:12", "0:8"}, [&] { (void)half_millimetres(only); });
+    only.index_range = {9, open};
+    expect_error(ErrorKind::usage, {"layers 9: are none", "0:8"}, [&] { (void)half_millimetres(only); });
+    only.index_range.reset();
     for (const auto& range : {std::pair(4.5, 9.0), std::pair(0.6, 0.9), std::pair(-3.0, -1.0)}) {
-        wanted.z_range = range;
+        only.z_range = range;
         expect_error(ErrorKind::usage, {"from 0 to 4 mm", "z range", "from 0 to 3.5 mm"},
-                     [&] { (void)plan_uniform(0, 4, wanted); });
+                     [&] { (void)half_millimetres(only); });
     }
-    wanted.index_range = {2, 4};
-    wanted.z_range = {0.0, 0.5};
+    only.index_range = {2, 4};
+    only.z_range = {0.0, 0.5};
     expect_error(ErrorKind::usage, {"layers 2:4", "0 to 0.5 mm", "from 1 to 1.5 mm"},
-                 [&] { (void)plan_uniform(0, 4, wanted); });
+                 [&] { (void)half_millimetres(only); });
 }
 
 TEST(PlanUniform, NamesTheEndThatAnOpenRangeHas) {
-    UniformLayers wanted = layers(0.5, SliceAt::bottom);
+    PlaneSelection only;
     for (const double far : {std::numeric_limits<double>::max(), infinity}) {
-        wanted.z_range = {-far, -1.0};
-        expect_error(ErrorKind::usage, {"z range up to -1 mm"}, [&] { (void)plan_uniform(0, 4, wanted); });
-        wanted.z_range = {9.0, far};
-        expect_error(ErrorKind::usage, {"z range from 9 mm on"}, [&] { (void)plan_uniform(0, 4, wanted); });
+        only.z_range = {-far, -1.0};
+        expect_error(ErrorKind::usage, {"z range up to -1 mm"}, [&] { (void)half_millimetres(only); });
+        only.z_range = {9.0, far};
+        expect_error(ErrorKind::usage, {"z range from 9 mm on"}, [&] { (void)half_millimetres(only); });
     }
 }
 
 TEST(PlanUniform, CallsAnEmptyRangeEmpty) {
-    UniformLayers wanted = layers(0.5, SliceAt::bottom);
+    PlaneSelection only;
     for (const auto& [range, text] : {std::pair(std::pair(5U, 5U), "the layer range 5:5 is empty"),
                                       std::pair(std::pair(5U, 2U), "the layer range 5:2 is empty")}) {
-        wanted.index_range = range;
-        expect_error(ErrorKind::usage, {text}, [&] { (void)plan_uniform(0, 4, wanted); });
+        only.index_range = range;
+        expect_error(ErrorKind::usage, {text}, [&] { (void)half_millimetres(only); });
     }
-    wanted.index_range.reset();
-    wanted.z_range = {2.0, 1.0};
-    expect_error(ErrorKind::usage, {"z range 2 to 1 mm is empty"}, [&] { (void)plan_uniform(0, 4, wanted); });
-    wanted.z_range = {nan, nan};
-    expect_error(ErrorKind::usage, {"nan", "is empty"}, [&] { (void)plan_uniform(0, 4, wanted); });
+    only.index_range.reset();
+    only.z_range = {2.0, 1.0};
+    expect_error(ErrorKind::usage, {"z range 2 to 1 mm is empty"}, [&] { (void)half_millimetres(only); });
+    only.z_range = {nan, nan};
+    expect_error(ErrorKind::usage, {"nan", "is empty"}, [&] { (void)half_millimetres(only); });
 }
 
 TEST(PlanUniform, PutsALastCutThatRoundingLeavesBesideTheTopFaceOnIt) {
@@ -301,7 +293,7 @@ TEST(PlanUniform, PutsALastCutThatRoundingLeavesBesideTheTopFaceOnIt) {
         const auto n = static_cast<double>(random.integer(1, 2000));
         // The top face as another program might have computed it.
         const double z_max = z_min + n * height + random.real(-1, 1) * 1e-15;
-        const Plan plan = plan_uniform(z_min, z_max, layers(height, SliceAt::top));
+        const Plan plan = plan_uniform(z_min, z_max, {.layer_height = height}, SliceAt::top);
         ASSERT_EQ(plan.layers.size(), static_cast<std::size_t>(n));
         ASSERT_EQ(plan.layers.back().z, z_max) << "from " << z_min << " by " << height;
         expect_sound(plan);
@@ -311,17 +303,17 @@ TEST(PlanUniform, PutsALastCutThatRoundingLeavesBesideTheTopFaceOnIt) {
 }
 
 TEST(PlanUniform, LeavesALastCutBelowTheTopFaceWhereItReallyIs) {
-    EXPECT_EQ(plan_uniform(0, 3.0001, layers(0.5, SliceAt::top)).layers.back().z, 3.0);
-    EXPECT_EQ(plan_uniform(0, 3 + 1e-12, layers(0.5, SliceAt::top)).layers.back().z, 3.0);
+    EXPECT_EQ(plan_uniform(0, 3.0001, {.layer_height = 0.5}, SliceAt::top).layers.back().z, 3.0);
+    EXPECT_EQ(plan_uniform(0, 3 + 1e-12, {.layer_height = 0.5}, SliceAt::top).layers.back().z, 3.0);
 }
 
 TEST(PlanUniform, RefusesMoreLayersThanCanBeNumbered) {
     expect_error(ErrorKind::usage, {"1e-10 mm", "3 mm high", "2147483646"},
-                 [] { (void)plan_uniform(0, 3, layers(1e-10, SliceAt::middle)); });
+                 [] { (void)plan_uniform(0, 3, {.layer_height = 1e-10}, SliceAt::middle); });
     for (const double height : {1e-300, 5e-324})
         for (const SliceAt at : everywhere)
             expect_error(ErrorKind::usage, {"2147483646"},
-                         [&] { (void)plan_uniform(0, 3, layers(height, at)); });
+                         [&] { (void)plan_uniform(0, 3, {.layer_height = height}, at); });
     expect_error(ErrorKind::usage, {"2147483646"}, [] { (void)plan_uniform(-1e300, 1e300, {}); });
     expect_error(ErrorKind::usage, {"2147483646"}, [] { (void)plan_uniform(-1.7e308, 1.7e308, {}); });
 }
@@ -329,12 +321,12 @@ TEST(PlanUniform, RefusesMoreLayersThanCanBeNumbered) {
 TEST(PlanUniform, WorksInAnyUnit) {
     for (const double unit : {1e-300, 1e-30, 1e-6, 1e6, 1e30, 1e300})
         for (const SliceAt at : everywhere)
-            EXPECT_EQ(plan_uniform(0, 3 * unit, layers(0.1 * unit, at)).layers.size(), 30U) << unit;
+            EXPECT_EQ(plan_uniform(0, 3 * unit, {.layer_height = 0.1 * unit}, at).layers.size(), 30U) << unit;
 }
 
 TEST(PlanUniform, RefusesCutsThatFallOnTheSameNumber) {
     expect_error(ErrorKind::usage, {"0.1 mm is too small", "1e+17"},
-                 [] { (void)plan_uniform(1e17, 1e17 + 64, layers(0.1, SliceAt::bottom)); });
+                 [] { (void)plan_uniform(1e17, 1e17 + 64, {.layer_height = 0.1}, SliceAt::bottom); });
 }
 
 TEST(PlanListed, CutsExactlyWhereTheListSays) {

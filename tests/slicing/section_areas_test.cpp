@@ -71,8 +71,7 @@ TEST(SectionAreas, EqualTheAreasOfTheLayers) {
         for (const SliceAt at : {SliceAt::bottom, SliceAt::middle, SliceAt::top}) {
             UniformLayers layers;
             layers.layer_height = (box.max.z - box.min.z) / 40;
-            layers.slice_at = at;
-            const Plan plan = plan_uniform(box.min.z, box.max.z, layers);
+            const Plan plan = plan_uniform(box.min.z, box.max.z, layers, at);
             const LayerStack stack = slice(soup, plan);
             const std::vector<double> areas = section_areas(soup, plan);
             const IndexedMesh mesh = test::indexed(test::triangles_of(soup));

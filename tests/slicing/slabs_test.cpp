@@ -222,8 +222,8 @@ void expect_same_layers(const Triangles& triangles, const Transform& placement) 
     const TriangleSoup soup = TriangleSoup(triangles).transformed(placement);
     const Box3 box = bounding_box(soup);
     for (const SliceAt at : {SliceAt::middle, SliceAt::top}) {
-        const Plan plan = plan_uniform(box.min.z, box.max.z,
-                                       {.layer_height = (box.max.z - box.min.z) / 37, .slice_at = at});
+        const Plan plan =
+            plan_uniform(box.min.z, box.max.z, {.layer_height = (box.max.z - box.min.z) / 37}, at);
         const LayerStack whole = slice(soup, plan);
         const SlabSurvey survey(count_planes(soup, plan));
         for (const std::uint32_t n : {2U, 5U, survey.planes()}) {

@@ -31,7 +31,7 @@ void expect_a_stack(const Plan& plan, double z_min) {
 TEST(PlanByRanges, WithoutRangesIsUniform) {
     for (const SliceAt at : {SliceAt::bottom, SliceAt::middle, SliceAt::top})
         for (const double height : {0.1, 0.3, 1.0}) {
-            const Plan uniform = plan_uniform(2, 5, {.layer_height = height, .slice_at = at});
+            const Plan uniform = plan_uniform(2, 5, {.layer_height = height}, at);
             const Plan ranged = plan_by_ranges(2, 5, {}, height, at);
             ASSERT_EQ(ranged.layers.size(), uniform.layers.size()) << height;
             EXPECT_EQ(ranged.rule, uniform.rule);
@@ -110,7 +110,7 @@ TEST_P(AdaptivePlan, KeepsTheCuspBoundForEveryTriangle) {
         for (const double cusp : {0.001, 0.004, 0.02}) {
             const AdaptiveLayers layers{
                 .min_height = height / 200, .max_height = height / 20, .cusp_mm = cusp * height};
-            const Plan plan = plan_adaptive(mesh, layers, {.threads = 2});
+            const Plan plan = plan_adaptive(mesh, layers, SliceAt::middle, {.threads = 2});
             expect_a_stack(plan, box.min.z);
             EXPECT_LT(plan.layers.back().z, box.max.z);
             EXPECT_GT(plan.layers.back().top, box.max.z - layers.min_height);
@@ -150,8 +150,9 @@ TEST(AdaptivePlan, IsTheSameForAnyNumberOfThreadsAndEitherKindOfMesh) {
     const TriangleSoup soup = make_rook();
     const IndexedMesh mesh = weld(soup);
     const AdaptiveLayers layers{.min_height = 0.02, .max_height = 0.3, .cusp_mm = 0.02};
-    const Plan one = plan_adaptive(soup, layers, {.threads = 1});
-    for (const Plan& other : {plan_adaptive(soup, layers, {.threads = 7}), plan_adaptive(mesh, layers)}) {
+    const Plan one = plan_adaptive(soup, layers, SliceAt::middle, {.threads = 1});
+    for (const Plan& other :
+         {plan_adaptive(soup, layers, SliceAt::middle, {.threads = 7}), plan_adaptive(mesh, layers)}) {
         ASSERT_EQ(other.layers.size(), one.layers.size());
         for (std::size_t i = 0; i < one.layers.size(); ++i) {
             EXPECT_EQ(other.layers[i].z, one.layers[i].z);

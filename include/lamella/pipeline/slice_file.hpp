@@ -11,10 +11,10 @@
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/polygon/layer_steps.hpp"
+#include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slabs.hpp"
 #include "lamella/slicing/slice.hpp"
-#include "lamella/slicing/varying_plan.hpp"
 #include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -62,16 +62,8 @@ struct FileJob {
     /// engines that weld, and formats other than STL. Without an explicit limit these still run.
     std::uint64_t max_memory = 0;
 
-    /// Layers of one height, stacked from the bottom of the plate's parts.
-    UniformLayers layers;
-    /// Where not empty: cuts at exactly these z instead. Of `layers`, slice_at and the two ranges still
-    /// count; and layer_height is how thick the layer of a single cut is (plan_listed).
-    std::vector<double> z;
-
-    /// Where not empty: layers of these heights, of `layers.layer_height` elsewhere; see plan_by_ranges.
-    std::vector<HeightRange> heights;
-    /// Where set: layers of varying height; see plan_adaptive. Of `layers`, the two ranges still count.
-    std::optional<AdaptiveLayers> adaptive;
+    /// Where the parts are cut. Uniform layers are stacked from the bottom of all parts.
+    Layering layering;
 
     /// Where set: of these layers, only those of this shard. Error{usage} where there are more shards than
     /// layers. merge_layer_files puts the slice files of all together.
@@ -189,9 +181,9 @@ struct FileResult {
     } seconds;
 };
 
-/// The planes that `slice_file` cuts a plate at: by `layers`, `z`, `heights` and `adaptive` of the job; its
-/// files are not read. Throws Error{input} for a part without height, Error{usage} for an impossible plan and
-/// for one that misses every part.
+/// The planes that `slice_file` cuts a plate at, by the layering of the job; its files are not read. Throws
+/// Error{input} for a part without height, Error{usage} for an impossible plan and for one that misses every
+/// part.
 [[nodiscard]] Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution = {});
 
 /// Slices files into a file. The layers of a single part are written while slicing goes on; several parts are

@@ -32,10 +32,13 @@ struct Plan {
 struct UniformLayers {
     double layer_height = 0.1;
     std::optional<double> first_layer_height = {}; ///< default: layer_height
-    SliceAt slice_at = SliceAt::middle;
-    /// Keep only the layers whose cut lies in [first, second]; absolute z.
+};
+
+/// Which layers of a plan are kept: those in both ranges.
+struct PlaneSelection {
+    /// Only the layers whose cut lies in [first, second]; absolute z.
     std::optional<std::pair<double, double>> z_range = {};
-    /// Keep only the layers with index in [first, second).
+    /// Only the layers with index in [first, second).
     std::optional<std::pair<std::uint64_t, std::uint64_t>> index_range = {};
 };
 
@@ -47,7 +50,8 @@ struct UniformLayers {
 ///
 /// Throws Error{usage} when a height is not a positive finite number, when a range is empty, when no layer is
 /// left, or when there would be more than 2^31 - 2 layers.
-[[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers);
+[[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers,
+                                SliceAt slice_at = SliceAt::middle, const PlaneSelection& only = {});
 
 /// Cuts at exactly these z. Layer i is cut at z[i]; it reaches half-way to its neighbours (for slice_at
 /// middle), from the cut to the next cut (bottom), or from the previous cut to this one (top); the outermost
@@ -57,5 +61,8 @@ struct UniformLayers {
 /// the height is not a positive finite number.
 [[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle,
                                double single_height = UniformLayers{}.layer_height);
+
+/// Throws what plan_listed throws for a list of z: before there is a part to cut.
+void check_list(const std::vector<double>& z);
 
 } // namespace lamella

@@ -37,7 +37,6 @@ struct AdaptiveLayers {
     /// How far the steps between layers may stand off the surface, measured across it. A layer of height h
     /// makes cusps of h |n.z| on a triangle of the unit normal n: none on an upright wall, h on a level one.
     double cusp_mm = 0.05;
-    SliceAt slice_at = SliceAt::middle;
 };
 
 /// Layers stacked from the bottom of the mesh, each as high as `max_height` and `cusp_mm` allow for every
@@ -49,6 +48,6 @@ struct AdaptiveLayers {
 /// be. O(triangles + height / min_height), the same for any number of threads. Throws Error{usage} as
 /// `plan_uniform`, and unless 0 < min_height <= max_height and 0 < cusp_mm.
 [[nodiscard]] Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers,
-                                 const Execution& execution = {});
+                                 SliceAt slice_at = SliceAt::middle, const Execution& execution = {});
 
 } // namespace lamella

@@ -65,7 +65,7 @@ TEST_P(EdgeLinks, SearchOnceForAnUprightWallHoweverManyPlanesCutIt) {
     // Each triangle of an upright wall is cut in the same two edges all the way up.
     const TriangleSoup mesh = make_cylinder(3, 7, 37);
     for (const int planes : {1, 10, 100}) {
-        const Plan plan = plan_uniform(0, 7, {.layer_height = 7.0 / planes, .slice_at = SliceAt::middle});
+        const Plan plan = plan_uniform(0, 7, {.layer_height = 7.0 / planes}, SliceAt::middle);
         const MatchingCounts counts = counts_of(GetParam(), mesh, plan);
         const std::uint64_t walls = 2 * 37;
         EXPECT_EQ(counts.inserted.total(), walls * static_cast<std::uint64_t>(planes));

@@ -508,8 +508,8 @@ TEST(Sweep, GivesTheSameLayersOfAPartOfThePlan) {
     UniformLayers layers;
     layers.layer_height = 0.1;
     const LayerStack whole = slice(soup, plan_uniform(-10, 10, layers));
-    layers.index_range = {73, 121};
-    const LayerStack part = slice(soup, plan_uniform(-10, 10, layers));
+    const LayerStack part =
+        slice(soup, plan_uniform(-10, 10, layers, SliceAt::middle, {.index_range = std::pair{73U, 121U}}));
     expect_same(part, LayerStack(whole.begin() + 73, whole.begin() + 121));
 }
 

@@ -1,0 +1,119 @@
+#include "layering_options.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "numbers.hpp"
+#include "options.hpp"
+#include "z_list.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace lamella::app {
+
+std::vector<HeightRange> parse_height_ranges(std::string_view text) {
+    std::vector<HeightRange> ranges;
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::size_t comma = rest.find(',');
+        const std::string_view one = rest.substr(0, comma);
+        rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
+        const std::size_t equals = one.find('=');
+        const std::size_t colon = one.find(':');
+        if (equals == std::string_view::npos || colon == std::string_view::npos || colon > equals)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("\"{}\" is no range of heights; expected one such as 0:5=0.1,5:20=0.2", one));
+        ranges.push_back({parse_number(one.substr(0, colon)),
+                          parse_number(one.substr(colon + 1, equals - colon - 1)),
+                          parse_positive(one.substr(equals + 1))});
+    }
+    if (ranges.empty())
+        throw Error(ErrorKind::usage, "expected ranges such as 0:5=0.1,5:20=0.2");
+    return ranges;
+}
+
+namespace {
+
+/// What says where to cut, and the options that it leaves nothing to say.
+void check_ways(const LayeringOptions& options) {
+    struct Given {
+        std::string_view name;
+        bool given;
+    };
+    const Given layer_height{"--layer-height", options.layer_height.has_value()};
+    const Given first_height{"--first-layer-height", options.first_layer_height.has_value()};
+    const Given z_list{"--z-list", !options.z_list.empty()};
+    const Given heights{"--heights", !options.heights.empty()};
+    const Given adaptive{"--adaptive", options.adaptive.has_value()};
+    const Given varying{"layers of varying height", heights.given || adaptive.given};
+    struct Way {
+        Given option;
+        std::vector<Given> without;
+        std::string_view reason;
+    };
+    const std::array<Way, 4> ways{
+        {{z_list, {layer_height, first_height, heights, adaptive}, "the list says where to cut"},
+         {heights, {adaptive}, "each says how high layers are"},
+         {adaptive, {layer_height}, "layers differ in height then"},
+         {first_height, {varying}, "--heights can say how high the first one is"}}};
+    for (const Way& way : ways)
+        for (const Given& other : way.without)
+            check_conflict(way.option.given, other.given,
+                           fmt::format("{} and {}", way.option.name, other.name), way.reason);
+}
+
+Cut cut_of(const LayeringOptions& options) {
+    if (!options.z_list.empty())
+        return ListedPlanes{.z = read_z_list(options.z_list)};
+    if (options.adaptive) {
+        AdaptiveLayers layers{.min_height = options.adaptive->first, .max_height = options.adaptive->second};
+        layers.cusp_mm = options.cusp.value_or(layers.cusp_mm);
+        return layers;
+    }
+    const double layer_height = options.layer_height.value_or(UniformLayers{}.layer_height);
+    if (!options.heights.empty())
+        return HeightRanges{.ranges = options.heights, .layer_height = layer_height};
+    return UniformLayers{.layer_height = layer_height, .first_layer_height = options.first_layer_height};
+}
+
+} // namespace
+
+Layering LayeringOptions::layering() const {
+    check_ways(*this);
+    return {.cut = cut_of(*this), .at = slice_at_of(slice_at), .only = only};
+}
+
+OptionGroup layering_options(LayeringOptions& target) {
+    Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
+    layer_height.preset = exact(UniformLayers{}.layer_height);
+    Option cusp = length("cusp", "how far the steps of --adaptive may stand off the surface", target.cusp);
+    cusp.goes_with = "adaptive";
+    cusp.preset = exact(AdaptiveLayers{}.cusp_mm);
+    return {
+        "Where it is cut",
+        {std::move(layer_height),
+         length("first-layer-height", "thickness of the first layer, where it differs",
+                target.first_layer_height),
+         choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
+                target.slice_at),
+         row("z-range", ValueKind::text, "A:B", "only layers cut from z = A to z = B (millimetres)",
+             [&target](const std::string& text) { target.only.z_range = parse_range(text); }),
+         row("layers", ValueKind::text, "A:B", "only layers A to B - 1 of all, counted from 0",
+             [&target](const std::string& text) { target.only.index_range = parse_index_range(text); }),
+         input_file(
+             "z-list",
+             "cut at the heights listed in this file instead: one a line, # starts a comment; or a JSON list",
+             target.z_list),
+         row("heights", ValueKind::text, "A:B=H,...",
+             "layers of H from A to B above the bottom, of the layer height elsewhere",
+             [&target](const std::string& text) { target.heights = parse_height_ranges(text); }),
+         row("adaptive", ValueKind::text, "MIN:MAX",
+             "layers as high as the slopes of the surface allow, between these heights",
+             [&target](const std::string& text) { target.adaptive = parse_range(text); }),
+         std::move(cusp)}};
+}
+
+} // namespace lamella::app

@@ -1,0 +1,36 @@
+#pragma once
+
+// The options of where a mesh is cut.
+
+#include "lamella/slicing/layering.hpp"
+
+#include "command.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella::app {
+
+struct LayeringOptions {
+    std::optional<double> layer_height;
+    std::optional<double> first_layer_height;
+    std::string slice_at = "middle";
+    PlaneSelection only;
+    std::string z_list;
+    std::vector<HeightRange> heights;
+    std::optional<std::pair<double, double>> adaptive;
+    std::optional<double> cusp;
+
+    /// Reads the list of z. Throws Error{usage} for options that contradict each other, and as read_z_list.
+    [[nodiscard]] Layering layering() const;
+};
+
+[[nodiscard]] OptionGroup layering_options(LayeringOptions& target);
+
+/// "0:5=0.1,5:20=0.2". Throws Error{usage}; whether ranges overlap is for the plan to say.
+[[nodiscard]] std::vector<HeightRange> parse_height_ranges(std::string_view text);
+
+} // namespace lamella::app

@@ -1,0 +1,66 @@
+#include "lamella/slicing/layering.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace lamella {
+namespace {
+
+/// Whether a plane at z can cut anything of the box, by the rule of the plane.
+bool meets(double z, PlaneRule rule, const Box3& box) {
+    return rule == PlaneRule::section_above ? box.min.z <= z && z < box.max.z
+                                            : box.min.z < z && z <= box.max.z;
+}
+
+/// Without the layers that nobody asked for.
+Plan selected(const PlaneSelection& only, Plan plan, const Box3& box) {
+    std::erase_if(plan.layers, [&](const PlannedLayer& layer) {
+        const auto& z_range = only.z_range;
+        const auto& index_range = only.index_range;
+        return (z_range && !(z_range->first <= layer.z && layer.z <= z_range->second)) ||
+               (index_range && !(index_range->first <= layer.index && layer.index < index_range->second));
+    });
+    if (std::ranges::none_of(plan.layers,
+                             [&](const PlannedLayer& layer) { return meets(layer.z, plan.rule, box); }))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("none of the planes meets the part, which reaches from z = {:.6g} to {:.6g} mm",
+                        box.min.z, box.max.z));
+    return plan;
+}
+
+/// Makes the plan of each way to cut.
+struct Planner {
+    const Layering& layering;
+    const Box3& box;
+    const std::function<Mesh()>& mesh;
+    const Execution& execution;
+
+    Plan operator()(const UniformLayers& layers) const {
+        return plan_uniform(box.min.z, box.max.z, layers, layering.at, layering.only);
+    }
+    Plan operator()(const ListedPlanes& planes) const {
+        return selected(layering.only, plan_listed(planes.z, layering.at, planes.single_height), box);
+    }
+    Plan operator()(const HeightRanges& heights) const {
+        return selected(
+            layering.only,
+            plan_by_ranges(box.min.z, box.max.z, heights.ranges, heights.layer_height, layering.at), box);
+    }
+    Plan operator()(const AdaptiveLayers& layers) const {
+        return selected(layering.only, plan_adaptive(mesh(), layers, layering.at, execution), box);
+    }
+};
+
+} // namespace
+
+Plan plan_of(const Layering& layering, const Box3& box, const std::function<Mesh()>& mesh,
+             const Execution& execution) {
+    return std::visit(Planner{layering, box, mesh, execution}, layering.cut);
+}
+
+} // namespace lamella
