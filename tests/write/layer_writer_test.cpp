@@ -210,6 +210,7 @@ TEST(WriteLayers, TakesFormatAndHeadFromPathAndLayers) {
     const LayerStack empty{nothing.finish(0, 0.5, 0, 1)};
     for (const LayerStack& layers : {random_layers(1, 40, 30, {10, -5}, false), square_with_hole(), empty}) {
         LayerFileInfo head = info_of(layers);
+        head.box.min.z = layers.front().bottom;
         head.box.max.z = layers.back().top;
         head.parts.front().box = head.box;
         for (const char* name : {"part.cli", "part.svg", "part.slc", "part.3mf", "part.json"}) {
