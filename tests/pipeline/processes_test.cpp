@@ -2,6 +2,7 @@
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
 #include "fixtures/rounds.hpp"
