@@ -34,7 +34,6 @@
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
-#include "lamella/slicing/varying_plan.hpp"
 
 // What can be asked of layers.
 #include "lamella/contour/measure.hpp"
