@@ -16,13 +16,13 @@ namespace lamella {
 
 /// Cuts at exactly these z; see plan_listed.
 struct ListedPlanes {
-    std::vector<double> z;
+    std::vector<double> z = {};
     double single_height = UniformLayers{}.layer_height; ///< of the layer of a single cut
 };
 
 /// Layers of the heights of these ranges, and of `layer_height` elsewhere; see plan_by_ranges.
 struct HeightRanges {
-    std::vector<HeightRange> ranges;
+    std::vector<HeightRange> ranges = {};
     double layer_height = UniformLayers{}.layer_height;
 };
 
@@ -31,9 +31,9 @@ using Cut = std::variant<UniformLayers, ListedPlanes, HeightRanges, AdaptiveLaye
 
 /// Where parts are cut: in which way, where within the thickness of each layer, and which of the layers.
 struct Layering {
-    Cut cut;
+    Cut cut = {};
     SliceAt at = SliceAt::middle;
-    PlaneSelection only;
+    PlaneSelection only = {};
 };
 
 /// The planes that cut what lies in `box`. `mesh` makes it: it is called only where the layers are adaptive.
