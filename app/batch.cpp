@@ -13,11 +13,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -43,32 +40,6 @@ constexpr std::size_t most_warnings = 8;
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// A descriptor that becomes readable when a stop is requested.
-class StopSignal {
-  public:
-    explicit StopSignal(const std::stop_token& token)
-        : descriptor_(eventfd(0, EFD_CLOEXEC)), tell_(token, Tell{descriptor_}) {
-        if (descriptor_ < 0)
-            throw std::system_error(errno, std::generic_category(), "cannot wait for a request to stop");
-    }
-    ~StopSignal() { close(descriptor_); }
-    StopSignal(const StopSignal&) = delete;
-    StopSignal& operator=(const StopSignal&) = delete;
-
-    [[nodiscard]] int descriptor() const { return descriptor_; }
-
-  private:
-    struct Tell {
-        int descriptor;
-        void operator()() const noexcept {
-            const std::uint64_t one = 1;
-            static_cast<void>(!write(descriptor, &one, sizeof one));
-        }
-    };
-    int descriptor_;
-    std::stop_callback<Tell> tell_;
-};
 
 Json name_or_null(const std::string& name) {
     return name.empty() ? Json() : Json(name);
@@ -153,19 +124,18 @@ class Batch {
     Batch(const std::vector<BatchItem>& items, unsigned threads, const SliceItem& slice,
           const Execution& execution, Messages& messages)
         : items_(items), most_(execution.threads == 0 ? threads : std::min(threads, execution.threads)),
-          free_(threads), messages_(messages), progress_(execution.progress), stop_(execution.cancel),
-          starts_(items.size()), worth_(items.size()),
-          team_(std::min<std::size_t>(threads, items.size()),
-                [&items, &slice](const WorkerTask& task, const std::stop_token& cancel) {
-                    return as_text(
-                        sliced(items[task.index], slice, {.threads = task.threads, .cancel = cancel}));
-                }) {}
+          free_(threads), messages_(messages), progress_(execution.progress), starts_(items.size()),
+          worth_(items.size()),
+          team_(std::min<std::size_t>(threads, items.size()), [&items, &slice](const WorkerTask& task,
+                                                                               const CancelFlag& cancel) {
+              return as_text(sliced(items[task.index], slice, {.threads = task.threads, .cancel = &cancel}));
+          }) {}
 
     /// Returns whether it came to the end.
-    bool run(const std::stop_token& cancel) {
-        while (told_ < items_.size() && !cancel.stop_requested()) {
+    bool run(const Execution& execution) {
+        while (told_ < items_.size() && !execution.cancelled()) {
             start_some();
-            for (WorkerAnswer& answer : team_.wait(stop_.descriptor()))
+            for (WorkerAnswer& answer : team_.wait())
                 take(answer);
             tell();
         }
@@ -246,7 +216,6 @@ class Batch {
     unsigned free_;
     Messages& messages_;
     const std::function<void(const Progress&)>& progress_;
-    StopSignal stop_;
     std::vector<Clock::time_point> starts_;
     std::vector<unsigned> worth_; ///< threads; 0 where not yet asked for
     std::map<std::size_t, std::string> waiting_;
@@ -308,7 +277,7 @@ int run_batch(const std::vector<BatchItem>& items, const BatchArguments& argumen
     const unsigned threads =
         jobs > 0 ? static_cast<unsigned>(jobs) : std::max(1U, std::thread::hardware_concurrency());
     Batch batch(items, threads, slice, execution, messages);
-    const bool complete = batch.run(execution.cancel);
+    const bool complete = batch.run(execution);
     batch.sum_up(seconds_since(start));
     if (!complete)
         throw Error(ErrorKind::cancelled, "cancelled");

@@ -3,13 +3,14 @@
 // What a command of the program is: its operands, its options and what it does. One table of these feeds the
 // parser, --help, the man page, shell completion and configuration files.
 
+#include "lamella/core/execution.hpp"
+
 #include "messages.hpp"
 
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,7 +96,7 @@ struct Example {
 struct Context {
     const Command& command;
     Messages& messages;
-    std::stop_token cancel;
+    const CancelFlag* cancel;
 };
 
 struct Command {

@@ -25,8 +25,8 @@ constexpr double longest_seconds = 1e9; // some thirty years: clocks can count f
 } // namespace
 
 Deadline::Deadline(double seconds, std::string what, const Execution& execution)
-    : seconds_(seconds), what_(std::move(what)), given_(execution),
-      pass_on_(execution.cancel, [this] { stop_.request_stop(); }), watcher_([this] { watch(); }) {}
+    : seconds_(seconds), what_(std::move(what)), given_(execution), stop_(execution.cancel),
+      watcher_([this] { watch(); }) {}
 
 Deadline::~Deadline() {
     {
@@ -48,13 +48,13 @@ Execution Deadline::execution() {
         if (given_.progress)
             given_.progress(progress);
     };
-    execution.cancel = stop_.get_token();
+    execution.cancel = &stop_;
     return execution;
 }
 
 void Deadline::check() const {
     const std::lock_guard lock(mutex_);
-    if (expired_ && !given_.cancel.stop_requested())
+    if (expired_ && !given_.cancelled())
         throw Error(ErrorKind::limit, message());
 }
 
@@ -68,7 +68,7 @@ void Deadline::watch() {
         return;
     expired_ = true;
     lock.unlock(); // whoever is waiting for the stop may want to report progress
-    stop_.request_stop();
+    stop_.request();
     lock.lock();
     const bool reading = !started_ || (last_.stage == Stage::read && last_.done < last_.total);
     if (!done_.wait_for(lock, reading ? patience_reading : patience, is_ending)) {

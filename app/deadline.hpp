@@ -5,9 +5,7 @@
 #include "lamella/core/execution.hpp"
 
 #include <condition_variable>
-#include <functional>
 #include <mutex>
-#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -36,14 +34,13 @@ class Deadline {
     double seconds_;
     std::string what_;
     const Execution& given_;
-    std::stop_source stop_;
+    CancelFlag stop_;
     mutable std::mutex mutex_;
     std::condition_variable done_;
     Progress last_;
     bool started_ = false; ///< `last_` is a report
     bool ending_ = false;
     bool expired_ = false;
-    std::stop_callback<std::function<void()>> pass_on_; ///< a stop that the caller requests
     std::thread watcher_;
 };
 

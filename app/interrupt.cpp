@@ -95,7 +95,7 @@ void Interrupt::watch() {
     wait_for(awaited, -1);
     if (awaited[1].revents != 0)
         return;
-    source_.request_stop();
+    flag_.request();
     signalfd_siginfo first{};
     static_cast<void>(!read(signals_, &first, sizeof first)); // so that a second one shows
     wait_for(awaited, patience_ms);

@@ -2,10 +2,11 @@
 
 // Ctrl-C, the terminate signal, and the end of the terminal.
 
+#include "lamella/core/execution.hpp"
+
 #include "messages.hpp"
 
 #include <latch>
-#include <stop_token>
 #include <thread>
 
 namespace lamella::app {
@@ -14,11 +15,11 @@ namespace lamella::app {
 /// the program was started to ignore: for programs that have other threads before Interrupt.
 void block_interrupts();
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP request a stop instead of ending the program, so that temporary
-/// files are removed; but for those that the program was started to ignore. To be made before any other
-/// thread. Should the program be stuck (such as waiting for standard input) a short while after the signal,
-/// or should another signal come, its temporary files are removed for it and it is ended at once with exit
-/// code 130.
+/// While it lives, SIGINT, SIGTERM and SIGHUP request cancelling instead of ending the program, so that
+/// temporary files are removed; but for those that the program was started to ignore. To be made before any
+/// other thread. Should the program be stuck (such as waiting for standard input) a short while after the
+/// signal, or should another signal come, its temporary files are removed for it and it is ended at once with
+/// exit code 130.
 ///
 /// Its thread does nothing but wait, from the end of the constructor until a signal: the process may be
 /// forked.
@@ -29,13 +30,13 @@ class Interrupt {
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
-    [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+    [[nodiscard]] const CancelFlag& flag() const noexcept { return flag_; }
 
   private:
     void watch();
 
     const Messages& messages_;
-    std::stop_source source_;
+    CancelFlag flag_;
     int signals_ = -1; ///< becomes readable when a signal arrives
     int ending_ = -1;  ///< becomes readable when the watcher is no longer needed
     std::latch watching_{1};

@@ -62,7 +62,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
         break;
     }
     const Interrupt interrupt(messages);
-    return command->run({*command, messages, interrupt.token()});
+    return command->run({*command, messages, &interrupt.flag()});
 }
 
 } // namespace

@@ -27,6 +27,7 @@ namespace {
 
 // A packet keeps its bounds, and the end of the other side shows as one of no bytes.
 constexpr int packets = SOCK_SEQPACKET | SOCK_CLOEXEC;
+constexpr int moment_ms = 100;
 constexpr std::size_t longest_answer = std::size_t{1} << 16; // far below what a socket takes at once
 
 [[noreturn]] void fail(int system_error) {
@@ -126,9 +127,8 @@ void WorkerTeam::serve(int socket) const {
         be_silent_at_crashes();
         const Interrupt interrupt(messages);
         WorkerTask task;
-        while (!interrupt.token().stop_requested() &&
-               receive_packet(socket, &task, sizeof task) == sizeof task) {
-            const std::string text = work_(task, interrupt.token());
+        while (!interrupt.flag().requested() && receive_packet(socket, &task, sizeof task) == sizeof task) {
+            const std::string text = work_(task, interrupt.flag());
             if (!send_packet(socket, text.data(), std::min(text.size(), longest_answer)))
                 break;
         }
@@ -136,16 +136,16 @@ void WorkerTeam::serve(int socket) const {
     _exit(0); // nothing of what belongs to the other process is to be undone here
 }
 
-std::vector<WorkerAnswer> WorkerTeam::wait(int wake) {
-    std::vector<pollfd> awaited{{wake, POLLIN, 0}};
+std::vector<WorkerAnswer> WorkerTeam::wait() {
+    std::vector<pollfd> awaited;
     for (const Worker& worker : workers_)
         awaited.push_back({worker.task ? worker.socket : -1, POLLIN, 0});
-    while (poll(awaited.data(), awaited.size(), -1) < 0)
+    while (poll(awaited.data(), awaited.size(), moment_ms) < 0)
         if (errno != EINTR)
             throw std::system_error(errno, std::generic_category(), "cannot wait for workers");
     std::vector<WorkerAnswer> answers;
     for (std::size_t i = 0; i < workers_.size(); ++i)
-        if (awaited[i + 1].revents != 0)
+        if (awaited[i].revents != 0)
             answers.push_back(answer_of(workers_[i]));
     return answers;
 }

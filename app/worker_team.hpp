@@ -2,13 +2,14 @@
 
 // Processes that work on the tasks of a batch, so that a task which crashes takes nobody along.
 
+#include "lamella/core/execution.hpp"
+
 #include <sys/types.h>
 
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,8 @@ struct WorkerAnswer {
 /// whatever of. For one thread; its process may have others that wait.
 class WorkerTeam {
   public:
-    /// Runs in a worker. Must not throw. The token tells that the worker shall stop.
-    using Work = std::function<std::string(const WorkerTask&, const std::stop_token&)>;
+    /// Runs in a worker. Must not throw. The flag tells that the worker shall stop.
+    using Work = std::function<std::string(const WorkerTask&, const CancelFlag&)>;
 
     WorkerTeam(std::size_t size, Work work);
     /// Ends the workers; those in the midst of a task are told to stop and waited for.
@@ -48,8 +49,8 @@ class WorkerTeam {
     /// Error{limit} when the system gives no process for it.
     void start(const WorkerTask& task);
 
-    /// Waits for answers: one at least, but for nothing longer than until `wake` becomes readable.
-    [[nodiscard]] std::vector<WorkerAnswer> wait(int wake);
+    /// Waits for answers; after a moment without any, returns none.
+    [[nodiscard]] std::vector<WorkerAnswer> wait();
 
   private:
     struct Worker {

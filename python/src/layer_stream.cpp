@@ -16,12 +16,13 @@ constexpr std::size_t most_points = (std::size_t{16} << 20) / sizeof(Point2);
 
 } // namespace
 
-void LayerQueue::put(Layer&& layer, const std::stop_token& stop) {
+void LayerQueue::put(Layer&& layer) {
     std::unique_lock lock(mutex_);
     const auto has_room = [&] {
-        return waiting_.empty() || points_ + layer.points.size() <= most_points;
+        return closed_.requested() || waiting_.empty() || points_ + layer.points.size() <= most_points;
     };
-    if (!room_.wait(lock, stop, has_room) || stop.stop_requested())
+    room_.wait(lock, has_room);
+    if (closed_.requested())
         throw Error(ErrorKind::cancelled, "cancelled");
     points_ += layer.points.size();
     waiting_.push_back(std::move(layer));
@@ -33,6 +34,12 @@ void LayerQueue::end(std::exception_ptr failure) {
     ended_ = true;
     failure_ = std::move(failure);
     news_.notify_all();
+}
+
+void LayerQueue::close() {
+    const std::lock_guard lock(mutex_);
+    closed_.request();
+    room_.notify_all();
 }
 
 LayerQueue::Found LayerQueue::take(Layer& layer) {
@@ -54,18 +61,17 @@ LayerQueue::Found LayerQueue::take(Layer& layer) {
 LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads,
                          py::object listener)
     : mesh_(std::move(mesh)), plan_(std::move(plan)), listener_(std::move(listener)) {
-    Execution execution{.threads = threads};
+    Execution execution{.threads = threads, .cancel = &queue_.closed()};
     if (!listener_.is_none())
         execution.progress = [this](const Progress& progress) {
             progress_.put(progress);
         };
-    worker_ = std::jthread([this, execution, &with](const std::stop_token& stop) mutable {
+    worker_ = std::thread([this, execution, &with] {
         std::exception_ptr failure;
         try {
-            execution.cancel = stop;
             const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-                return [this, &stop, kept = std::move(layer)]() mutable {
-                    queue_.put(std::move(kept), stop);
+                return [this, kept = std::move(layer)]() mutable {
+                    queue_.put(std::move(kept));
                 };
             };
             slice_to(sink, mesh_->mesh(), plan_, execution, nullptr, with);
@@ -109,10 +115,12 @@ LayerPointer LayerStream::next() {
 
 void LayerStream::close() {
     closed_ = true;
-    // Of several threads that close it, one gets the worker. Its end stops it and waits.
-    std::jthread worker = std::move(worker_);
+    // Of several threads that close it, one gets the worker.
+    std::thread worker = std::move(worker_);
     const py::gil_scoped_release released;
-    worker = {};
+    queue_.close();
+    if (worker.joinable())
+        worker.join();
 }
 
 } // namespace lamella::python

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
@@ -15,7 +16,6 @@
 #include <deque>
 #include <exception>
 #include <mutex>
-#include <stop_token>
 #include <thread>
 
 namespace lamella::python {
@@ -23,10 +23,14 @@ namespace lamella::python {
 /// Layers on their way from the threads that make them to the one that wants them: a bounded number of them.
 class LayerQueue {
   public:
-    /// Waits for room. Throws Error{cancelled} when a stop is requested meanwhile.
-    void put(Layer&& layer, const std::stop_token& stop);
+    /// Waits for room. Throws Error{cancelled} once the queue is closed.
+    void put(Layer&& layer);
     /// No more will come; `failure` says why, where it is no good reason.
     void end(std::exception_ptr failure);
+
+    /// Nobody wants any more of them.
+    void close();
+    [[nodiscard]] const CancelFlag& closed() const noexcept { return closed_; }
 
     enum class Found { layer, nothing_yet, end };
     /// Waits for a moment. At the end throws the failure, where there was one.
@@ -34,10 +38,11 @@ class LayerQueue {
 
   private:
     std::mutex mutex_;
-    std::condition_variable_any room_;
-    std::condition_variable_any news_;
+    std::condition_variable room_;
+    std::condition_variable news_;
     std::deque<Layer> waiting_;
     std::size_t points_ = 0; ///< in those that wait
+    CancelFlag closed_;
     bool ended_ = false;
     std::exception_ptr failure_;
 };
@@ -70,7 +75,7 @@ class LayerStream {
     LayerQueue queue_;
     std::size_t taken_ = 0;
     bool closed_ = false;
-    std::jthread worker_;
+    std::thread worker_;
 };
 
 } // namespace lamella::python

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <exception>
-#include <stop_token>
 #include <thread>
 
 namespace py = pybind11;
@@ -68,20 +67,26 @@ void run(unsigned threads, const py::object& listener, const std::function<void(
         execution.progress = [&box](const Progress& progress) {
             box.put(progress);
         };
-    // Its destructor asks the work to stop, and waits for that, when something below is thrown.
-    std::jthread worker([&](const std::stop_token& stop) {
+    CancelFlag cancel;
+    execution.cancel = &cancel;
+    std::thread worker([&] {
         try {
-            execution.cancel = stop;
             work(execution);
         } catch (...) {
             failure = std::current_exception();
         }
         bell.ring();
     });
-    for (bool done = false; !done;) {
-        done = bell.wait();
-        tell(box, listener);
-        check_signals();
+    try {
+        for (bool done = false; !done;) {
+            done = bell.wait();
+            tell(box, listener);
+            check_signals();
+        }
+    } catch (...) {
+        cancel.request();
+        worker.join();
+        throw;
     }
     worker.join();
     if (failure)

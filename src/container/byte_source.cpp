@@ -87,10 +87,10 @@ std::shared_ptr<Mapping> map_file(int descriptor, std::size_t bytes) {
 }
 
 /// Waits until reading does not block.
-void wait_for_bytes(int descriptor, const std::stop_token& cancel) {
+void wait_for_bytes(int descriptor, const Execution& execution) {
     constexpr int patience_ms = 100;
     for (;;) {
-        if (cancel.stop_requested())
+        if (execution.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
         pollfd waiting{descriptor, POLLIN, 0};
         if (poll(&waiting, 1, patience_ms) != 0)
@@ -100,9 +100,9 @@ void wait_for_bytes(int descriptor, const std::stop_token& cancel) {
 
 /// Reads some bytes, once there are any. 0 at the end.
 std::size_t read_some(int descriptor, std::span<std::byte> room, const std::string& name,
-                      const std::stop_token& cancel) {
+                      const Execution& execution) {
     for (;;) {
-        wait_for_bytes(descriptor, cancel);
+        wait_for_bytes(descriptor, execution);
         const ssize_t got = read(descriptor, room.data(), room.size());
         if (got >= 0)
             return static_cast<std::size_t>(got);
@@ -113,14 +113,14 @@ std::size_t read_some(int descriptor, std::span<std::byte> room, const std::stri
 
 /// What has come already, and all that is still to come, by way of a spill file.
 ByteSource spool(int descriptor, std::string name, std::span<const std::byte> begin,
-                 const std::stop_token& cancel) {
+                 const Execution& execution) {
     SpillFile file;
     file.write(0, begin);
     std::uint64_t size = begin.size();
     constexpr std::size_t at_once = std::size_t{1} << 20;
     const Pages memory(at_once);
     const std::span<std::byte> room(static_cast<std::byte*>(memory.data()), at_once);
-    while (const std::size_t got = read_some(descriptor, room, name, cancel)) {
+    while (const std::size_t got = read_some(descriptor, room, name, execution)) {
         file.write(size, room.first(got));
         size += got;
     }
@@ -131,12 +131,12 @@ ByteSource spool(int descriptor, std::string name, std::span<const std::byte> be
 }
 
 ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_memory,
-                       const std::stop_token& cancel) {
+                       const Execution& execution) {
     auto memory = std::make_shared<GrowingMemory>();
-    while (const std::size_t got = read_some(descriptor, memory->room(), name, cancel)) {
+    while (const std::size_t got = read_some(descriptor, memory->room(), name, execution)) {
         memory->use(got);
         if (memory->size() > most_in_memory)
-            return spool(descriptor, std::move(name), memory->bytes(), cancel);
+            return spool(descriptor, std::move(name), memory->bytes(), execution);
     }
     if (memory->size() == 0)
         fail(name, "is empty, expected a file with content");
@@ -145,7 +145,7 @@ ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_m
 }
 
 ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t most_in_memory,
-                const std::stop_token& cancel) {
+                const Execution& execution) {
     const int flags = fcntl(descriptor.number(), F_GETFL);
     if (flags < 0 || (flags & O_PATH) != 0 || (flags & O_ACCMODE) == O_WRONLY)
         fail_with_errno(name, EBADF);
@@ -163,23 +163,23 @@ ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t mo
         if (const auto mapping = map_file(descriptor.number(), size))
             return {std::move(name), {mapping->data(), size}, mapping, true};
     }
-    return read_to_end(descriptor.number(), std::move(name), most_in_memory, cancel);
+    return read_to_end(descriptor.number(), std::move(name), most_in_memory, execution);
 }
 
 } // namespace
 
-ByteSource open_bytes(const std::string& path, const std::stop_token& cancel) {
-    return open_bytes(path, std::numeric_limits<std::uint64_t>::max(), cancel);
+ByteSource open_bytes(const std::string& path, const Execution& execution) {
+    return open_bytes(path, std::numeric_limits<std::uint64_t>::max(), execution);
 }
 
-ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory, const std::stop_token& cancel) {
+ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory, const Execution& execution) {
     if (path == "-")
-        return take(Descriptor(STDIN_FILENO, false), "standard input", most_in_memory, cancel);
+        return take(Descriptor(STDIN_FILENO, false), "standard input", most_in_memory, execution);
     // Not blocking: a pipe that nobody writes to yet must not hold up a request to stop.
     const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (number < 0)
         fail_with_errno(path, errno);
-    return take(Descriptor(number, true), path, most_in_memory, cancel);
+    return take(Descriptor(number, true), path, most_in_memory, execution);
 }
 
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {

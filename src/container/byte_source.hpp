@@ -2,11 +2,12 @@
 
 // A file as bytes in memory, wherever they come from.
 
+#include "lamella/core/execution.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -31,13 +32,13 @@ struct ByteSource {
 ///
 /// Throws Error{input} when the file is missing, empty, a directory, a device or may not be read, and
 /// Error{cancelled} soon after a stop is requested, also while it waits for the other end of a pipe.
-[[nodiscard]] ByteSource open_bytes(const std::string& path, const std::stop_token& cancel = {});
+[[nodiscard]] ByteSource open_bytes(const std::string& path, const Execution& execution = {});
 
 /// The same, but of what cannot be mapped no more than `most_in_memory` bytes are kept in memory: what is
 /// longer goes to a spill file (container/spill_file.hpp), and that is mapped. Throws Error{output} when
 /// there is no room for it.
 [[nodiscard]] ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory,
-                                    const std::stop_token& cancel = {});
+                                    const Execution& execution = {});
 
 /// Lets go of the memory that a stretch of mapped bytes takes; when touched again, they come from the file
 /// again. So a file larger than memory can be gone through. Does nothing for bytes that are not mapped.

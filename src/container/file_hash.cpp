@@ -26,10 +26,10 @@ std::uint64_t file_hash(const std::string& path, const Execution& execution) {
     if (!state)
         throw std::bad_alloc();
     XXH3_64bits_reset(state.get());
-    const ByteSource source = open_bytes(path, execution.cancel);
+    const ByteSource source = open_bytes(path, execution);
     constexpr std::size_t at_once = std::size_t{1} << 22;
     for (std::size_t at = 0; at < source.bytes.size(); at += at_once) {
-        if (execution.cancel.stop_requested())
+        if (execution.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
         const auto piece = source.bytes.subspan(at, std::min(at_once, source.bytes.size() - at));
         XXH3_64bits_update(state.get(), piece.data(), piece.size());

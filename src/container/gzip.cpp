@@ -66,8 +66,8 @@ bool is_gzip(std::span<const std::byte> bytes) noexcept {
            bytes[2] == std::byte{8};
 }
 
-ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const std::stop_token& cancel) {
-    // Small enough for zlib's counters, and for a look at `cancel` now and then.
+ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const Execution& execution) {
+    // Small enough for zlib's counters, and for a look at cancelling now and then.
     constexpr std::size_t step = std::size_t{8} << 20;
     const std::uint64_t most = max_bytes != 0 ? max_bytes : usual_most_unpacked(packed.bytes.size());
     Inflater inflater;
@@ -77,7 +77,7 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
         throw Error(ErrorKind::input, fmt::format("{}: byte {}: {}", packed.name, at, what));
     };
     for (bool whole = false; !whole;) {
-        if (cancel.stop_requested())
+        if (execution.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
         const std::span<std::byte> all_room = unpacked->room();
         const std::span<std::byte> room = all_room.first(std::min(step, all_room.size()));
@@ -96,7 +96,8 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
         if (code == Z_STREAM_END) {
             const auto rest = packed.bytes.subspan(at);
             // Some programs fill up the last block with zeros.
-            whole = std::ranges::all_of(rest, [](std::byte byte) { return byte == std::byte{0}; });
+            whole =
+                std::all_of(rest.begin(), rest.end(), [](std::byte byte) { return byte == std::byte{0}; });
             if (!whole && !is_gzip(rest))
                 fail("something else follows what is packed with gzip, expected the end of the file");
             inflater.start_again();

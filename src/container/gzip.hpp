@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <stop_token>
 #include <string>
 
 namespace lamella {
@@ -21,7 +20,7 @@ namespace lamella {
 /// the file is broken, cut off, followed by something else, or has nothing in it; Error{cancelled} soon after
 /// a stop is requested.
 [[nodiscard]] ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes,
-                                     const std::stop_token& cancel = {});
+                                     const Execution& execution = {});
 
 /// The first bytes of what a gzip file holds, `most` of them or as many as its own first bytes `packed` tell;
 /// fewer where they are broken.

@@ -124,7 +124,8 @@ class Rows {
     [[nodiscard]] bool bar(const Piece& join) const {
         const auto [low, high] = std::minmax(join.a.y, join.b.y);
         for (std::size_t r = row(low); r <= row(high); ++r)
-            if (std::ranges::any_of(rows_[r], [&](const Piece& piece) { return is_barred(join, piece); }))
+            if (std::any_of(rows_[r].begin(), rows_[r].end(),
+                            [&](const Piece& piece) { return is_barred(join, piece); }))
                 return true;
         return false;
     }
@@ -209,7 +210,8 @@ class Joined {
         for (std::size_t c = layer_.rings; c < layer_.contours(); ++c)
             if (!done[c])
                 follow(c);
-        assert(std::ranges::count(done, true) == static_cast<std::ptrdiff_t>(layer_.open_chains()));
+        assert(std::count(done.begin(), done.end(), true) ==
+               static_cast<std::ptrdiff_t>(layer_.open_chains()));
     }
 
     /// Points that a ring of the chains in a row ending with this one would have.

@@ -109,7 +109,7 @@ void Executor::for_chunks(std::uint64_t n, std::uint64_t chunk,
 }
 
 void Executor::check_cancelled() const {
-    if (cancel_.stop_requested())
+    if (cancel_ != nullptr && cancel_->requested())
         throw Error(ErrorKind::cancelled, "cancelled");
 }
 

@@ -43,11 +43,11 @@ class Executor {
     void for_chunks(std::uint64_t n, std::uint64_t chunk,
                     const std::function<void(std::uint64_t begin, std::uint64_t end, unsigned worker)>& body);
 
-    /// Throws Error{cancelled} when a stop was requested.
+    /// Throws Error{cancelled} when that was requested.
     void check_cancelled() const;
-    /// True when this region should end early: a stop was requested or another worker has thrown.
+    /// True when this region should end early: cancelling was requested or another worker has thrown.
     [[nodiscard]] bool stopping() const noexcept {
-        return failed_.load(std::memory_order_relaxed) || cancel_.stop_requested();
+        return failed_.load(std::memory_order_relaxed) || (cancel_ != nullptr && cancel_->requested());
     }
 
   private:
@@ -56,7 +56,7 @@ class Executor {
     void guarded(unsigned worker) noexcept;
 
     unsigned workers_;
-    std::stop_token cancel_;
+    const CancelFlag* cancel_;
     std::vector<std::thread> threads_;
     std::mutex mutex_;
     std::condition_variable wake_;

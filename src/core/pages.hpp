@@ -40,10 +40,10 @@ class Pages {
     std::size_t bytes_ = 0;
 };
 
-/// An array of trivial values on such a block.
+/// An array of trivial values, or of atomics of them, on such a block.
 template <class T>
 class PageArray {
-    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+    static_assert(std::is_trivially_destructible_v<T>);
 
   public:
     PageArray() = default;

@@ -17,8 +17,8 @@ DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& exec
     for (const std::vector<SameVertices>& part : groups)
         for (const SameVertices& group : part) {
             // The most frequent way round has one survivor, where there is one.
-            const std::size_t up = static_cast<std::size_t>(
-                std::ranges::count_if(group.triangles, [](const auto& t) { return t.upwards; }));
+            const std::size_t up = static_cast<std::size_t>(std::count_if(
+                group.triangles.begin(), group.triangles.end(), [](const auto& t) { return t.upwards; }));
             const std::size_t down = group.triangles.size() - up;
             const bool keep_up = up > down;
             bool kept = up == down;

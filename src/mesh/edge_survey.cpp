@@ -73,13 +73,13 @@ EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_p
         const bool nonmanifold = uses.size() > 2;
         const bool conflict = !boundary && !balanced;
         if (!balanced)
-            std::atomic_ref<std::uint8_t>(survey.open[uses[0].triangle]).store(1, std::memory_order_relaxed);
+            survey.open[uses[0].triangle].store(1, std::memory_order_relaxed);
         worker.counts.boundary += boundary ? 1 : 0;
         worker.counts.nonmanifold += nonmanifold ? 1 : 0;
         worker.counts.conflicts += conflict ? 1 : 0;
         for_each_same(mesh, uses, worker.triangles, [&](std::span<const OverLowest> group) {
             const auto same_way = static_cast<std::uint64_t>(
-                std::ranges::count_if(group, [](const OverLowest& t) { return t.upwards; }));
+                std::count_if(group.begin(), group.end(), [](const OverLowest& t) { return t.upwards; }));
             worker.counts.duplicate_triangles += group.size() - 1;
             worker.counts.opposite_pairs += std::min(same_way, group.size() - same_way);
             if (with_places)

@@ -8,6 +8,7 @@
 #include "core/pages.hpp"
 #include "mesh/union_find.hpp"
 
+#include <atomic>
 #include <compare>
 #include <cstdint>
 #include <utility>
@@ -36,8 +37,8 @@ struct EdgePlaces {
 
 struct EdgeSurvey {
     EdgeCounts counts;
-    UnionFind parts;              ///< of triangles connected over edges
-    PageArray<std::uint8_t> open; ///< 1 for some triangle at each edge that is not balanced
+    UnionFind parts;                           ///< of triangles connected over edges
+    PageArray<std::atomic<std::uint8_t>> open; ///< 1 for some triangle at each edge that is not balanced
     EdgePlaces places;
 };
 

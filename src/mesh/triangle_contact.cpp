@@ -60,7 +60,7 @@ void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, S
 
 /// One corner in the other's plane and the others on one side: nothing in common but that point.
 bool in_a_point(const Signs& s) noexcept {
-    return std::ranges::count(s, 0) == 1 && !both_sides(s);
+    return std::count(s.begin(), s.end(), 0) == 1 && !both_sides(s);
 }
 
 /// For triangles in different planes that are no neighbours over an edge. `p_signs`: of p's corners by the
@@ -85,7 +85,7 @@ bool all_outside(const Flat& edges_of, const Flat& corners, bool strictly) noexc
             const int side = orientation(edges_of[k], edges_of[(k + 1) % 3], p);
             return strictly ? side < 0 : side <= 0;
         };
-        if (std::ranges::all_of(corners, outside))
+        if (std::all_of(corners.begin(), corners.end(), outside))
             return true;
     }
     return false;
@@ -127,7 +127,7 @@ Contact contact_in_a_plane(const Triangle3& p, const Triangle3& q, const Shared&
     const Point3 v{p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
     const std::array<double, 3> normal{std::abs(u.y * v.z - u.z * v.y), std::abs(u.z * v.x - u.x * v.z),
                                        std::abs(u.x * v.y - u.y * v.x)};
-    int axis = static_cast<int>(std::ranges::max_element(normal) - normal.begin());
+    int axis = static_cast<int>(std::max_element(normal.begin(), normal.end()) - normal.begin());
     const auto area_sign = [&](const Triangle3& t) {
         const Flat f = projected(t, axis);
         return orientation(f[0], f[1], f[2]);
@@ -224,7 +224,7 @@ Point3 contact_place(const Triangle3& p, const Triangle3& q, Contact contact) no
         if (n == 2)
             add_ends(q, p);
         if (n == 4) {
-            std::ranges::sort(ends);
+            std::sort(ends.begin(), ends.end());
             return {(ends[1].x + ends[2].x) / 2, (ends[1].y + ends[2].y) / 2, (ends[1].z + ends[2].z) / 2};
         }
     }

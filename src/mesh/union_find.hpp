@@ -26,7 +26,7 @@ class UnionFind {
             const std::uint32_t grandparent = above(parent);
             // Halve the way for whoever comes next. A lost race only leaves a longer way.
             if (grandparent != parent)
-                at(i).store(i - grandparent, std::memory_order_relaxed);
+                up_[i].store(i - grandparent, std::memory_order_relaxed);
             i = grandparent;
         }
     }
@@ -40,21 +40,18 @@ class UnionFind {
             if (a < b)
                 std::swap(a, b);
             std::uint32_t root = 0;
-            if (at(a).compare_exchange_weak(root, a - b, std::memory_order_relaxed))
+            if (up_[a].compare_exchange_weak(root, a - b, std::memory_order_relaxed))
                 return;
         }
     }
 
   private:
-    [[nodiscard]] std::atomic_ref<std::uint32_t> at(std::uint32_t i) const noexcept {
-        return std::atomic_ref<std::uint32_t>(up_[i]);
-    }
     [[nodiscard]] std::uint32_t above(std::uint32_t i) const noexcept {
-        return i - at(i).load(std::memory_order_relaxed);
+        return i - up_[i].load(std::memory_order_relaxed);
     }
 
     /// How far below the member the next one up is; 0 at the top.
-    PageArray<std::uint32_t> up_;
+    PageArray<std::atomic<std::uint32_t>> up_;
 };
 
 } // namespace lamella

@@ -88,7 +88,8 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                                                                       .max_triangles = job.max_triangles,
                                                                       .max_memory = job.max_memory},
       measure_volume_(job.layer_statistics) {
-    if (processes.size() > 1 && std::ranges::count(job.inputs, std::string("-"), &PlateInput::path) > 0)
+    if (processes.size() > 1 && std::any_of(job.inputs.begin(), job.inputs.end(),
+                                            [](const PlateInput& input) { return input.path == "-"; }))
         throw Error(ErrorKind::usage,
                     "standard input reaches one of the processes only; give the name of a file");
     const unsigned threads = thread_count(execution);
@@ -98,8 +99,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
     bool divisible = true;
     in_agreement(processes, [&] {
         for (const PlateInput& input : job.inputs) {
-            const MeshInput& file =
-                inputs.emplace_back(input.path, memory_.of_input(threads), execution.cancel);
+            const MeshInput& file = inputs.emplace_back(input.path, memory_.of_input(threads), execution);
             const bool placed = input.placement != Transform{} || input.unit_mm.value_or(1) != 1;
             if (file.can_stream())
                 bytes += memory_.of_whole(file, placed, threads);
@@ -322,8 +322,8 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
     const SlabSurvey survey(part_of(counts_of_parts(plan.layers.size()), mine));
     SlabMemory slab{
         .threads = threads,
-        .placed = std::ranges::any_of(
-            plate_.shapes, [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
+        .placed = std::any_of(plate_.shapes.begin(), plate_.shapes.end(),
+                              [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
         .points_in_flight = memory_.points_in_flight(threads)};
     if (plate_.parts.size() > 1) // then all layers of a share are held
         slab.points_in_flight = ~std::uint64_t{0};

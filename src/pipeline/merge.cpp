@@ -97,7 +97,8 @@ std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const Lay
     std::vector<ShardFile> shards;
     for (const std::string& path : paths)
         shards.push_back(look_at(path, reading, execution));
-    std::ranges::stable_sort(shards, {}, &ShardFile::bottom);
+    std::stable_sort(shards.begin(), shards.end(),
+                     [](const ShardFile& a, const ShardFile& b) { return a.bottom < b.bottom; });
     for (std::size_t i = 1; i < shards.size(); ++i)
         check_neighbours(shards[i - 1], shards[i]);
     return shards;
@@ -123,7 +124,7 @@ struct CommonLayerFile {
 }
 
 CommonLayerFile take_apart(const std::string& path, const Execution& execution) {
-    CommonLayerFile file{open_bytes(path, execution.cancel), {}, {}, {}, {}};
+    CommonLayerFile file{open_bytes(path, execution), {}, {}, {}, {}};
     const std::string_view text(reinterpret_cast<const char*>(file.source.bytes.data()),
                                 file.source.bytes.size());
     constexpr std::string_view count_key = "$$LAYERS/";
@@ -162,7 +163,7 @@ void check_heads(const std::string& one, std::string_view head, const std::strin
                  std::string_view other_head) {
     if (head == other_head)
         return;
-    const auto differ = std::ranges::mismatch(head, other_head);
+    const auto differ = std::mismatch(head.begin(), head.end(), other_head.begin(), other_head.end());
     const auto line = [](std::string_view text, std::size_t at) {
         const std::size_t begin = text.rfind('\n', at == 0 ? 0 : at - 1) + 1;
         return text.substr(begin, text.find('\n', begin) - begin);
@@ -188,7 +189,7 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
         check_heads(shards.front().path, head, shards[i].path, file.before_count);
         constexpr std::size_t at_once = std::size_t{1} << 22;
         for (std::size_t at = 0; at < file.layers.size(); at += at_once) {
-            if (execution.cancel.stop_requested())
+            if (execution.cancelled())
                 throw Error(ErrorKind::cancelled, "cancelled");
             const std::string_view piece = file.layers.substr(at, at_once);
             out.append(piece);

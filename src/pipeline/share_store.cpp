@@ -76,7 +76,8 @@ bool ShareStore::put(Stretch& stretch, std::span<const Triangle3f> triangles) {
 }
 
 bool ShareStore::full() const noexcept {
-    return std::ranges::all_of(stretches_, [](const Stretch& one) { return one.next == one.end; });
+    return std::all_of(stretches_.begin(), stretches_.end(),
+                       [](const Stretch& one) { return one.next == one.end; });
 }
 
 TriangleSoup ShareStore::take(std::size_t share, std::size_t shape, const Execution& execution) {

@@ -194,8 +194,8 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     Prepared done;
     const Stopwatch welding;
     const bool inspected = job.inspect || job.strict;
-    const bool indexed = std::ranges::any_of(
-        plate.shapes, [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
+    const bool indexed = std::any_of(plate.shapes.begin(), plate.shapes.end(),
+                                     [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
     // As slicing would do, but so that the mesh as read is let go of.
     for (PlateShape& shape : plate.shapes)
         shape.mesh = shape.mesh.with_joined_vertices(execution);
@@ -250,7 +250,8 @@ class LayerWay {
     [[nodiscard]] std::function<void()> operator()(std::span<const Layer> parts) {
         std::vector<Layer> closed;
         std::vector<GapJoin> joins;
-        if (job_.repair.close_gaps_mm && std::ranges::any_of(parts, &Layer::open_chains)) {
+        if (job_.repair.close_gaps_mm &&
+            std::any_of(parts.begin(), parts.end(), std::mem_fn(&Layer::open_chains))) {
             closed = without_gaps(parts, *job_.repair.close_gaps_mm, joins);
             parts = closed;
         }

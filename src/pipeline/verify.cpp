@@ -49,8 +49,8 @@ double largest_coordinate(std::span<const Point2> points) {
 /// Whether a ring is so thin that rounding its points may have turned it over.
 bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) {
     const double largest = largest_coordinate(ring);
-    const double moved = std::sqrt(0.5) * rounding.step_at(largest) +
-                         4 * std::numeric_limits<double>::epsilon() * largest;
+    const double moved =
+        std::sqrt(0.5) * rounding.step_at(largest) + 4 * std::numeric_limits<double>::epsilon() * largest;
     return std::abs(ring_area(ring)) <= contour_length(ring, true) * moved;
 }
 
@@ -163,7 +163,9 @@ std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const 
     std::vector<SectionArea> result;
     for (const Layer& layer : layers)
         result.push_back(areas[static_cast<std::size_t>(
-            std::ranges::lower_bound(z, layer.z, {}, &std::pair<double, double>::first) - z.begin())]);
+            std::lower_bound(z.begin(), z.end(), layer.z,
+                             [](const auto& at, double value) { return at.first < value; }) -
+            z.begin())]);
     return result;
 }
 

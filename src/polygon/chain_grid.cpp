@@ -67,10 +67,10 @@ bool ChainGrid::surrounded(const Point2& p, std::uint32_t ring) const noexcept {
     };
     const auto here = cells_->in_cell(cells_->cell(p));
     return large_rings_.size() > few_large_rings ||
-           std::ranges::any_of(large_rings_,
-                               [&](std::uint32_t i) { return i != ring && around(all_chains_->box(i)); }) ||
-           std::ranges::any_of(here,
-                               [&](std::uint32_t i) { return pieces_[i].ring != ring && around(boxes_[i]); });
+           std::any_of(large_rings_.begin(), large_rings_.end(),
+                       [&](std::uint32_t i) { return i != ring && around(all_chains_->box(i)); }) ||
+           std::any_of(here.begin(), here.end(),
+                       [&](std::uint32_t i) { return pieces_[i].ring != ring && around(boxes_[i]); });
 }
 
 /// False where the pieces reach into too many cells, or extents are beyond numbers.

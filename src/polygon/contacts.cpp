@@ -123,7 +123,7 @@ class ContactSearch {
 
     /// Whether the pieces are all of one group already, such as the spikes of one star.
     [[nodiscard]] bool no_news_among(const ChainGrid& grid, std::span<const std::uint32_t> pieces) {
-        return std::ranges::none_of(pieces, [&](std::uint32_t i) {
+        return std::none_of(pieces.begin(), pieces.end(), [&](std::uint32_t i) {
             return groups_.open(grid.pieces()[i].ring, grid.pieces()[pieces.front()].ring) ||
                    groups_.open(grid.pieces()[i].ring, grid.pieces()[i].ring);
         });

@@ -188,7 +188,7 @@ bool winds_once(std::span<const Layer> parts) {
             box.add(look.chains.box(i));
         boxes.push_back(box);
     }
-    std::ranges::sort(boxes, {}, &Box2::x0);
+    std::sort(boxes.begin(), boxes.end(), [](const Box2& a, const Box2& b) { return a.x0 < b.x0; });
     for (std::size_t i = 0; i < boxes.size(); ++i)
         for (std::size_t j = i + 1; j < boxes.size() && boxes[j].x0 <= boxes[i].x1; ++j)
             if (boxes[i].meets(boxes[j]))

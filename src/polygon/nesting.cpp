@@ -39,7 +39,8 @@ class NestingSearch {
     Nesting run(const ChainGrid* grid) && {
         order_by_area();
         order_from_left_to_right();
-        if (apart_ && grid != nullptr && !grid->crowded() && std::ranges::none_of(ends_, &LeftEnd::flat))
+        if (apart_ && grid != nullptr && !grid->crowded() &&
+            std::none_of(ends_.begin(), ends_.end(), std::mem_fn(&LeftEnd::flat)))
             place_apart(*grid);
         else if (!order_.empty())
             place_any();

@@ -44,7 +44,7 @@ double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
     for (std::uint32_t row = 0; row < height;) {
         const DrawnRow drawn = rows.draw(row);
         covered += drawn.covered * drawn.times;
-        if (times > 0 && !std::ranges::equal(same, drawn.runs)) {
+        if (times > 0 && !std::equal(same.begin(), same.end(), drawn.runs.begin(), drawn.runs.end())) {
             sink(same, times);
             times = 0;
         }

@@ -262,7 +262,7 @@ std::vector<float> Relief::smooth_light() const {
     const auto most_higher = static_cast<float>(most_apart / scale_);
     for (std::size_t row = 0; row < height_; ++row) {
         const std::size_t here = row * width_;
-        std::ranges::fill(counts, 0.0F);
+        std::fill(counts.begin(), counts.end(), 0.0F);
         for (std::size_t r = row - std::min(row, blur); r <= row + blur && r < height_; ++r)
             for (std::size_t shift = 0; shift <= 2 * blur; ++shift) { // to the left at first
                 const std::size_t left = blur - std::min(shift, blur);

@@ -92,11 +92,11 @@ void cut_polygons(FaceMesh& faces, Executor& executor) {
 
 /// A file may have vertices that belong to no face, far away; the box of the part must not know them.
 void drop_unused(IndexedMesh& mesh, Executor& executor) {
-    PageArray<std::uint8_t> used(mesh.vertices.size(), Fill::zero);
+    PageArray<std::atomic<std::uint8_t>> used(mesh.vertices.size(), Fill::zero);
     executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i)
             for (const std::uint32_t v : mesh.triangles[i])
-                std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
+                used[v].store(1, std::memory_order_relaxed);
     });
     std::atomic<bool> all{true};
     executor.for_chunks(used.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {

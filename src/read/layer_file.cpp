@@ -52,7 +52,7 @@ LayerFile read_opened(const ByteSource& opened, const LayerReadOptions& options,
                       const Execution& execution) {
     if (!is_gzip(opened.bytes))
         return read_source(opened, options, limits, execution);
-    const ByteSource unpacked = unpack_gzip(opened, options.max_memory, execution.cancel);
+    const ByteSource unpacked = unpack_gzip(opened, options.max_memory, execution);
     limits.add_bytes(unpacked.bytes.size());
     return read_source(unpacked, options, limits, execution);
 }
@@ -74,7 +74,7 @@ LayerStack LayerFile::merged() const {
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
     const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    const ByteSource opened = open_bytes(path, most, execution.cancel);
+    const ByteSource opened = open_bytes(path, most, execution);
     ReadLimits limits(opened.name, options);
     if (!opened.mapped)
         limits.add_bytes(opened.bytes.size());

@@ -28,14 +28,14 @@ namespace {
 
 MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, const Execution& execution) {
     const ByteSource source =
-        is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution.cancel) : opened;
+        is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution) : opened;
     return mesh_format_of(source, options).read(source, options, execution);
 }
 
 } // namespace
 
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {
-    MeshFile file = read_any(open_bytes(path, execution.cancel), options, execution);
+    MeshFile file = read_any(open_bytes(path, execution), options, execution);
     file.path = path;
     return file;
 }
@@ -47,8 +47,8 @@ MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, co
     return file;
 }
 
-MeshInput::MeshInput(const std::string& path, std::uint64_t most_in_memory, const std::stop_token& cancel)
-    : path_(path), source_(std::make_shared<const ByteSource>(open_bytes(path, most_in_memory, cancel))) {}
+MeshInput::MeshInput(const std::string& path, std::uint64_t most_in_memory, const Execution& execution)
+    : path_(path), source_(std::make_shared<const ByteSource>(open_bytes(path, most_in_memory, execution))) {}
 
 std::uint64_t MeshInput::bytes() const noexcept {
     return source_->bytes.size();

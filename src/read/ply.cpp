@@ -22,7 +22,8 @@ namespace lamella {
 namespace {
 
 std::size_t find_element(const PlyHeader& header, std::string_view name) {
-    return static_cast<std::size_t>(std::ranges::find(header.elements, name, &PlyElement::name) -
+    return static_cast<std::size_t>(std::find_if(header.elements.begin(), header.elements.end(),
+                                                 [&](const PlyElement& one) { return one.name == name; }) -
                                     header.elements.begin());
 }
 
@@ -74,7 +75,7 @@ void skip_value(const PlyProperty& property, RowWords& words) {
 void read_vertex(const PlyElement& element, const PlyPlaces& places, RowWords& words, FacePiece& piece) {
     std::array<double, 3> p{};
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
-        const auto* const axis = std::ranges::find(places.coordinates, i);
+        const auto* const axis = std::find(places.coordinates.begin(), places.coordinates.end(), i);
         if (axis != places.coordinates.end())
             p[static_cast<std::size_t>(axis - places.coordinates.begin())] = words.coordinate();
         else
@@ -132,7 +133,9 @@ MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const Ply
         } else if (face_rows.hold(row)) {
             read_face(face, places, words, piece);
         } else {
-            const auto other = std::ranges::upper_bound(element_rows, row, {}, &Rows::end);
+            const auto other =
+                std::upper_bound(element_rows.begin(), element_rows.end(), row,
+                                 [](auto value, const Rows& rows) { return value < rows.end; });
             for (const PlyProperty& property : header.elements[other - element_rows.begin()].properties)
                 skip_value(property, words);
         }

@@ -355,7 +355,8 @@ class BinaryReader {
     /// for.
     bool plan_even_rows(const PlyElement& element) {
         const auto fixed = [](const std::vector<Step>& steps) {
-            return std::ranges::none_of(steps, [](const Step& step) { return step.list_length.has_value(); });
+            return std::none_of(steps.begin(), steps.end(),
+                                [](const Step& step) { return step.list_length.has_value(); });
         };
         if (!fixed(before_) || !fixed(after_))
             return false;
@@ -466,7 +467,8 @@ class BinaryReader {
     [[nodiscard]] std::string place(std::uint64_t triangle) const {
         if (places_.strips)
             return place_in_strips(triangle);
-        auto run = std::ranges::upper_bound(runs_, triangle, {}, &FaceRun::triangles);
+        auto run = std::upper_bound(runs_.begin(), runs_.end(), triangle,
+                                    [](auto value, const FaceRun& run) { return value < run.triangles; });
         --run;
         const std::byte* at = run->at;
         std::uint64_t before = run->triangles;

@@ -168,7 +168,8 @@ class HeaderReader {
     }
 
     [[nodiscard]] PlyType type(std::string_view name) const {
-        const auto* const known = std::ranges::find(type_names, name, &TypeName::name);
+        const auto* const known = std::find_if(type_names.begin(), type_names.end(),
+                                               [&](const TypeName& type) { return type.name == name; });
         if (known == type_names.end())
             fail("a type such as float, uchar or int32");
         return known->type;
@@ -218,7 +219,8 @@ std::optional<std::size_t> PlyElement::row_bytes() const {
 }
 
 std::optional<std::size_t> PlyElement::find(std::string_view property) const {
-    const auto found = std::ranges::find(properties, property, &PlyProperty::name);
+    const auto found = std::find_if(properties.begin(), properties.end(),
+                                    [&](const PlyProperty& one) { return one.name == property; });
     if (found == properties.end())
         return std::nullopt;
     return static_cast<std::size_t>(found - properties.begin());

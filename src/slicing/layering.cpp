@@ -24,8 +24,8 @@ Plan selected(const PlaneSelection& only, Plan plan, const Box3& box) {
         return (z_range && !(z_range->first <= layer.z && layer.z <= z_range->second)) ||
                (index_range && !(index_range->first <= layer.index && layer.index < index_range->second));
     });
-    if (std::ranges::none_of(plan.layers,
-                             [&](const PlannedLayer& layer) { return meets(layer.z, plan.rule, box); }))
+    if (std::none_of(plan.layers.begin(), plan.layers.end(),
+                     [&](const PlannedLayer& layer) { return meets(layer.z, plan.rule, box); }))
         throw Error(
             ErrorKind::usage,
             fmt::format("none of the planes meets the part, which reaches from z = {:.6g} to {:.6g} mm",

@@ -68,7 +68,7 @@ class Slopes {
         : z_min_(z_min), step_(std::max(wanted_step, (z_max - z_min) / (1 << 20))),
           steps_(static_cast<std::size_t>((z_max - z_min) / step_) + 1) {
         for (std::size_t span = 1; span <= steps_; span *= 2)
-            levels_.emplace_back(steps_, 0);
+            levels_.emplace_back(steps_);
     }
 
     /// From any thread. The triangle's heights and |n.z|.
@@ -77,7 +77,7 @@ class Slopes {
         const std::size_t last = step_at(high);
         // Two stretches of 2^k steps that cover all; spread() hands them down.
         const std::size_t stretch = std::bit_floor(last - first + 1);
-        std::vector<float>& level = levels_[static_cast<std::size_t>(std::countr_zero(stretch))];
+        std::vector<std::atomic<float>>& level = levels_[static_cast<std::size_t>(std::countr_zero(stretch))];
         raise(level[first], steepness);
         raise(level[last + 1 - stretch], steepness);
     }
@@ -86,10 +86,8 @@ class Slopes {
         for (std::size_t k = levels_.size() - 1; k > 0; --k)
             for (std::size_t i = 0; i + (std::size_t{1} << k) <= steps_; ++i) {
                 const float value = levels_[k][i];
-                float& near = levels_[k - 1][i];
-                float& far = levels_[k - 1][i + (std::size_t{1} << (k - 1))];
-                near = std::max(near, value);
-                far = std::max(far, value);
+                raise(levels_[k - 1][i], value);
+                raise(levels_[k - 1][i + (std::size_t{1} << (k - 1))], value);
             }
         levels_.resize(1);
     }
@@ -104,17 +102,16 @@ class Slopes {
     [[nodiscard]] double steepness(std::size_t step) const noexcept { return levels_[0][step]; }
 
   private:
-    static void raise(float& value, float to) noexcept {
-        const std::atomic_ref<float> shared(value);
-        for (float now = shared.load(std::memory_order_relaxed);
-             now < to && !shared.compare_exchange_weak(now, to, std::memory_order_relaxed);) {
+    static void raise(std::atomic<float>& value, float to) noexcept {
+        for (float now = value.load(std::memory_order_relaxed);
+             now < to && !value.compare_exchange_weak(now, to, std::memory_order_relaxed);) {
         }
     }
 
     double z_min_;
     double step_;
     std::size_t steps_;
-    std::vector<std::vector<float>> levels_; ///< [k][i]: of the 2^k steps from i on
+    std::vector<std::vector<std::atomic<float>>> levels_; ///< [k][i]: of the 2^k steps from i on
 };
 
 /// |n.z|, rounded up; 0 for a triangle without area, which bounds nothing.

@@ -223,19 +223,20 @@ void write_legend(const Diagnosis& found, std::string& svg) {
         std::uint64_t count;
         std::size_t shown;
     };
-    std::vector<Entry> entries{
-        {boundary, found.boundary_loops, found.loops.size()},
-        {conflict, found.counts.orientation_conflicts, found.conflicting_edges.size()},
-        {crowded, found.counts.nonmanifold_edges + found.nonmanifold_vertices,
-         found.nonmanifold_edges.size() + found.vertices.size()},
-        {inverted, found.counts.inverted_shells,
-         static_cast<std::size_t>(std::ranges::count(found.shells, ShellKind::inverted, &Shell::kind))}};
+    std::vector<Entry> entries{{boundary, found.boundary_loops, found.loops.size()},
+                               {conflict, found.counts.orientation_conflicts, found.conflicting_edges.size()},
+                               {crowded, found.counts.nonmanifold_edges + found.nonmanifold_vertices,
+                                found.nonmanifold_edges.size() + found.vertices.size()},
+                               {inverted, found.counts.inverted_shells,
+                                static_cast<std::size_t>(std::count_if(
+                                    found.shells.begin(), found.shells.end(),
+                                    [](const Shell& shell) { return shell.kind == ShellKind::inverted; }))}};
     if (found.self_intersections)
         entries.push_back(
             {meeting, found.self_intersections->crossing + found.self_intersections->overlapping,
              static_cast<std::size_t>(
-                 std::ranges::count_if(found.self_intersections->first,
-                                       [](const Meeting& m) { return m.kind != MeetingKind::touching; }))});
+                 std::count_if(found.self_intersections->first.begin(), found.self_intersections->first.end(),
+                               [](const Meeting& m) { return m.kind != MeetingKind::touching; }))});
     int x = margin;
     int y = 2 * (panel + title_height) + 22;
     for (const Entry& entry : entries) {

@@ -59,10 +59,10 @@ void find_faults(std::span<const Layer> parts, PlaneFacts& facts, std::vector<Po
         for (const Crossing& crossing : crossings.first)
             places.push_back(crossing.at);
         const Nesting nested = nesting(layer);
-        facts.misoriented +=
-            static_cast<std::uint64_t>(std::ranges::count(nested.kind, RingKind::misoriented));
-        facts.overlapping +=
-            static_cast<std::uint64_t>(std::ranges::count(nested.kind, RingKind::overlapping));
+        facts.misoriented += static_cast<std::uint64_t>(
+            std::count(nested.kind.begin(), nested.kind.end(), RingKind::misoriented));
+        facts.overlapping += static_cast<std::uint64_t>(
+            std::count(nested.kind.begin(), nested.kind.end(), RingKind::overlapping));
     }
 }
 
@@ -125,8 +125,9 @@ class Budget {
     /// Of the pictures of the next layer, the finest first, the first that it can pay for; else the last.
     const Picture& choose(const std::vector<Picture>& pictures) {
         const Cost most{std::min(saved_bytes_ + share_.bytes, most_shares * share_.bytes), share_.points};
-        const auto fitting = std::ranges::find_if(
-            pictures, [&](const Picture& picture) { return cost_of(picture).within(most); });
+        const auto fitting = std::find_if(pictures.begin(), pictures.end(), [&](const Picture& picture) {
+            return cost_of(picture).within(most);
+        });
         const Picture& chosen = fitting == pictures.end() ? pictures.back() : *fitting;
         saved_bytes_ += share_.bytes;
         saved_bytes_ -= std::min(saved_bytes_, cost_of(chosen).bytes);
@@ -258,9 +259,9 @@ class PageWriter final : public LayerPageWriter {
     }
 
     void tell(PageNotes notes) override {
-        std::ranges::move(notes.sections, std::back_inserter(notes_.sections));
-        std::ranges::move(notes.places, std::back_inserter(notes_.places));
-        std::ranges::move(notes.changes, std::back_inserter(notes_.changes));
+        std::move(notes.sections.begin(), notes.sections.end(), std::back_inserter(notes_.sections));
+        std::move(notes.places.begin(), notes.places.end(), std::back_inserter(notes_.places));
+        std::move(notes.changes.begin(), notes.changes.end(), std::back_inserter(notes_.changes));
     }
 
     void finish() override {

@@ -62,7 +62,7 @@ struct CoarseMesh {
 
 std::vector<Cell> cells_of(const IndexedMesh& mesh, const Cubes& cubes) {
     std::vector<Cell> cells(mesh.vertices.size());
-    std::ranges::transform(mesh.vertices, cells.begin(), cubes);
+    std::transform(mesh.vertices.begin(), mesh.vertices.end(), cells.begin(), cubes);
     return cells;
 }
 
@@ -78,7 +78,9 @@ std::vector<std::uint32_t> representatives(const std::vector<Cell>& cells) {
     std::vector<std::uint32_t> order(cells.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
         order[i] = i;
-    std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(cells[i], i); });
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::pair(cells[a], a) < std::pair(cells[b], b);
+    });
     std::vector<std::uint32_t> first(cells.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         first[order[i]] = i > 0 && cells[order[i]] == cells[order[i - 1]] ? first[order[i - 1]] : order[i];
@@ -153,8 +155,9 @@ void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Dia
     unsigned halvings = finest;
     std::vector<Cell> cells = cells_of(mesh, Cubes(box, halvings));
     const auto shown = [&] {
-        return static_cast<std::size_t>(std::ranges::count_if(
-            mesh.triangles, [&](const auto& triangle) { return keeps_its_corners(triangle, cells); }));
+        return static_cast<std::size_t>(
+            std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                          [&](const auto& triangle) { return keeps_its_corners(triangle, cells); }));
     };
     while (shown() > page_triangles) {
         executor.check_cancelled();

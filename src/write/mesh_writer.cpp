@@ -80,8 +80,8 @@ bool fits_single_precision(const IndexedMesh& mesh) {
     const auto fits = [](double v) {
         return static_cast<double>(static_cast<float>(v)) == v;
     };
-    return std::ranges::all_of(mesh.vertices,
-                               [&](const Point3& p) { return fits(p.x) && fits(p.y) && fits(p.z); });
+    return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [&](const Point3& p) { return fits(p.x) && fits(p.y) && fits(p.z); });
 }
 
 /// Appends items in blocks; `put_item(at, i)` writes one of at most `longest` bytes and returns where it

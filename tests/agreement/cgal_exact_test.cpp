@@ -78,7 +78,7 @@ std::vector<double> random_heights(const IndexedMesh& mesh, Random& random, std:
     std::vector<double> z;
     for (std::size_t i = 0; i < n; ++i)
         z.push_back(random.real(low.z, high.z));
-    std::ranges::sort(z);
+    std::sort(z.begin(), z.end());
     return z;
 }
 
@@ -112,7 +112,7 @@ std::vector<Polygon2> exact_section(const IndexedMesh& welded, double z) {
 
 /// The number of the polygon that a ring is: the one whose leftmost corner is there.
 std::optional<std::size_t> polygon_of(std::span<const Point2> ring, const std::vector<Polygon2>& polygons) {
-    const Point2 left = *std::ranges::min_element(ring);
+    const Point2 left = *std::min_element(ring.begin(), ring.end());
     for (std::size_t i = 0; i < polygons.size(); ++i) {
         const Exact::Point_2& p = *polygons[i].left_vertex();
         if (std::hypot(CGAL::to_double(p.x()) - left.x, CGAL::to_double(p.y()) - left.y) < 1e-10)

@@ -55,7 +55,7 @@ std::vector<double> random_heights(const Soup& soup, Random& random, int n) {
     std::vector<double> z;
     for (int i = 0; i < n; ++i)
         z.push_back(random.real(low, high));
-    std::ranges::sort(z);
+    std::sort(z.begin(), z.end());
     z.erase(std::unique(z.begin(), z.end()), z.end());
     return z;
 }
@@ -105,8 +105,9 @@ TEST(RepairedMeshes, HolesOfATriangleAreClosedWithTheirArea) {
         Soup broken;
         std::vector<Point3> around;
         for (const Triangle3& t : sound) {
-            const bool apart = std::ranges::none_of(
-                t, [&](const Point3& p) { return std::ranges::find(around, p) != around.end(); });
+            const bool apart = std::none_of(t.begin(), t.end(), [&](const Point3& p) {
+                return std::find(around.begin(), around.end(), p) != around.end();
+            });
             if (apart && random.real(0, 1) < 0.1)
                 around.insert(around.end(), t.begin(), t.end());
             else

@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <thread>
+#include <future>
 
 namespace lamella {
 namespace {
@@ -125,7 +125,7 @@ TEST_F(ByteSourceTest, ReadsAPipeToItsEnd) {
     // More than a pipe holds, more than the first buffer, and not a multiple of anything.
     const std::string sent = some_text(3'333'333);
     ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-    const std::jthread writer([&] { write("pipe", sent); });
+    const auto writer = std::async(std::launch::async, [&] { write("pipe", sent); });
     const ByteSource source = open_bytes(path("pipe"));
     EXPECT_EQ(text_of(source), sent);
 }
@@ -134,7 +134,7 @@ TEST_F(ByteSourceTest, ReadsStandardInputFromAPipe) {
     const std::string sent = some_text(200'000);
     std::array<int, 2> ends{};
     ASSERT_EQ(pipe(ends.data()), 0);
-    const std::jthread writer([&] {
+    const auto writer = std::async(std::launch::async, [&] {
         std::size_t done = 0;
         while (done < sent.size()) {
             const ssize_t wrote = ::write(ends[1], sent.data() + done, sent.size() - done);
@@ -167,12 +167,12 @@ TEST_F(ByteSourceTest, ReadsFilesThatClaimToHaveNoBytes) {
 
 TEST_F(ByteSourceTest, StopsWaitingForAPipeWhenAsked) {
     ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-    std::stop_source stop;
-    const std::jthread stopper([&] {
+    CancelFlag stop;
+    const auto stopper = std::async(std::launch::async, [&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        stop.request_stop();
+        stop.request();
     });
-    error_of([&] { (void)open_bytes(path("pipe"), stop.get_token()); }, ErrorKind::cancelled);
+    error_of([&] { (void)open_bytes(path("pipe"), {.cancel = &stop}); }, ErrorKind::cancelled);
 }
 
 TEST_F(ByteSourceTest, NamesWhatIsWrongWithAPath) {

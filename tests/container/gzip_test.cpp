@@ -116,10 +116,10 @@ TEST(Gzip, SurvivesMutations) {
 }
 
 TEST(Gzip, EndsWhenAskedTo) {
-    std::stop_source stop;
-    stop.request_stop();
+    CancelFlag stop;
+    stop.request();
     try {
-        (void)unpack_gzip(source(packed("x")), 0, stop.get_token());
+        (void)unpack_gzip(source(packed("x")), 0, {.cancel = &stop});
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::cancelled);

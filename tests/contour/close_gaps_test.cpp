@@ -144,7 +144,9 @@ TEST(CloseGaps, PutsRingsTogetherThatWereTakenApart) {
         EXPECT_TRUE(in_normal_form(closed.layer));
         // What the joins cut off: less than their length times the sagitta of the longest.
         EXPECT_NEAR(measure(closed.layer).area_mm2, area, closed.total_mm * closed.longest_mm);
-        EXPECT_TRUE(std::ranges::is_sorted(closed.joins, {}, &GapJoin::length_mm));
+        EXPECT_TRUE(
+            std::is_sorted(closed.joins.begin(), closed.joins.end(),
+                           [](const GapJoin& a, const GapJoin& b) { return a.length_mm < b.length_mm; }));
     }
 }
 

@@ -90,7 +90,7 @@ std::vector<double> naive_gaps(const std::vector<Points>& chains) {
             if (from != to || 2 * d <= length_of(chains[from]))
                 pairs.emplace_back(d, from, to);
         }
-    std::ranges::sort(pairs);
+    std::sort(pairs.begin(), pairs.end());
     std::vector<bool> ended(chains.size());
     std::vector<bool> started(chains.size());
     std::vector<double> gaps;
@@ -109,7 +109,7 @@ TEST(OpenGaps, AreTheClosestPairsFirst) {
         for (Points& chain : chains)
             for (std::int64_t n = random.integer(2, 4); n > 0; --n)
                 chain.push_back({random.real(0, 10), random.real(0, 10)});
-        std::ranges::sort(chains);
+        std::sort(chains.begin(), chains.end());
         const std::vector<double> expected = naive_gaps(chains);
         if (expected.size() < chains.size())
             continue; // a last one is left with itself
@@ -119,7 +119,7 @@ TEST(OpenGaps, AreTheClosestPairsFirst) {
         for (const double gap : expected)
             total += gap;
         ASSERT_NEAR(gaps.total_mm, total, 1e-9) << trial;
-        ASSERT_EQ(gaps.longest_mm, *std::ranges::max_element(expected)) << trial;
+        ASSERT_EQ(gaps.longest_mm, *std::max_element(expected.begin(), expected.end())) << trial;
     }
 }
 

@@ -71,13 +71,13 @@ TEST(Executor, AnExceptionReachesTheCallerAndTheTeamLivesOn) {
 
 TEST(Executor, StopsAtTheNextChunkWhenAsked) {
     for (const unsigned threads : {1U, 3U}) {
-        std::stop_source stop;
-        Executor executor({.threads = threads, .cancel = stop.get_token()});
+        CancelFlag stop;
+        Executor executor({.threads = threads, .cancel = &stop});
         std::atomic<int> chunks = 0;
         try {
             executor.for_chunks(100000, 1, [&](std::uint64_t, std::uint64_t, unsigned) {
                 if (++chunks == 10)
-                    stop.request_stop();
+                    stop.request();
             });
             ADD_FAILURE() << "not cancelled";
         } catch (const Error& error) {

@@ -71,7 +71,7 @@ TEST(Diagnose, HolesThatTouchInAVertexHaveLoopsOfTheirOwn) {
     const auto shared = [](const Triangle3f& a, const Triangle3f& b) {
         int n = 0;
         for (const Point3f& p : a)
-            n += static_cast<int>(std::ranges::count(b, p));
+            n += static_cast<int>(std::count(b.begin(), b.end(), p));
         return n;
     };
     for (std::size_t i = 1;; ++i)
@@ -127,9 +127,10 @@ TEST(Diagnose, EveryBoundaryEdgeIsInOneLoopOnRandomMeshes) {
             edges += loop.edges();
             length += loop.length_mm;
             std::vector<Point3> points = loop.points;
-            std::ranges::sort(points);
+            std::sort(points.begin(), points.end());
             if (loop.closed) {
-                EXPECT_TRUE(std::ranges::adjacent_find(points) == points.end()); // no vertex twice
+                EXPECT_TRUE(std::adjacent_find(points.begin(), points.end()) ==
+                            points.end()); // no vertex twice
             }
         }
         EXPECT_EQ(edges, naive_edges(mesh).boundary);

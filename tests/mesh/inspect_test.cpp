@@ -301,12 +301,12 @@ TEST(Inspect, AnEdgeWithAHundredThousandTrianglesIsNoTrap) {
 }
 
 TEST(Inspect, StopsWhenAsked) {
-    std::stop_source stop;
-    stop.request_stop();
+    CancelFlag stop;
+    stop.request();
     const IndexedMesh mesh = weld(make_rook());
     for (const unsigned threads : {1U, 3U})
         try {
-            (void)inspect(mesh, {.threads = threads, .cancel = stop.get_token()});
+            (void)inspect(mesh, {.threads = threads, .cancel = &stop});
             ADD_FAILURE() << "not cancelled";
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::cancelled);

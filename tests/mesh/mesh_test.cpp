@@ -7,8 +7,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <future>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -103,9 +103,10 @@ TEST(Mesh, JoinsItsVerticesForManyThreadsAtOnce) {
     const Mesh mesh(repeating(make_rook()));
     std::vector<const IndexedMesh*> found(8);
     {
-        std::vector<std::jthread> threads;
+        std::vector<std::future<void>> threads;
         for (const IndexedMesh*& mine : found)
-            threads.emplace_back([&mesh, &mine] { mine = mesh.with_joined_vertices().indexed(); });
+            threads.push_back(std::async(std::launch::async,
+                                         [&mesh, &mine] { mine = mesh.with_joined_vertices().indexed(); }));
     }
     for (const IndexedMesh* const one : found)
         EXPECT_EQ(one, found.front());

@@ -169,12 +169,12 @@ TEST(SelfIntersections, OfNothingAreNone) {
 }
 
 TEST(SelfIntersections, StopWhenAsked) {
-    std::stop_source stop;
-    stop.request_stop();
+    CancelFlag stop;
+    stop.request();
     const IndexedMesh mesh = weld(make_rook());
     for (const unsigned threads : {1U, 3U})
         try {
-            (void)find_self_intersections(mesh, {}, {.threads = threads, .cancel = stop.get_token()});
+            (void)find_self_intersections(mesh, {}, {.threads = threads, .cancel = &stop});
             ADD_FAILURE() << "not cancelled";
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::cancelled);

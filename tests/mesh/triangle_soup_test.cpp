@@ -110,11 +110,11 @@ TEST(TriangleSoup, VolumeFarFromTheOriginKeepsItsDigits) {
 }
 
 TEST(TriangleSoup, StopsWhenAsked) {
-    std::stop_source stop;
-    stop.request_stop();
+    CancelFlag stop;
+    stop.request();
     const TriangleSoup rook = make_rook();
-    EXPECT_THROW((void)bounding_box(rook, {.threads = 2, .cancel = stop.get_token()}), Error);
-    EXPECT_THROW((void)volume(rook, {.threads = 1, .cancel = stop.get_token()}), Error);
+    EXPECT_THROW((void)bounding_box(rook, {.threads = 2, .cancel = &stop}), Error);
+    EXPECT_THROW((void)volume(rook, {.threads = 1, .cancel = &stop}), Error);
 }
 
 } // namespace

@@ -120,14 +120,14 @@ TEST(Weld, ReportsProgressAndStopsWhenAsked) {
     EXPECT_TRUE(std::all_of(reports.begin(), reports.end(),
                             [](const Progress& p) { return p.stage == Stage::weld; }));
 
-    std::stop_source stop;
+    CancelFlag stop;
     const Execution stopping{.threads = 2,
                              .progress =
                                  [&](const Progress& p) {
                                      if (p.done > 0)
-                                         stop.request_stop();
+                                         stop.request();
                                  },
-                             .cancel = stop.get_token()};
+                             .cancel = &stop};
     EXPECT_THROW((void)weld(soup, stopping), Error);
     const Execution throwing{.threads = 2, .progress = [](const Progress& p) {
                                  if (p.done > 0)

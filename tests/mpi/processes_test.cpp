@@ -24,7 +24,7 @@ bool sums(Communicator& processes) {
     std::vector<std::uint64_t> values(10, processes.process() + 1);
     processes.sum(values);
     const std::uint64_t expected = processes.size() * (processes.size() + 1) / 2;
-    return std::ranges::all_of(values, [&](std::uint64_t value) { return value == expected; });
+    return std::all_of(values.begin(), values.end(), [&](std::uint64_t value) { return value == expected; });
 }
 
 bool gathers(Communicator& processes) {

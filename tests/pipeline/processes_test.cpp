@@ -60,7 +60,7 @@ class ThreadProcesses final : public Communicator {
             for (std::size_t i = 0; i < total.size(); ++i)
                 total[i] += other[i];
         meeting_.barrier.arrive_and_wait();
-        std::ranges::copy(total, values.begin());
+        std::copy(total.begin(), total.end(), values.begin());
         meeting_.barrier.arrive_and_wait();
     }
 

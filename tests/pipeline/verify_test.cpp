@@ -179,8 +179,8 @@ TEST(Verify, ComparesNoAreaOfLayersWithOpenChains) {
 TEST(Verify, ReportsProgressToTheEndAndCanBeCancelled) {
     const LayerStack layers(500, at(0, layer_of({rectangle(0, 0, 4, 4)})));
     std::uint64_t done = 0;
-    std::stop_source stop;
-    Execution execution{.threads = 2, .cancel = stop.get_token()};
+    CancelFlag stop;
+    Execution execution{.threads = 2, .cancel = &stop};
     execution.progress = [&](const Progress& progress) {
         EXPECT_EQ(progress.stage, Stage::polygon);
         EXPECT_GE(progress.done, done);
@@ -190,7 +190,7 @@ TEST(Verify, ReportsProgressToTheEndAndCanBeCancelled) {
     EXPECT_TRUE(verify(layers, {}, execution).ok());
     EXPECT_EQ(done, 500U);
     execution.progress = nullptr;
-    stop.request_stop();
+    stop.request();
     EXPECT_THROW(static_cast<void>(verify(layers, {}, execution)), Error);
 }
 

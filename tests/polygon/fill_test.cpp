@@ -254,7 +254,7 @@ TEST(Fill, IsRightWhereSidesRunBesideOneAnotherForLong) {
                 ring.push_back(mirrored ? Point2{at.y, at.x} : at);
             }
             if ((turn < 0) != mirrored)
-                std::ranges::reverse(ring);
+                std::reverse(ring.begin(), ring.end());
             const Layer layer = normal_layer({ring});
             ASSERT_TRUE(has_crossings(layer));
             for (const FillRule rule : rules) {

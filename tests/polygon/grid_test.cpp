@@ -101,9 +101,13 @@ TEST(Grid, GivesTheThingsOfACellInTheOrderInWhichTheyCame) {
     const auto cells = [&](std::uint32_t number, const auto& visit) {
         grid.for_cells(box(number), visit);
     };
+    const auto holds = [&](const Point2& place, const std::vector<std::uint32_t>& expected) {
+        const auto found = grid.in_cell(grid.cell(place));
+        return std::equal(found.begin(), found.end(), expected.begin(), expected.end());
+    };
     ASSERT_TRUE(grid.sort(numbers, 5, cells));
-    EXPECT_TRUE(std::ranges::equal(grid.in_cell(grid.cell({0, 0})), numbers));
-    EXPECT_TRUE(std::ranges::equal(grid.in_cell(grid.cell({2.5, 0})), std::vector<std::uint32_t>{2}));
+    EXPECT_TRUE(holds({0, 0}, numbers));
+    EXPECT_TRUE(holds({2.5, 0}, {2}));
     EXPECT_TRUE(grid.in_cell(grid.cell({0, 2})).empty());
     EXPECT_FALSE(grid.sort(numbers, 4, cells)) << "these are five entries";
 }

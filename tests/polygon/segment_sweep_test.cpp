@@ -21,7 +21,7 @@ std::vector<Segment> apart(Random& random, int tries) {
     std::vector<Segment> segments;
     for (int i = 0; i < tries; ++i) {
         const Segment s = segment_between({number(), number()}, {number(), number()});
-        const bool meets = std::ranges::any_of(segments, [&](const Segment& t) {
+        const bool meets = std::any_of(segments.begin(), segments.end(), [&](const Segment& t) {
             return side(s, t.lo) * side(s, t.hi) <= 0 && side(t, s.lo) * side(t, s.hi) <= 0;
         });
         if (s.lo != s.hi && !meets)

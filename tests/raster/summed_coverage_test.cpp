@@ -80,7 +80,7 @@ void expect_right(std::span<const Layer> parts, const PixelGrid& grid, const std
     double covered = 0;
     std::vector<double> area(grid.width);
     for (std::uint32_t r = 0; r < grid.height; ++r) {
-        std::ranges::fill(area, 0);
+        std::fill(area.begin(), area.end(), 0);
         for (const Contour& ring : rings) {
             const Contour here = test::cut_off_in_row(ring, r);
             if (here.size() < 3)
@@ -186,7 +186,7 @@ TEST(SummedCoverage, CountsPlacesThatAreCoveredSeveralTimesUpToTheWholePixel) {
     const Drawn found = drawn({&layer, 1}, {.width = 10, .height = 10});
     EXPECT_EQ(found.covered, 36 + 0.5);
     EXPECT_EQ(found.picture.row(0)[0], 128);
-    EXPECT_EQ(std::ranges::count(found.picture.values, 255), 36);
+    EXPECT_EQ(std::count(found.picture.values.begin(), found.picture.values.end(), 255), 36);
 }
 
 TEST(SummedCoverage, DrawsTheLargestPicture) {

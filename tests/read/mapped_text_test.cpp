@@ -110,7 +110,7 @@ TEST(MappedText, PlyIsLetGoOf) {
     expect_released(head + body, read);
     // All words in a line, which are read by themselves.
     std::string words = body;
-    std::ranges::replace(words, '\n', ' ');
+    std::replace(words.begin(), words.end(), '\n', ' ');
     expect_released(head + words, read);
 }
 

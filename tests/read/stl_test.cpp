@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <thread>
+#include <future>
 
 namespace lamella::stl_test::stl_cases {
 namespace {
@@ -173,7 +173,7 @@ TEST_F(StlOnDisk, ReadsStandardInputFromAPipe) {
     for (const std::string& bytes : {binary(many), solid(many)}) {
         unlink(path().c_str());
         ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
-        const std::jthread writer([&] { write(bytes); });
+        const auto writer = std::async(std::launch::async, [&] { write(bytes); });
         const int saved = dup(STDIN_FILENO);
         const int fifo = open(path().c_str(), O_RDONLY | O_CLOEXEC);
         dup2(fifo, STDIN_FILENO);
@@ -222,10 +222,10 @@ TEST(Stl, ReportsProgressInBytesUpToTheEnd) {
 
 TEST(Stl, StopsWhenAsked) {
     for (const std::string& bytes : {binary(many), solid(many)}) {
-        std::stop_source stop;
-        stop.request_stop();
+        CancelFlag stop;
+        stop.request();
         try {
-            (void)read_mesh(std::as_bytes(std::span(bytes)), "part.stl", {}, {.cancel = stop.get_token()});
+            (void)read_mesh(std::as_bytes(std::span(bytes)), "part.stl", {}, {.cancel = &stop});
             ADD_FAILURE() << "went on";
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::cancelled);

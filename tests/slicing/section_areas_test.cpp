@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <stop_token>
 #include <vector>
 
 namespace lamella {
@@ -112,11 +111,10 @@ TEST(SectionAreas, OfNothingAreZero) {
 }
 
 TEST(SectionAreas, EndWhenTheCallerCancels) {
-    std::stop_source stop;
-    stop.request_stop();
-    test::expect_error(ErrorKind::cancelled, {}, [&] {
-        (void)section_areas(make_sphere(1, 3), plan_listed({0}), {.cancel = stop.get_token()});
-    });
+    CancelFlag stop;
+    stop.request();
+    test::expect_error(ErrorKind::cancelled, {},
+                       [&] { (void)section_areas(make_sphere(1, 3), plan_listed({0}), {.cancel = &stop}); });
 }
 
 TEST(SectionAreas, AddUpFromBatches) {

@@ -20,7 +20,6 @@
 #include <memory>
 #include <mutex>
 #include <stdexcept>
-#include <stop_token>
 #include <string>
 #include <thread>
 #include <utility>
@@ -233,10 +232,10 @@ TEST(Slice, CountsProgressUpToTheWholeInBothStages) {
 }
 
 TEST(Slice, EndsWhenItWasCancelledBeforeItBegan) {
-    std::stop_source stop;
-    stop.request_stop();
+    CancelFlag stop;
+    stop.request();
     for (const unsigned threads : {1U, 2U, 7U}) {
-        const Execution execution{.threads = threads, .cancel = stop.get_token()};
+        const Execution execution{.threads = threads, .cancel = &stop};
         expect_error(ErrorKind::cancelled, {}, [&] { (void)slice(body(), even_planes(10), execution); });
         expect_error(ErrorKind::cancelled, {},
                      [&] { (void)slice(TriangleSoup(), even_planes(10), execution); });
@@ -247,42 +246,40 @@ TEST(Slice, EndsWhenItIsCancelledOnTheWay) {
     const TriangleSoup soup = body();
     for (const unsigned threads : {1U, 2U, 7U}) {
         for (const Stage stage : {Stage::link, Stage::slice}) {
-            std::stop_source stop;
+            CancelFlag stop;
             const Execution execution{.threads = threads,
                                       .progress =
                                           [&](const Progress& p) {
                                               if (p.stage == stage && p.done >= p.total / 3)
-                                                  stop.request_stop();
+                                                  stop.request();
                                           },
-                                      .cancel = stop.get_token()};
+                                      .cancel = &stop};
             expect_error(ErrorKind::cancelled, {}, [&] { (void)slice(soup, even_planes(300), execution); });
         }
-        std::stop_source stop;
+        CancelFlag stop;
         const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
             if (layer.index == 100)
-                stop.request_stop();
+                stop.request();
             return {};
         };
-        expect_error(ErrorKind::cancelled, {}, [&] {
-            slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = stop.get_token()});
-        });
+        expect_error(ErrorKind::cancelled, {},
+                     [&] { slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = &stop}); });
     }
 }
 
 TEST(Slice, HandsOverNoMoreThanOneLayerAThreadAfterItIsCancelled) {
     const TriangleSoup soup = body();
     for (const unsigned threads : {1U, 2U, 7U}) {
-        std::stop_source stop;
+        CancelFlag stop;
         std::atomic<unsigned> after{0};
         const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-            after += stop.stop_requested() ? 1 : 0;
+            after += stop.requested() ? 1 : 0;
             if (layer.index % 100 == 50)
-                stop.request_stop();
+                stop.request();
             return {};
         };
-        expect_error(ErrorKind::cancelled, {}, [&] {
-            slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = stop.get_token()});
-        });
+        expect_error(ErrorKind::cancelled, {},
+                     [&] { slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = &stop}); });
         EXPECT_LE(after, threads);
     }
 }
@@ -325,24 +322,25 @@ TEST(Slice, WritesNextToNothingAfterItIsCancelled) {
         bool stopped = false;
         // A watcher that the system let sleep has seen nothing.
         for (int attempt = 0; attempt < 20 && !stopped; ++attempt) {
-            std::stop_source stop;
+            CancelFlag stop;
             std::uint64_t at_wish = 0;
             if (!forget_peak())
                 GTEST_SKIP() << "this system does not forget how much memory a process held";
             const std::uint64_t before = resident_bytes();
-            std::jthread watcher([&](const std::stop_token& over) {
-                while (!over.stop_requested() && resident_bytes() < before + enough)
+            CancelFlag over;
+            std::thread watcher([&] {
+                while (!over.requested() && resident_bytes() < before + enough)
                     std::this_thread::yield();
-                stop.request_stop();
+                stop.request();
                 at_wish = resident_bytes();
             });
             try {
-                (void)slice(soup, plan, {.threads = threads, .cancel = stop.get_token()});
+                (void)slice(soup, plan, {.threads = threads, .cancel = &stop});
             } catch (const Error& error) {
                 ASSERT_EQ(error.kind(), ErrorKind::cancelled);
                 stopped = true;
             }
-            watcher.request_stop();
+            over.request();
             watcher.join();
             written = peak_bytes() - std::min(peak_bytes(), at_wish);
         }

@@ -235,7 +235,8 @@ TEST(LayerPage, ThinsOutBeyondItsBudgetAndSaysSo) {
             EXPECT_EQ(static_cast<double>(points), table["shown"][i]);
             for (const Point2& p : layers[i].points)
                 EXPECT_LE(distance(p, contours), tolerance + step);
-            const auto chain = std::ranges::find(contours, false, &PageContour::closed);
+            const auto chain = std::find_if(contours.begin(), contours.end(),
+                                            [](const PageContour& contour) { return !contour.closed; });
             ASSERT_NE(chain, contours.end());
         }
         EXPECT_LE(thin.html.size(), frame + options.budget_bytes + 300 * layers.size());

@@ -13,7 +13,6 @@
 #include <functional>
 #include <numeric>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -147,15 +146,14 @@ TEST(WritePlanes, EndsAtTheFirstFailureAndWhenItIsCancelled) {
         EXPECT_LE(full.prepared, 100 + 2 * threads);
 
         NotingWriter writer;
-        std::stop_source stop;
+        CancelFlag stop;
         const auto parts_of = [&](std::size_t i) {
             if (i == 100)
-                stop.request_stop();
+                stop.request();
             return empty_plane(i);
         };
-        (void)error_of(ErrorKind::cancelled, [&] {
-            write_planes(writer, 5000, parts_of, {.threads = threads, .cancel = stop.get_token()});
-        });
+        (void)error_of(ErrorKind::cancelled,
+                       [&] { write_planes(writer, 5000, parts_of, {.threads = threads, .cancel = &stop}); });
         EXPECT_LE(writer.prepared, 100 + 2 * threads);
         EXPECT_LE(writer.written.size(), writer.prepared);
     }
@@ -219,7 +217,9 @@ TEST(WriteLayers, TakesFormatAndHeadFromPathAndLayers) {
             EXPECT_EQ(file_bytes(folder.file(name)), file_bytes(folder.file("expected"))) << name;
         }
     }
-    const auto none = [&] { write_layers(folder.file("none.cli"), LayerStack{}); };
+    const auto none = [&] {
+        write_layers(folder.file("none.cli"), LayerStack{});
+    };
     EXPECT_NE(error_of(ErrorKind::usage, none).find("no layers"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder.file("none.cli")));
 }

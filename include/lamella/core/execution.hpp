@@ -2,9 +2,9 @@
 
 // How a long computation runs: on how many threads, who is told, and how it is stopped.
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
-#include <stop_token>
 
 namespace lamella {
 
@@ -22,6 +22,22 @@ struct Progress {
     std::uint64_t total = 0;
 };
 
+/// A request to end computations early, made from any thread or a signal handler, and never taken back.
+class CancelFlag {
+  public:
+    /// `outer`: a request made there is one here, too. It must live longer.
+    explicit CancelFlag(const CancelFlag* outer = nullptr) noexcept : outer_(outer) {}
+
+    void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
+    [[nodiscard]] bool requested() const noexcept {
+        return requested_.load(std::memory_order_relaxed) || (outer_ != nullptr && outer_->requested());
+    }
+
+  private:
+    std::atomic<bool> requested_{false};
+    const CancelFlag* outer_;
+};
+
 /// Handed to every long computation. Results never depend on it: any number of threads gives the same bytes.
 struct Execution {
     /// Threads to use; 0 means one per processor available to this process.
@@ -31,9 +47,11 @@ struct Execution {
     /// the same one. May throw: the computation stops and the exception reaches the caller.
     std::function<void(const Progress&)> progress = {};
 
-    /// When a stop is requested the computation ends with Error{ErrorKind::cancelled} within a fraction of a
-    /// second.
-    std::stop_token cancel = {};
+    /// Once this is requested the computation ends with Error{ErrorKind::cancelled} within a fraction of a
+    /// second. The flag must outlive the computation; nullptr: nobody will ask.
+    const CancelFlag* cancel = nullptr;
+
+    [[nodiscard]] bool cancelled() const noexcept { return cancel != nullptr && cancel->requested(); }
 };
 
 } // namespace lamella

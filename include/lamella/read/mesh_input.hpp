@@ -11,7 +11,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 
 namespace lamella {
@@ -40,7 +39,7 @@ class MeshInput {
     /// /var/tmp), once. Throws Error{input} when there is no such file or it may not be read, Error{output}
     /// when there is no room for the temporary file, Error{cancelled}.
     explicit MeshInput(const std::string& path, std::uint64_t most_in_memory = unlimited,
-                       const std::stop_token& cancel = {});
+                       const Execution& execution = {});
 
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
     [[nodiscard]] std::uint64_t bytes() const noexcept;

@@ -41,9 +41,11 @@ Face face_along(const Point3& normal, const std::array<Point3, 20>& corners) {
         return a != b && dot(a, b) > 2 && dot(normal, cross(a, b)) > 0 && dot(normal, b) > 2;
     };
     // Along the normal, the corners of the face have phi + 1, all others less than 1.
-    Face face{*std::ranges::find_if(corners, [&](const Point3& p) { return dot(normal, p) > 2; })};
+    Face face{
+        *std::find_if(corners.begin(), corners.end(), [&](const Point3& p) { return dot(normal, p) > 2; })};
     for (std::size_t k = 1; k < face.size(); ++k)
-        face[k] = *std::ranges::find_if(corners, [&](const Point3& p) { return is_next(face[k - 1], p); });
+        face[k] = *std::find_if(corners.begin(), corners.end(),
+                                [&](const Point3& p) { return is_next(face[k - 1], p); });
     return face;
 }
 

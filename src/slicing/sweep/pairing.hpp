@@ -103,7 +103,8 @@ inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<
         pairs.emplace_back(i, open.back());
         open.pop_back();
     }
-    assert(open.empty() || std::ranges::count_if(rays, &Ray::arrives) == std::ssize(pairs));
+    assert(open.empty() ||
+           std::count_if(rays.begin(), rays.end(), std::mem_fn(&Ray::arrives)) == std::ssize(pairs));
     return pairs;
 }
 

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
-#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -137,9 +136,9 @@ TEST_P(PaperEngine, CountsProgressOfEachStageUpToTheWhole) {
 }
 
 TEST_P(PaperEngine, EndsWhenItIsCancelled) {
-    std::stop_source stopped;
-    stopped.request_stop();
-    const Execution before{.cancel = stopped.get_token()};
+    CancelFlag stopped;
+    stopped.request();
+    const Execution before{.cancel = &stopped};
     expect_error(ErrorKind::cancelled, {},
                  [&] { (void)slice(body(), even_planes(10), before, nullptr, tested()); });
     expect_error(ErrorKind::cancelled, {},
@@ -147,14 +146,14 @@ TEST_P(PaperEngine, EndsWhenItIsCancelled) {
     for (const Stage stage : {Stage::weld, Stage::link, Stage::slice}) {
         if (stage == Stage::link && GetParam() == "conventional")
             continue; // it has nothing to link
-        std::stop_source stop;
+        CancelFlag stop;
         std::uint64_t delivered = 0;
         const Execution execution{.progress =
                                       [&](const Progress& p) {
                                           if (p.stage == stage && p.done >= p.total / 3)
-                                              stop.request_stop();
+                                              stop.request();
                                       },
-                                  .cancel = stop.get_token()};
+                                  .cancel = &stop};
         const LayerSink sink = [&](Layer&&) -> std::function<void()> {
             ++delivered;
             return {};

@@ -20,7 +20,6 @@
 #include <memory>
 #include <numbers>
 #include <set>
-#include <stop_token>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -522,9 +521,9 @@ TEST(CutGraph, RefusesMoreTrianglesThanItCanNumber) {
 }
 
 TEST(CutGraph, EndsWhenTheCallerCancels) {
-    std::stop_source stop;
-    stop.request_stop();
-    const Execution execution{.threads = 2, .cancel = stop.get_token()};
+    CancelFlag stop;
+    stop.request();
+    const Execution execution{.threads = 2, .cancel = &stop};
     Executor executor(execution);
     const Ranks ranks(plan_listed({0}));
     ProgressMeter progress(execution, Stage::link, 320);

@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <stop_token>
 #include <vector>
 
 namespace lamella::measure_cases {
@@ -59,15 +58,15 @@ TEST(MeasureRings, FindsOnManyPlanesAtOnceWhatItFindsOnEach) {
 }
 
 TEST(MeasureRings, EndsWhenAStopIsRequested) {
-    std::stop_source stop;
-    const Execution execution{.threads = 1, .cancel = stop.get_token()};
+    CancelFlag stop;
+    const Execution execution{.threads = 1, .cancel = &stop};
     const Executor executor(execution);
     const Ranks ranks(test::even_planes(0, 10, 20));
     for_outlines(
         make_box(20, 30, 10), ranks, [&](const Outline& outline, PlaneRange planes, Scratch& scratch) {
             std::vector<Ring> rings(planes.size());
             measure_rings(outline, planes, ranks, executor, rings, scratch);
-            stop.request_stop();
+            stop.request();
             test::expect_error(ErrorKind::cancelled, {"cancelled"},
                                [&] { measure_rings(outline, planes, ranks, executor, rings, scratch); });
         });

@@ -175,8 +175,8 @@ TEST(OrderedDelivery, HoldsBackWhoeverWaitsForAPlane) {
 }
 
 TEST(OrderedDelivery, LetsWaitersGoWhenTheCallerCancels) {
-    std::stop_source stop;
-    const Execution execution{.threads = 2, .cancel = stop.get_token()};
+    CancelFlag stop;
+    const Execution execution{.threads = 2, .cancel = &stop};
     Executor executor(execution);
     const LayerSink sink = [](Layer&&) {
         return std::function<void()>();
@@ -185,7 +185,7 @@ TEST(OrderedDelivery, LetsWaitersGoWhenTheCallerCancels) {
     OrderedDelivery delivery(sink, executor, progress);
     EXPECT_THROW(executor.run([&](unsigned worker) {
         if (worker == 0)
-            stop.request_stop();
+            stop.request();
         else
             EXPECT_FALSE(delivery.wait_for(5));
     }),
