@@ -17,6 +17,7 @@
 #include "text_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -177,12 +178,11 @@ Command info_command() {
     return {
         .name = "info",
         .summary = "what is in a mesh or slice file: size, volume, defects",
-        .description =
-            "Tells what a file holds. Of a mesh (STL, 3MF, AMF, OBJ, PLY, OFF): size, volume, area, shells, "
-            "and every kind of "
-            "defect with what it means for slicing and where it is. Of a slice file (CLI, SVG): layers, "
-            "contours, "
-            "points and volume. Nothing is repaired or written.",
+        .description = fmt::format(
+            "Tells what a file holds. Of a mesh (.{}): size, volume, area, shells, and every kind of "
+            "defect with what it means for slicing and where it is. Of a slice file: layers, "
+            "contours, points and volume. Nothing is repaired or written.",
+            fmt::join(mesh_extensions(), ", .")),
         .operands = {{.placeholder = "FILE",
                       .help = "a mesh or a slice file; - is standard input",
                       .set =

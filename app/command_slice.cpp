@@ -21,6 +21,7 @@
 #include "text_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -427,7 +428,8 @@ Command slice_command(Slicing slicing) {
             "open, are marked as such in the file, and a warning says so. The result does not depend on the "
             "number of threads nor on the order of the triangles.",
         .operands = {{.placeholder = "FILE",
-                      .help = "a mesh: STL, 3MF, AMF, OBJ, PLY or OFF; - is standard input",
+                      .help = fmt::format("a mesh (.{}); - is standard input",
+                                          fmt::join(mesh_extensions(), ", .")),
                       .required = false,
                       .repeated = true,
                       .own_options = true,

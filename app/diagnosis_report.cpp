@@ -234,7 +234,7 @@ Json meetings_json(const SelfIntersections& found) {
 std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate& plate) {
     const Inspection& counts = found.counts;
     const Box3& box = counts.box;
-    std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), format_name(file.format));
+    std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), file.format);
     if (file.unit_mm)
         text += result_line("unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm)));
     if (plate.parts.size() > 1)
@@ -271,7 +271,7 @@ Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate)
     defects["opposite_pairs"] = found.opposite_pairs;
     Json json = {
         {"path", file.path},
-        {"format", format_name(file.format)},
+        {"format", file.format},
         {"unit", unit_name(plate.files.front().unit_mm)},
         {"triangles", file.stored_triangles},
         {"vertices", counts.vertices},

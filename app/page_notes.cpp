@@ -34,7 +34,7 @@ PageSection input_section(const FileResult& result) {
     for (const PlateFile& file : result.files) {
         section.facts.push_back({"File", title_of(file.path)});
         section.facts.push_back(
-            {"Format", fmt::format("{}, in {}", format_name(file.format), unit_name(file.unit_mm))});
+            {"Format", fmt::format("{}, in {}", file.format, unit_name(file.unit_mm))});
     }
     section.facts.push_back({"Triangles", grouped(result.triangles)});
     if (result.parts.size() > 1)
@@ -111,7 +111,7 @@ PageNotes run_notes(const FileResult& result) {
 }
 
 PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found) {
-    PageSection section{"File", {{"Name", title_of(file.path)}, {"Format", format_name(file.format)}}};
+    PageSection section{"File", {{"Name", title_of(file.path)}, {"Format", file.format}}};
     if (file.unit_mm)
         section.facts.push_back({"Unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm))});
     section.facts.push_back({"Triangles in it", grouped(file.stored_triangles)});

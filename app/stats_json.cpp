@@ -96,7 +96,7 @@ Json inputs_json(const FileResult& result) {
     Json inputs = Json::array();
     for (const PlateFile& file : result.files)
         inputs.push_back({{"path", file.path},
-                          {"format", format_name(file.format)},
+                          {"format", file.format},
                           {"triangles", file.stored_triangles},
                           {"unit", unit_name(file.unit_mm)},
                           {"matrix", matrix_json(file.matrix)}});

@@ -164,7 +164,7 @@ Plate SourceMesh::plate() const {
 MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm, const Execution& execution) {
     MeshOrigin origin;
     origin.path = file.path;
-    origin.format = format_name(file.format);
+    origin.format = file.format;
     origin.name = file.name;
     origin.stored_triangles = file.stored_triangles;
     const Plate plate = load_plate({.path = file.path, .unit_mm = unit_mm}, std::move(file), execution);

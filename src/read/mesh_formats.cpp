@@ -250,24 +250,4 @@ bool is_mesh_name(const std::string& name) {
            }) != nullptr;
 }
 
-const char* format_name(MeshFormat format) noexcept {
-    switch (format) {
-    case MeshFormat::stl_binary:
-        return "stl-binary";
-    case MeshFormat::stl_ascii:
-        return "stl-ascii";
-    case MeshFormat::three_mf:
-        return "3mf";
-    case MeshFormat::amf:
-        return "amf";
-    case MeshFormat::obj:
-        return "obj";
-    case MeshFormat::ply:
-        return "ply";
-    case MeshFormat::off:
-        return "off";
-    }
-    return "unknown";
-}
-
 } // namespace lamella
