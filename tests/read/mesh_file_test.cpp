@@ -72,6 +72,13 @@ TEST(MeshFile, RefusesSliceFilesByWhatTheyHold) {
     }
     EXPECT_EQ(error_of(zip_test::zip_bytes({{.name = "points.npy", .content = "x"}}), "part.npz"),
               "part.npz: is a slice file (NumPy arrays): " + already);
+    for (const std::string picture : {"00000.png", "part/LAYER.PNG"})
+        EXPECT_EQ(
+            error_of(zip_test::zip_bytes(
+                         {{.name = "config.ini", .content = "x"}, {.name = picture, .content = "x"}}),
+                     "job.sl1"),
+            "job.sl1: holds pictures of layers, as for a resin printer: it is sliced already, and neither a "
+            "mesh nor contours can be read from it");
 }
 
 TEST(MeshFile, IsNotGuessedToBeBinaryStlUnderTheNameOfASliceFile) {
