@@ -5,9 +5,9 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
-#include "stats_json.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

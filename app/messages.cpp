@@ -29,14 +29,13 @@ void put_json(const Json& object) {
     put(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-/// What a stage does, in words.
+} // namespace
+
 std::string_view deed(Stage stage) {
     constexpr std::array<std::string_view, 6> deeds{"reading", "welding", "linking",
-                                                    "slicing", "joining", "writing"};
+                                                    "slicing", "making",  "writing"};
     return deeds.at(static_cast<std::size_t>(stage));
 }
-
-} // namespace
 
 std::string result_line(std::string_view name, std::string_view value) {
     return fmt::format("  {:<11} {}\n", name, value);

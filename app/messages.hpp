@@ -15,6 +15,9 @@ namespace lamella::app {
 /// A line of a result for people: a name, and in the next column what there is to say of it.
 [[nodiscard]] std::string result_line(std::string_view name, std::string_view value);
 
+/// What a stage does: "reading".
+[[nodiscard]] std::string_view deed(Stage stage);
+
 enum class ProgressStyle {
     bar,  ///< a bar, but only where standard error is a terminal
     json, ///< everything on standard error is one JSON object a line

@@ -1,5 +1,6 @@
 #include "repair_options.hpp"
 
+#include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 
@@ -16,7 +17,7 @@ using Json = nlohmann::ordered_json;
 Json places_json(const std::vector<Point3>& places) {
     Json list = Json::array();
     for (const Point3& p : places)
-        list.push_back({p.x, p.y, p.z});
+        list.push_back(point_json(p));
     return list;
 }
 

@@ -189,6 +189,7 @@ def read_mesh(
     progress: Optional[Progress],
     /,
 ) -> Mesh: ...
+def defect_kinds() -> List[List[str]]: ...
 def plan(
     mesh: Mesh,
     cut: Union[UniformLayers, ListedPlanes, HeightRanges, AdaptiveLayers],

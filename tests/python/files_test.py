@@ -192,7 +192,7 @@ def test_defects_are_told_in_words():
     found = lamella.inspect((vertices, np.concatenate([faces, faces[:1], [(0, 0, 1)]])))
     assert not found.closed and not found.sound
     assert found.defects == (
-        "4 boundary edges, 3 edges with more than two triangles, 3 orientation conflicts, 1 duplicate triangle, "
+        "4 boundary edges, 3 crowded edges, 3 orientation conflicts, 1 duplicate triangle, "
         "1 degenerate triangle"
     )
     assert lamella.inspect(box_arrays(inward=True)).inverted_shells == 1
