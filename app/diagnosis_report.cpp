@@ -24,7 +24,6 @@ using Json = nlohmann::ordered_json;
 
 /// Places of each kind that are listed.
 constexpr std::size_t listed = 3;
-constexpr std::size_t listed_in_json = 16;
 
 Point3 middle(const Box3& box) {
     return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
@@ -135,14 +134,6 @@ Json parts_json(const Plate& plate) {
     return parts;
 }
 
-template <class Places, class Tell>
-Json list_json(const Places& places, const Tell& tell) {
-    Json list = Json::array();
-    for (std::size_t i = 0; i < std::min(listed_in_json, places.size()); ++i)
-        list.push_back(tell(places[i]));
-    return list;
-}
-
 Json edge_json(const EdgePlace& edge) {
     return {point_json(edge[0]), point_json(edge[1])};
 }
@@ -190,7 +181,7 @@ Json meetings_json(const SelfIntersections& found) {
                 {"overlapping", p.overlapping},
                 {"touching", p.touching}};
     };
-    Json json = as_json(picked(meeting_figures(found), {"crossing", "overlapping", "touching"}));
+    Json json = as_json(meeting_figures(found));
     json["flat_triangles"] = found.flat_triangles;
     json["first"] = list_json(found.first, meeting);
     json["shells"] = list_json(found.parts, pair);

@@ -41,6 +41,14 @@ using Figures = std::vector<Figure>;
 [[nodiscard]] std::vector<PageFact> as_facts(const Figures& figures);
 
 [[nodiscard]] nlohmann::ordered_json point_json(const Point3& p);
+/// What `tell` makes of the first few places.
+template <class Places, class Tell>
+[[nodiscard]] nlohmann::ordered_json list_json(const Places& places, const Tell& tell) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < places.size() && i < 16; ++i)
+        list.push_back(tell(places[i]));
+    return list;
+}
 /// [[x, y, z], [x, y, z]]
 [[nodiscard]] nlohmann::ordered_json box_json(const Box3& box);
 /// "(1, 2, 3)"

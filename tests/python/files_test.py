@@ -287,6 +287,11 @@ def test_nothing_is_left_of_a_file_that_fails(tmp_path, rook):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_mesh_formats_are_those_that_the_program_takes(program):
+    told = program.succeed("slice", "--help").decode()
+    assert lamella.mesh_formats() and all(f".{name}" in told for name in lamella.mesh_formats())
+
+
 def test_formats_are_those_of_the_program(program):
     names = [name for name, _, _ in lamella.layer_formats()]
     assert {"cli", "svg", "3mf", "npz", "png"} <= set(names)
