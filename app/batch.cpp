@@ -13,7 +13,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -34,7 +33,6 @@ namespace lamella::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 // Of a mesh file: below, a second thread costs more than it brings.

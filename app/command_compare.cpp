@@ -9,7 +9,6 @@
 #include "options.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +22,6 @@
 
 namespace lamella::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct CompareArguments {
     std::vector<std::string> inputs;

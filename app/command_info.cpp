@@ -18,7 +18,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -31,8 +30,6 @@
 
 namespace lamella::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
     std::string input;

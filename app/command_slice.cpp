@@ -22,7 +22,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -252,7 +251,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += gaps_text(result.gaps);
     if (result.changes)
         text += fmt::format("made     {}\n", changes_text(*result.changes, "than sliced"));
-    const nlohmann::ordered_json figures = as_json(run_figures(result));
+    const Json figures = as_json(run_figures(result));
     std::string stages;
     for (const char* stage : {"read", "weld", "link", "slice", "write"})
         if (const double seconds = figures[stage]; seconds > 0)
@@ -369,7 +368,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
     const Execution execution = arguments.run.execution(context);
     const bool stamped = job.shard && !job.output.empty();
-    nlohmann::ordered_json origin;
+    Json origin;
     if (stamped) {
         origin = shard_origin(context.command, job, execution);
         if (arguments.resume && is_finished_shard(job, origin, execution)) {
@@ -387,7 +386,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
-        nlohmann::ordered_json stats = stats_json(context.command, result);
+        Json stats = stats_json(context.command, result);
         if (arguments.slicing.add_to_stats)
             arguments.slicing.add_to_stats(stats);
         const std::string text = json_text(stats);

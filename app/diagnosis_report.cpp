@@ -7,7 +7,6 @@
 #include "options.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -19,8 +18,6 @@
 
 namespace lamella::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Places of each kind that are listed.
 constexpr std::size_t listed = 3;

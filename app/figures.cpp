@@ -19,8 +19,6 @@
 namespace lamella::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Figure count(std::string_view key, std::uint64_t value, std::string_view name) {
     return {key, value, name, grouped(value)};
 }

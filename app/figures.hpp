@@ -20,7 +20,7 @@ namespace lamella::app {
 
 struct Figure {
     std::string_view key; ///< in JSON
-    nlohmann::ordered_json value;
+    Json value;
     std::string_view name = {}; ///< for people
     std::string text = {};      ///< its value for people; "" where they are not told
     Tone tone = Tone::plain;    ///< on pages
@@ -35,33 +35,33 @@ using Figures = std::vector<Figure>;
 
 /// Those with these keys, in the order of the keys.
 [[nodiscard]] Figures picked(const Figures& figures, const std::vector<std::string_view>& keys);
-[[nodiscard]] nlohmann::ordered_json as_json(const Figures& figures);
+[[nodiscard]] Json as_json(const Figures& figures);
 /// Of a result.
 [[nodiscard]] std::string as_lines(const Figures& figures);
 [[nodiscard]] std::vector<PageFact> as_facts(const Figures& figures);
 
-[[nodiscard]] nlohmann::ordered_json point_json(const Point3& p);
+[[nodiscard]] Json point_json(const Point3& p);
 /// What `tell` makes of the first few places.
 template <class Places, class Tell>
-[[nodiscard]] nlohmann::ordered_json list_json(const Places& places, const Tell& tell) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+[[nodiscard]] Json list_json(const Places& places, const Tell& tell) {
+    Json list = Json::array();
     for (std::size_t i = 0; i < places.size() && i < 16; ++i)
         list.push_back(tell(places[i]));
     return list;
 }
 /// [[x, y, z], [x, y, z]]
-[[nodiscard]] nlohmann::ordered_json box_json(const Box3& box);
+[[nodiscard]] Json box_json(const Box3& box);
 /// "(1, 2, 3)"
 [[nodiscard]] std::string point_text(const Point3& p);
 /// "20 x 30 x 10 mm"
 [[nodiscard]] std::string size_text(const Box3& box);
 
 /// What is missing where contours stay open.
-[[nodiscard]] nlohmann::ordered_json open_gaps_json(const OpenGaps& gaps);
+[[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
 /// What `lamella slice --stats` writes; docs/program.md lists the keys.
-[[nodiscard]] nlohmann::ordered_json stats_json(const Command& command, const FileResult& result);
+[[nodiscard]] Json stats_json(const Command& command, const FileResult& result);
 /// As text with a line end; names that are not UTF-8 get replacement characters.
-[[nodiscard]] std::string json_text(const nlohmann::ordered_json& object);
+[[nodiscard]] std::string json_text(const Json& object);
 
 /// "rook, rook 2, axle": the labels of the first few.
 template <class Parts>

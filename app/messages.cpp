@@ -15,8 +15,6 @@
 namespace lamella::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 void put(const std::string& text) {
     // One write, so that lines of several programs on one terminal do not mix. Nobody is left to be told when
     // standard error cannot be written.

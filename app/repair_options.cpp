@@ -5,16 +5,10 @@
 #include "options.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <vector>
 
 namespace lamella::app {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-} // namespace
 
 OptionGroup repair_options(RepairPolicies& target) {
     return {
