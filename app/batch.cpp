@@ -5,6 +5,7 @@
 
 #include "batch_files.hpp"
 #include "failure.hpp"
+#include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "text_file.hpp"
@@ -12,7 +13,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -30,7 +30,6 @@ namespace lamella::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 // Of a mesh file: below, a second thread costs more than it brings.
@@ -55,20 +54,15 @@ Json record_of(const BatchItem& item, const BatchResult& result) {
     for (const std::string& warning : result.warnings)
         if (warnings.size() < most_warnings)
             warnings.push_back(warning);
-    return {{"path", item.input},
-            {"output", name_or_null(item.output)},
-            {"ok", true},
-            {"triangles", file.triangles},
-            {"layers", file.report.layers},
-            {"contours", file.report.contours},
-            {"open_chains", file.report.open_chains},
-            {"points", file.report.points},
-            {"volume_mm3", file.volume_mm3},
-            {"hash", fmt::format("{:016x}", stack_hash(hashes))},
-            {"bytes", file.bytes},
-            {"threads", file.threads},
-            {"seconds", file.seconds.total},
-            {"warnings", std::move(warnings)}};
+    const Figures run = run_figures(file);
+    Json record = {{"path", item.input}, {"output", name_or_null(item.output)}, {"ok", true}};
+    record.update(
+        as_json(picked(run, {"triangles", "layers", "contours", "open_chains", "points", "volume_mm3"})));
+    record["hash"] = fmt::format("{:016x}", stack_hash(hashes));
+    record.update(as_json(picked(run, {"bytes", "threads"})));
+    record["seconds"] = as_json(run)["total"];
+    record["warnings"] = std::move(warnings);
+    return record;
 }
 
 Json record_of(const BatchItem& item, const Failure& failure, double seconds) {

@@ -4,12 +4,11 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
-#include "stats_json.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +22,6 @@
 
 namespace lamella::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct CompareArguments {
     std::vector<std::string> inputs;
@@ -77,6 +74,26 @@ Json plane_json(const ComparedPlane& plane) {
             {"area_mm2", {found.first.area_mm2, found.second.area_mm2}}};
 }
 
+/// Where no layers belong together though the lowest ones lie between the same heights: why. Else "".
+std::string cuts_apart(const LayerFile& first, const LayerFile& second, const StackComparison& found) {
+    for (const ComparedPlane& plane : found.planes)
+        if (plane.first && plane.second)
+            return {};
+    if (first.parts.front().layers.empty() || second.parts.front().layers.empty())
+        return {};
+    const Layer& one = first.parts.front().layers.front();
+    const Layer& other = second.parts.front().layers.front();
+    const double rounding = moved_cut(one, first.rounding) + moved_cut(other, second.rounding);
+    if (one.z == other.z || std::abs(one.bottom - other.bottom) > rounding ||
+        std::abs(one.top - other.top) > rounding)
+        return {};
+    return fmt::format(
+        "{} and {} are cut at different heights: the layer from z = {} to {} mm at {} mm in the first "
+        "and at {} mm in the second; formats that do not keep the cut, such as CLI, are read as if it "
+        "were in the middle",
+        first.path, second.path, brief(one.bottom), brief(one.top), brief(one.z), brief(other.z));
+}
+
 int run_compare(const CompareArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
@@ -88,6 +105,8 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     const LayerStack stacks[2] = {first.merged(), second.merged()};
     const StackComparison found =
         compare(RoundedLayers{stacks[0], first.rounding}, {stacks[1], second.rounding}, arguments.tolerance);
+    if (const std::string reason = cuts_apart(first, second, found); !reason.empty())
+        context.messages.warn(reason);
     const double tolerance = found.tolerance_mm;
     std::vector<const ComparedPlane*> differing;
     std::uint64_t same = 0;

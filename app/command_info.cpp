@@ -8,16 +8,16 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "diagnosis_report.hpp"
+#include "figures.hpp"
 #include "input_kind.hpp"
 #include "messages.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
-#include "stats_json.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -30,8 +30,6 @@
 
 namespace lamella::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
     std::string input;
@@ -75,24 +73,26 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     return 0;
 }
 
-struct LayerTotals {
-    std::uint64_t contours = 0;
-    std::uint64_t open_chains = 0;
-    std::uint64_t points = 0;
+Figures figures_of(const LayerFile& file) {
+    LayerMeasure all;
     double volume_mm3 = 0;
-};
-
-LayerTotals totals_of(const LayerFile& file) {
-    LayerTotals totals;
     for (const LayerPart& part : file.parts)
         for (const Layer& layer : part.layers) {
             const LayerMeasure measured = measure(layer);
-            totals.contours += measured.contours;
-            totals.open_chains += measured.open_chains;
-            totals.points += measured.points;
-            totals.volume_mm3 += measured.area_mm2 * layer.thickness();
+            all.add(measured);
+            volume_mm3 += measured.area_mm2 * layer.thickness();
         }
-    return totals;
+    const LayerStack& layers = file.parts.front().layers;
+    Figures figures = layer_figures(layers.size(), all, volume_mm3);
+    Figure range{"z_range", Json(), "from"};
+    if (!layers.empty()) {
+        const double bottom = layers.front().bottom;
+        const double top = layers.back().top;
+        range.value = {bottom, top};
+        range.text = fmt::format("z = {} to {} mm", brief(bottom), brief(top));
+    }
+    figures.insert(figures.begin() + 1, std::move(range));
+    return figures;
 }
 
 std::vector<std::string> labels_of(const LayerFile& file) {
@@ -102,7 +102,7 @@ std::vector<std::string> labels_of(const LayerFile& file) {
     return labels;
 }
 
-std::string layers_text(const LayerFile& file, const LayerTotals& totals) {
+std::string layers_text(const LayerFile& file, const Figures& figures) {
     std::string text = fmt::format("{}: slice file, {}\n", one_line(file.path), file.format);
     std::string_view name = file.parts.size() == 1 ? "label" : "parts";
     for (const std::string& label : labels_of(file)) {
@@ -111,31 +111,17 @@ std::string layers_text(const LayerFile& file, const LayerTotals& totals) {
         text += result_line(name, label.empty() ? "(without a label)" : one_line(label));
         name = "";
     }
-    const LayerStack& layers = file.parts.front().layers;
-    text += result_line("layers", grouped(layers.size()));
-    if (!layers.empty())
-        text += result_line(
-            "from", fmt::format("z = {} to {} mm", brief(layers.front().bottom), brief(layers.back().top)));
-    text += result_line("contours", grouped(totals.contours));
-    text += result_line("open chains", totals.open_chains == 0 ? "none" : grouped(totals.open_chains));
-    text += result_line("points", grouped(totals.points));
-    text += result_line("volume", fmt::format("{} mm3", brief(totals.volume_mm3)));
-    return text;
+    return text + as_lines(figures);
 }
 
-Json layers_json(const LayerFile& file, const LayerTotals& totals) {
-    const LayerStack& layers = file.parts.front().layers;
-    return {{"path", file.path},
-            {"format", file.format},
-            {"label", file.parts.front().label},
-            {"parts", labels_of(file)},
-            {"units_mm", file.units_mm},
-            {"layers", layers.size()},
-            {"z_range", layers.empty() ? Json() : Json{layers.front().bottom, layers.back().top}},
-            {"contours", totals.contours},
-            {"open_chains", totals.open_chains},
-            {"points", totals.points},
-            {"volume_mm3", totals.volume_mm3}};
+Json layers_json(const LayerFile& file, const Figures& figures) {
+    Json json = {{"path", file.path},
+                 {"format", file.format},
+                 {"label", file.parts.front().label},
+                 {"parts", labels_of(file)},
+                 {"units_mm", file.units_mm}};
+    json.update(as_json(figures));
+    return json;
 }
 
 int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context) {
@@ -150,12 +136,13 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
             fmt::format("{}: --self-intersections, --picture and --report are for meshes; lamella view "
                         "writes a page of a slice file",
                         file.path));
-    const LayerTotals totals = totals_of(file);
-    context.messages.result(arguments.json ? json_text(layers_json(file, totals))
-                                           : layers_text(file, totals));
-    if (arguments.strict && totals.open_chains > 0)
+    const Figures figures = figures_of(file);
+    context.messages.result(arguments.json ? json_text(layers_json(file, figures))
+                                           : layers_text(file, figures));
+    const std::uint64_t open_chains = as_json(figures)["open_chains"];
+    if (arguments.strict && open_chains > 0)
         throw Error(ErrorKind::defect,
-                    fmt::format("{}: has {}", file.path, counted(totals.open_chains, "open chain")));
+                    fmt::format("{}: has {}", file.path, counted(open_chains, "open chain")));
     return 0;
 }
 
@@ -177,12 +164,11 @@ Command info_command() {
     return {
         .name = "info",
         .summary = "what is in a mesh or slice file: size, volume, defects",
-        .description =
-            "Tells what a file holds. Of a mesh (STL, 3MF, AMF, OBJ, PLY, OFF): size, volume, area, shells, "
-            "and every kind of "
-            "defect with what it means for slicing and where it is. Of a slice file (CLI, SVG): layers, "
-            "contours, "
-            "points and volume. Nothing is repaired or written.",
+        .description = fmt::format(
+            "Tells what a file holds. Of a mesh (.{}): size, volume, area, shells, and every kind of "
+            "defect with what it means for slicing and where it is. Of a slice file: layers, "
+            "contours, points and volume. Nothing is repaired or written.",
+            fmt::join(mesh_extensions(), ", .")),
         .operands = {{.placeholder = "FILE",
                       .help = "a mesh or a slice file; - is standard input",
                       .set =

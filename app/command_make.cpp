@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/shapes.hpp"
+#include "lamella/read/mesh_file.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
 #include "command_line.hpp"
@@ -183,9 +184,13 @@ OptionGroup shape_options(MakeArguments& target) {
 /// Meshes of these formats are read, but not written.
 void check_extension(const std::string& output) {
     const std::string extension = std::filesystem::path(output).extension().string();
-    constexpr std::array<std::string_view, 3> only_read{".3mf", ".amf", ".off"};
-    if (std::ranges::find(only_read, extension) != only_read.end())
-        throw Error(ErrorKind::usage, fmt::format("{}: bodies are written as .stl, .ply or .obj", output));
+    for (const std::string_view written : {".stl", ".ply", ".obj"})
+        if (extension == written)
+            return;
+    for (const std::string_view read : mesh_extensions())
+        if (extension == fmt::format(".{}", read))
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: bodies are written as .stl, .ply or .obj", output));
 }
 
 /// In the format of the extension: STL unless it is that of another one.

@@ -9,6 +9,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "deadline.hpp"
+#include "figures.hpp"
 #include "layering_options.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
@@ -17,11 +18,10 @@
 #include "repair_options.hpp"
 #include "shard_stamp.hpp"
 #include "standard_streams.hpp"
-#include "stats_json.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -225,25 +225,14 @@ FileJob make_job(const SliceArguments& arguments) {
     return job;
 }
 
-/// "rook, rook 2, axle".
-std::string labels(const FileResult& result) {
-    constexpr std::size_t most = 6;
-    std::string text;
-    for (std::size_t i = 0; i < std::min(most, result.parts.size()); ++i)
-        text.append(i == 0 ? "" : ", ").append(one_line(result.parts[i].label));
-    return result.parts.size() > most ? text + ", ..." : text;
-}
-
 std::string summary(const FileJob& job, const FileResult& result) {
-    const Box3& box = result.box;
     const std::size_t parts = result.parts.size();
     std::string text = fmt::format(
-        "read     {}{}: {}, {} x {} x {} mm\n", one_line(job.inputs.front().path),
+        "read     {}{}: {}, {}\n", one_line(job.inputs.front().path),
         job.inputs.size() == 1 ? "" : fmt::format(" and {} more", counted(job.inputs.size() - 1, "file")),
-        counted(result.triangles, "triangle"), brief(box.max.x - box.min.x), brief(box.max.y - box.min.y),
-        brief(box.max.z - box.min.z));
+        counted(result.triangles, "triangle"), size_text(result.box));
     if (parts > 1)
-        text += fmt::format("plate    {}: {}\n", counted(parts, "part"), labels(result));
+        text += fmt::format("plate    {}: {}\n", counted(parts, "part"), labels_text(result.parts));
     text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}{}\n",
                         counted(result.report.layers, "layer"), brief(result.bottom), brief(result.top),
                         counted(result.report.contours, "contour"), counted(result.report.points, "point"),
@@ -262,12 +251,13 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += gaps_text(result.gaps);
     if (result.changes)
         text += fmt::format("made     {}\n", changes_text(*result.changes, "than sliced"));
-    const FileResult::Seconds& s = result.seconds;
-    text += fmt::format("took     {:.3f} s on {} (read {:.3f}, ", s.total, counted(result.threads, "thread"),
-                        s.read);
-    if (s.weld > 0)
-        text += fmt::format("weld {:.3f}, ", s.weld);
-    text += fmt::format("link {:.3f}, slice {:.3f}, write {:.3f})\n", s.link, s.slice, s.write);
+    const Json figures = as_json(run_figures(result));
+    std::string stages;
+    for (const char* stage : {"read", "weld", "link", "slice", "write"})
+        if (const double seconds = figures[stage]; seconds > 0)
+            stages += fmt::format("{}{} {:.3f}", stages.empty() ? "" : ", ", stage, seconds);
+    text += fmt::format("took     {:.3f} s on {} ({})\n", result.seconds.total,
+                        counted(result.threads, "thread"), stages);
     if (!result.format.empty())
         text += fmt::format("written  {}: {}, {}\n", one_line(output_name(job.output)), result.format,
                             byte_size(result.bytes));
@@ -378,7 +368,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
     const Execution execution = arguments.run.execution(context);
     const bool stamped = job.shard && !job.output.empty();
-    nlohmann::ordered_json origin;
+    Json origin;
     if (stamped) {
         origin = shard_origin(context.command, job, execution);
         if (arguments.resume && is_finished_shard(job, origin, execution)) {
@@ -396,7 +386,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
-        nlohmann::ordered_json stats = stats_json(context.command, result);
+        Json stats = stats_json(context.command, result);
         if (arguments.slicing.add_to_stats)
             arguments.slicing.add_to_stats(stats);
         const std::string text = json_text(stats);
@@ -427,7 +417,8 @@ Command slice_command(Slicing slicing) {
             "open, are marked as such in the file, and a warning says so. The result does not depend on the "
             "number of threads nor on the order of the triangles.",
         .operands = {{.placeholder = "FILE",
-                      .help = "a mesh: STL, 3MF, AMF, OBJ, PLY or OFF; - is standard input",
+                      .help = fmt::format("a mesh (.{}); - is standard input",
+                                          fmt::join(mesh_extensions(), ", .")),
                       .required = false,
                       .repeated = true,
                       .own_options = true,

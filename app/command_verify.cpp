@@ -5,12 +5,11 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
-#include "stats_json.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <string>
@@ -38,21 +37,21 @@ void place_cuts(LayerStack& layers, SliceAt at) {
                                         : layer.bottom + (layer.top - layer.bottom) / 2;
 }
 
-nlohmann::ordered_json verification_json(const std::string& path, const Verification& found) {
-    nlohmann::ordered_json object{{"path", path},
-                                  {"ok", found.ok()},
-                                  {"layers", found.layers},
-                                  {"contours", found.contours},
-                                  {"open_chains", found.open_chains},
-                                  {"crossings", found.crossings},
-                                  {"misoriented", found.misoriented},
-                                  {"overlapping", found.overlapping},
-                                  {"volume_mm3", found.volume_mm3},
-                                  {"max_area_error_mm2", nullptr}};
+Json verification_json(const std::string& path, const Verification& found) {
+    Json object{{"path", path},
+                {"ok", found.ok()},
+                {"layers", found.layers},
+                {"contours", found.contours},
+                {"open_chains", found.open_chains},
+                {"crossings", found.crossings},
+                {"misoriented", found.misoriented},
+                {"overlapping", found.overlapping},
+                {"volume_mm3", found.volume_mm3},
+                {"max_area_error_mm2", nullptr}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
-        nlohmann::ordered_json& layers = object["open_layers"] = nlohmann::ordered_json::array();
+        Json& layers = object["open_layers"] = Json::array();
         for (const Verification::OpenLayer& layer : found.open_layers) {
             layers.push_back({{"index", layer.index}, {"z", layer.z}});
             layers.back().update(open_gaps_json(layer.gaps));

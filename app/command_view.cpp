@@ -169,7 +169,7 @@ Command view_command() {
             "file. For more ways to cut a mesh, lamella slice writes such a page, too: with -o page.html, or "
             "beside a slice file with --report.",
         .operands = {{.placeholder = "FILE",
-                      .help = "a mesh, or a slice file: CLI, SVG, SLC, 3MF, JSON or NPZ; - is standard input",
+                      .help = "a mesh or a slice file; - is standard input",
                       .set =
                           [arguments](const std::string& text) {
                               arguments->input = text;

@@ -7,8 +7,6 @@
 
 #include "command.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <functional>
 
 namespace lamella::app {
@@ -18,7 +16,7 @@ struct Slicing {
     std::function<FileResult(const FileJob&, const Execution&)> slice;
     bool tells = true; ///< results; not where another process does
     /// More for --stats, once it has sliced.
-    std::function<void(nlohmann::ordered_json& stats)> add_to_stats = {};
+    std::function<void(Json& stats)> add_to_stats = {};
     bool many_files = true; ///< --batch is possible
 };
 

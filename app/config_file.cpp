@@ -241,8 +241,8 @@ std::string config_text(const Command& command) {
     return out;
 }
 
-nlohmann::ordered_json options_in_effect(const Command& command) {
-    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+Json options_in_effect(const Command& command) {
+    Json object = Json::object();
     for (const OptionGroup& group : command.groups) {
         for (const Option& option : group.options) {
             const std::string text = option.given.value_or(option.preset);

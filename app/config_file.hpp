@@ -4,8 +4,6 @@
 
 #include "command.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <vector>
 
@@ -39,6 +37,6 @@ struct Configuration {
 [[nodiscard]] std::string config_text(const Command& command);
 
 /// The options in effect as an object: given ones and presets.
-[[nodiscard]] nlohmann::ordered_json options_in_effect(const Command& command);
+[[nodiscard]] Json options_in_effect(const Command& command);
 
 } // namespace lamella::app

@@ -1,13 +1,12 @@
 #include "diagnosis_report.hpp"
 
 #include "command_line.hpp"
+#include "figures.hpp"
 #include "messages.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
-#include "stats_json.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -20,50 +19,27 @@
 namespace lamella::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Places of each kind that are listed.
 constexpr std::size_t listed = 3;
-constexpr std::size_t listed_in_json = 16;
-
-std::string point(const Point3& p) {
-    return fmt::format("({}, {}, {})", brief(p.x), brief(p.y), brief(p.z));
-}
-
-std::string size(const Box3& box) {
-    return fmt::format("{} x {} x {} mm", brief(box.max.x - box.min.x), brief(box.max.y - box.min.y),
-                       brief(box.max.z - box.min.z));
-}
 
 Point3 middle(const Box3& box) {
     return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
 }
 
-std::string shells_text(const Inspection& found) {
-    if (found.cavities == 0)
-        return grouped(found.shells);
-    return fmt::format("{}, {} of them {}", grouped(found.shells), grouped(found.cavities),
-                       found.cavities == 1 ? "a cavity" : "cavities");
-}
-
 /// "3 of 2 meshes: gear, gear 2, axle".
 std::string parts_text(const MeshFile& file, const Plate& plate) {
-    constexpr std::size_t most = 8;
-    std::string text = fmt::format(
-        "{} of {}: ", grouped(plate.parts.size()),
-        file.objects.size() == 1 ? "one mesh" : fmt::format("{} meshes", grouped(file.objects.size())));
-    for (std::size_t i = 0; i < std::min(most, plate.parts.size()); ++i)
-        text.append(i == 0 ? "" : ", ").append(one_line(plate.parts[i].label));
-    return plate.parts.size() > most ? text + ", ..." : text;
+    return fmt::format("{} of {}: {}", grouped(plate.parts.size()),
+                       file.objects.size() == 1 ? "one mesh"
+                                                : fmt::format("{} meshes", grouped(file.objects.size())),
+                       labels_text(plate.parts));
 }
 
-/// One kind of defect: what it is, what it means, and where it is.
+/// Defects of one kind.
 struct Defect {
+    DefectWords words;
     std::uint64_t count;
-    std::string_view one;
-    std::string_view many;
-    std::string_view meaning;
     std::vector<std::string> places; ///< the first of them
+    std::string_view addition = {};  ///< to their meaning
 };
 
 template <class Places, class Tell>
@@ -75,19 +51,19 @@ std::vector<std::string> tell_each(const Places& places, const Tell& tell) {
 }
 
 std::string edge_text(const EdgePlace& edge) {
-    return fmt::format("from {} to {}", point(edge[0]), point(edge[1]));
+    return fmt::format("from {} to {}", point_text(edge[0]), point_text(edge[1]));
 }
 
 std::string loop_text(const BoundaryLoop& loop) {
     return fmt::format("{} of {}, {} mm long, {} around {}", loop.closed ? "a rim" : "a broken rim",
-                       counted(loop.edges(), "edge"), brief(loop.length_mm), size(loop.box),
-                       point(middle(loop.box)));
+                       counted(loop.edges(), "edge"), brief(loop.length_mm), size_text(loop.box),
+                       point_text(middle(loop.box)));
 }
 
 std::string shell_text(const Shell& shell) {
     return fmt::format("{}, {}, {} around {}", counted(shell.triangles, "triangle"),
-                       fmt::format("{} mm3", brief(shell.volume_mm3)), size(shell.box),
-                       point(middle(shell.box)));
+                       fmt::format("{} mm3", brief(shell.volume_mm3)), size_text(shell.box),
+                       point_text(middle(shell.box)));
 }
 
 std::vector<Defect> defects_of(const Diagnosis& found) {
@@ -98,45 +74,36 @@ std::vector<Defect> defects_of(const Diagnosis& found) {
     const auto triangle = [](std::uint32_t i) {
         return fmt::format("triangle {}", grouped(i));
     };
-    return {{counts.boundary_edges, "boundary edge", "boundary edges",
-             "the surface has holes; contours stay open there", tell_each(found.loops, loop_text)},
-            {counts.orientation_conflicts, "orientation conflict", "orientation conflicts",
-             "neighbouring triangles face opposite ways; contours stay open there",
-             tell_each(found.conflicting_edges, edge_text)},
-            {counts.nonmanifold_edges, "crowded edge", "crowded edges",
-             "more than two triangles share an edge; contours part or touch there",
-             tell_each(found.nonmanifold_edges, edge_text)},
-            {found.nonmanifold_vertices, "crowded vertex", "crowded vertices",
-             "parts of the surface touch in a point; no harm to contours",
-             tell_each(found.vertices, [](const Point3& p) { return "at " + point(p); })},
-            {counts.duplicate_triangles, "duplicate triangle", "duplicate triangles",
-             found.opposite_pairs > 0 ? "the same triangle more than once, also the other way round"
-                                      : "the same triangle more than once",
-             tell_each(found.duplicate_triangles, triangle)},
-            {counts.degenerate_triangles, "degenerate triangle", "degenerate triangles",
-             "two equal corners; left out of everything", tell_each(found.degenerate_triangles, triangle)},
-            {counts.inverted_shells, "inverted shell", "inverted shells",
-             "inside out; contours run the wrong way round there", tell_each(inverted, shell_text)}};
+    const auto defect = [&](std::uint64_t Inspection::*count, std::vector<std::string> places,
+                            std::string_view addition = "") {
+        return Defect{words_of(count), counts.*count, std::move(places), addition};
+    };
+    return {defect(&Inspection::boundary_edges, tell_each(found.loops, loop_text)),
+            defect(&Inspection::orientation_conflicts, tell_each(found.conflicting_edges, edge_text)),
+            defect(&Inspection::nonmanifold_edges, tell_each(found.nonmanifold_edges, edge_text)),
+            {crowded_vertices, found.nonmanifold_vertices,
+             tell_each(found.vertices, [](const Point3& p) { return "at " + point_text(p); })},
+            defect(&Inspection::duplicate_triangles, tell_each(found.duplicate_triangles, triangle),
+                   found.opposite_pairs > 0 ? ", also the other way round" : ""),
+            defect(&Inspection::degenerate_triangles, tell_each(found.degenerate_triangles, triangle)),
+            defect(&Inspection::inverted_shells, tell_each(inverted, shell_text))};
 }
 
 std::string meeting_text(const Meeting& meeting) {
     return fmt::format("triangles {} and {} near {}", grouped(meeting.triangle_a),
-                       grouped(meeting.triangle_b), point(meeting.at));
+                       grouped(meeting.triangle_b), point_text(meeting.at));
 }
 
 std::vector<Defect> meetings_of(const SelfIntersections& found) {
-    const auto of_kind = [&](MeetingKind kind) {
+    std::vector<Defect> defects;
+    for (const MeetingWords& kind : meeting_words) {
         std::vector<Meeting> meetings;
-        std::ranges::copy_if(found.first, std::back_inserter(meetings),
-                             [kind](const Meeting& meeting) { return meeting.kind == kind; });
-        return tell_each(meetings, meeting_text);
-    };
-    return {{found.crossing, "crossing", "crossings", "pairs of triangles that pass through each other",
-             of_kind(MeetingKind::crossing)},
-            {found.overlapping, "overlap", "overlaps", "pairs of triangles upon one another in one plane",
-             of_kind(MeetingKind::overlapping)},
-            {found.touching, "touch", "touches", "pairs of triangles that meet beside their edges",
-             of_kind(MeetingKind::touching)}};
+        for (const Meeting& meeting : found.first)
+            if (words_of(meeting.kind).key == kind.words.key)
+                meetings.push_back(meeting);
+        defects.push_back({kind.words, found.*kind.count, tell_each(meetings, meeting_text)});
+    }
+    return defects;
 }
 
 std::string defects_text(std::string_view name, const std::vector<Defect>& defects) {
@@ -144,8 +111,10 @@ std::string defects_text(std::string_view name, const std::vector<Defect>& defec
     for (const Defect& defect : defects) {
         if (defect.count == 0)
             continue;
-        text += result_line(name, fmt::format("{} {}: {}", grouped(defect.count),
-                                              defect.count == 1 ? defect.one : defect.many, defect.meaning));
+        const DefectWords& words = defect.words;
+        text += result_line(name, fmt::format("{} {}: {}{}", grouped(defect.count),
+                                              defect.count == 1 ? words.one : words.many, words.meaning,
+                                              defect.addition));
         for (const std::string& place : defect.places)
             text += result_line("", "  " + place);
         name = "";
@@ -160,18 +129,6 @@ Json parts_json(const Plate& plate) {
                          {"triangles", plate.shapes[part.shape].mesh.size()},
                          {"bbox", box_json(part.box)}});
     return parts;
-}
-
-Json point_json(const Point3& p) {
-    return {p.x, p.y, p.z};
-}
-
-template <class Places, class Tell>
-Json list_json(const Places& places, const Tell& tell) {
-    Json list = Json::array();
-    for (std::size_t i = 0; i < std::min(listed_in_json, places.size()); ++i)
-        list.push_back(tell(places[i]));
-    return list;
 }
 
 Json edge_json(const EdgePlace& edge) {
@@ -212,7 +169,7 @@ Json shells_json(const Diagnosis& found) {
 Json meetings_json(const SelfIntersections& found) {
     const auto meeting = [](const Meeting& m) -> Json {
         return {{"triangles", {m.triangle_a, m.triangle_b}},
-                {"kind", meeting_name(m.kind)},
+                {"kind", words_of(m.kind).key},
                 {"at", point_json(m.at)}};
     };
     const auto pair = [](const PartMeetings& p) -> Json {
@@ -221,33 +178,30 @@ Json meetings_json(const SelfIntersections& found) {
                 {"overlapping", p.overlapping},
                 {"touching", p.touching}};
     };
-    return {{"crossing", found.crossing},
-            {"overlapping", found.overlapping},
-            {"touching", found.touching},
-            {"flat_triangles", found.flat_triangles},
-            {"first", list_json(found.first, meeting)},
-            {"shells", list_json(found.parts, pair)}};
+    Json json = as_json(meeting_figures(found));
+    json["flat_triangles"] = found.flat_triangles;
+    json["first"] = list_json(found.first, meeting);
+    json["shells"] = list_json(found.parts, pair);
+    return json;
+}
+
+/// Of the triangles as the file stores them.
+Figures figures_of(const MeshFile& file, const Diagnosis& found) {
+    Inspection counts = found.counts;
+    counts.triangles = file.stored_triangles;
+    return mesh_figures(counts);
 }
 
 } // namespace
 
 std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate& plate) {
-    const Inspection& counts = found.counts;
-    const Box3& box = counts.box;
-    std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), format_name(file.format));
+    std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), file.format);
     if (file.unit_mm)
         text += result_line("unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm)));
     if (plate.parts.size() > 1)
         text += result_line("parts", parts_text(file, plate));
-    text += result_line("triangles", grouped(file.stored_triangles));
-    text += result_line("vertices", grouped(counts.vertices));
-    text += result_line("size", size(box));
-    text += result_line("from", fmt::format("{} to {}", point(box.min), point(box.max)));
-    text += result_line("volume", counts.closed() ? fmt::format("{} mm3", brief(counts.volume_mm3))
-                                                  : "none: the surface is not closed");
-    text += result_line("area", fmt::format("{} mm2", brief(counts.area_mm2)));
-    text += result_line("shells", shells_text(counts));
-    text += result_line("closed", counts.closed() ? "yes" : "no");
+    text += as_lines(picked(figures_of(file, found), {"triangles", "vertices", "bbox", "place", "volume_mm3",
+                                                      "area_mm2", "shells", "closed"}));
     const std::string defects = defects_text("defects", defects_of(found));
     text += defects.empty() ? result_line("defects", "none") : defects;
     if (found.self_intersections) {
@@ -264,28 +218,20 @@ std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate&
 }
 
 Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate) {
-    const Inspection& counts = found.counts;
-    Json defects = defects_json(counts);
+    const Figures figures = figures_of(file, found);
+    Json defects = as_json(defect_figures(found.counts));
     defects["boundary_loops"] = found.boundary_loops;
     defects["nonmanifold_vertices"] = found.nonmanifold_vertices;
     defects["opposite_pairs"] = found.opposite_pairs;
     Json json = {
-        {"path", file.path},
-        {"format", format_name(file.format)},
-        {"unit", unit_name(plate.files.front().unit_mm)},
-        {"triangles", file.stored_triangles},
-        {"vertices", counts.vertices},
-        {"bbox", box_json(counts.box)},
-        {"volume_mm3", counts.volume_mm3},
-        {"area_mm2", counts.area_mm2},
-        {"closed", counts.closed()},
-        {"shells", counts.shells},
-        {"cavities", counts.cavities},
-        {"defects", std::move(defects)},
-        {"boundary_length_mm", found.boundary_length_mm},
-        {"places", places_json(found)},
-        {"shell_list", shells_json(found)},
-        {"self_intersections", found.self_intersections ? meetings_json(*found.self_intersections) : Json()}};
+        {"path", file.path}, {"format", file.format}, {"unit", unit_name(plate.files.front().unit_mm)}};
+    json.update(as_json(picked(figures, {"triangles", "vertices", "bbox", "volume_mm3", "area_mm2", "closed",
+                                         "shells", "cavities"})));
+    json["defects"] = std::move(defects);
+    json["boundary_length_mm"] = found.boundary_length_mm;
+    json["places"] = places_json(found);
+    json["shell_list"] = shells_json(found);
+    json["self_intersections"] = found.self_intersections ? meetings_json(*found.self_intersections) : Json();
     if (plate.parts.size() > 1)
         json["parts"] = parts_json(plate);
     return json;

@@ -6,14 +6,13 @@
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/read/mesh_file.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include "messages.hpp"
 
 #include <string>
 
 namespace lamella::app {
 
 [[nodiscard]] std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate& plate);
-[[nodiscard]] nlohmann::ordered_json mesh_json(const MeshFile& file, const Diagnosis& found,
-                                               const Plate& plate);
+[[nodiscard]] Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate);
 
 } // namespace lamella::app

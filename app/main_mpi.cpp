@@ -20,8 +20,8 @@ using lamella::ProcessFigures;
 
 namespace {
 
-nlohmann::ordered_json processes_json(const std::vector<ProcessFigures>& figures) {
-    nlohmann::ordered_json processes = nlohmann::ordered_json::array();
+Json processes_json(const std::vector<ProcessFigures>& figures) {
+    Json processes = Json::array();
     for (const ProcessFigures& one : figures)
         processes.push_back({{"triangles_read", one.triangles_read},
                              {"triangles_sliced", one.triangles_sliced},
@@ -44,7 +44,7 @@ Slicing by_all(MpiProcesses& processes, std::vector<ProcessFigures>& figures) {
         return result;
     };
     together.tells = processes.process() == 0;
-    together.add_to_stats = [&](nlohmann::ordered_json& stats) {
+    together.add_to_stats = [&](Json& stats) {
         stats["processes"] = processes_json(figures);
     };
     together.many_files = false;

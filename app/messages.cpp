@@ -15,8 +15,6 @@
 namespace lamella::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 void put(const std::string& text) {
     // One write, so that lines of several programs on one terminal do not mix. Nobody is left to be told when
     // standard error cannot be written.
@@ -29,14 +27,13 @@ void put_json(const Json& object) {
     put(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-/// What a stage does, in words.
+} // namespace
+
 std::string_view deed(Stage stage) {
     constexpr std::array<std::string_view, 6> deeds{"reading", "welding", "linking",
-                                                    "slicing", "joining", "writing"};
+                                                    "slicing", "making",  "writing"};
     return deeds.at(static_cast<std::size_t>(stage));
 }
-
-} // namespace
 
 std::string result_line(std::string_view name, std::string_view value) {
     return fmt::format("  {:<11} {}\n", name, value);

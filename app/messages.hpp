@@ -5,6 +5,8 @@
 
 #include "lamella/core/execution.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <atomic>
 #include <chrono>
 #include <string>
@@ -12,8 +14,14 @@
 
 namespace lamella::app {
 
+/// As the program writes it: keys stay in their order.
+using Json = nlohmann::ordered_json;
+
 /// A line of a result for people: a name, and in the next column what there is to say of it.
 [[nodiscard]] std::string result_line(std::string_view name, std::string_view value);
+
+/// What a stage does: "reading".
+[[nodiscard]] std::string_view deed(Stage stage);
 
 enum class ProgressStyle {
     bar,  ///< a bar, but only where standard error is a terminal

@@ -1,26 +1,14 @@
 #include "repair_options.hpp"
 
+#include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <vector>
 
 namespace lamella::app {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json places_json(const std::vector<Point3>& places) {
-    Json list = Json::array();
-    for (const Point3& p : places)
-        list.push_back({p.x, p.y, p.z});
-    return list;
-}
-
-} // namespace
 
 OptionGroup repair_options(RepairPolicies& target) {
     return {
@@ -89,16 +77,18 @@ Json repairs_json(const MeshRepairs& repairs) {
                                   {"collapsed_triangles", welded->collapsed_triangles},
                                   {"pairs_apart", welded->pairs_apart},
                                   {"longest_move_mm", welded->longest_move_mm},
-                                  {"places", places_json(welded->places)}};
+                                  {"places", list_json(welded->places, point_json)}};
     if (const auto& dropped = repairs.dropped)
         json["drop_duplicates"] = {{"repeated_triangles", dropped->repeated_triangles},
                                    {"opposite_triangles", dropped->opposite_triangles},
-                                   {"places", places_json(dropped->places)}};
+                                   {"places", list_json(dropped->places, point_json)}};
     if (const auto& oriented = repairs.oriented)
-        json["orient"] = {
-            {"turned_triangles", oriented->turned_triangles},   {"patches", oriented->patches},
-            {"turned_outward", oriented->turned_outward},       {"turned_inward", oriented->turned_inward},
-            {"one_sided_patches", oriented->one_sided_patches}, {"places", places_json(oriented->places)}};
+        json["orient"] = {{"turned_triangles", oriented->turned_triangles},
+                          {"patches", oriented->patches},
+                          {"turned_outward", oriented->turned_outward},
+                          {"turned_inward", oriented->turned_inward},
+                          {"one_sided_patches", oriented->one_sided_patches},
+                          {"places", list_json(oriented->places, point_json)}};
     return json;
 }
 

@@ -6,8 +6,6 @@
 
 #include "command.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <vector>
 
@@ -19,9 +17,9 @@ namespace lamella::app {
 [[nodiscard]] std::string repairs_text(const MeshRepairs& repairs);
 [[nodiscard]] std::string gaps_text(const FileResult::Gaps& gaps);
 /// For the statistics; null for each policy that was not asked for.
-[[nodiscard]] nlohmann::ordered_json repairs_json(const MeshRepairs& repairs);
+[[nodiscard]] Json repairs_json(const MeshRepairs& repairs);
 
-[[nodiscard]] nlohmann::ordered_json gaps_json(const FileResult::Gaps& gaps);
-[[nodiscard]] nlohmann::ordered_json joins_json(const std::vector<GapJoin>& joins);
+[[nodiscard]] Json gaps_json(const FileResult::Gaps& gaps);
+[[nodiscard]] Json joins_json(const std::vector<GapJoin>& joins);
 
 } // namespace lamella::app

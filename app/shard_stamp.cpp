@@ -19,8 +19,6 @@
 namespace lamella::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// As text: a JSON number loses digits beyond 2^53.
 std::string hash_text(const std::string& path, const Execution& execution) {
     return fmt::format("{:016x}", file_hash(path, execution));

@@ -22,15 +22,13 @@ namespace lamella::app {
 [[nodiscard]] std::string stamp_path(const std::string& output);
 
 /// What decides the bytes of the shard: version, options, the content of all inputs. Reads the inputs once.
-[[nodiscard]] nlohmann::ordered_json shard_origin(const Command& command, const FileJob& job,
-                                                  const Execution& execution);
+[[nodiscard]] Json shard_origin(const Command& command, const FileJob& job, const Execution& execution);
 
 /// Whether the job's output is there, with a stamp that has this origin and the content that it had then.
-[[nodiscard]] bool is_finished_shard(const FileJob& job, const nlohmann::ordered_json& origin,
-                                     const Execution& execution);
+[[nodiscard]] bool is_finished_shard(const FileJob& job, const Json& origin, const Execution& execution);
 
 /// Stamps the output that has just been written.
-void stamp_shard(const FileJob& job, const FileResult& result, const nlohmann::ordered_json& origin,
+void stamp_shard(const FileJob& job, const FileResult& result, const Json& origin,
                  const Execution& execution);
 
 /// Where all files have stamps: throws Error{input} unless they are all the shards of one job, each as it was

@@ -27,7 +27,7 @@ from ._errors import (
     OutputError,
     UsageError,
 )
-from ._files import convert, layer_formats, read, write
+from ._files import convert, layer_formats, mesh_formats, read, write
 from ._lamella import Layer, LayerStream, Mesh, Stack, __version__
 from ._meshes import Inspection, inspect
 from ._slicing import Engine, engines, iter_layers, slice
@@ -58,6 +58,7 @@ __all__ = [
     "inspect",
     "iter_layers",
     "layer_formats",
+    "mesh_formats",
     "read",
     "slice",
     "verify",

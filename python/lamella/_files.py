@@ -62,7 +62,7 @@ def read(
 ) -> Union[Mesh, Stack]:
     """Reads a mesh file or a slice file, whichever it is by its content.
 
-    path: str or os.PathLike. Meshes: STL, 3MF, AMF, OBJ, PLY, OFF. Layers: Common Layer Interface, layered SVG, SLC,
+    path: str or os.PathLike. Meshes: see `mesh_formats`. Layers: Common Layer Interface, layered SVG, SLC,
         3MF with slices, JSON, NumPy arrays. Each may be packed with gzip.
     unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given.
     strict: makes a DefectError of what is otherwise a DefectWarning.
@@ -343,6 +343,11 @@ def _same_file(first: bytes, second: bytes) -> bool:
         return os.path.samefile(first, second)
     except OSError:  # at least one is not there, which whoever opens it reports
         return False
+
+
+def mesh_formats() -> List[str]:
+    """The formats that meshes are read in, by their extensions, such as "stl"."""
+    return _lamella.mesh_extensions()
 
 
 def layer_formats() -> List[Tuple[str, str, str]]:

@@ -50,7 +50,7 @@ class Inspection:
     shells: int  #: parts connected over edges
     cavities: int  #: closed shells that are hollows in the material of others
     boundary_edges: int  #: with one triangle: rims of holes
-    nonmanifold_edges: int  #: with more than two triangles
+    nonmanifold_edges: int  #: crowded: with more than two triangles
     orientation_conflicts: int  #: edges whose triangles do not run opposite ways
     duplicate_triangles: int  #: beyond the first with the same three vertices
     degenerate_triangles: int  #: with two equal corners
@@ -59,14 +59,7 @@ class Inspection:
     @property
     def defects(self) -> str:
         """The defects in words, such as "2 boundary edges, 1 inverted shell"; empty where there is none."""
-        kinds = [
-            (self.boundary_edges, "boundary edge", "boundary edges"),
-            (self.nonmanifold_edges, "edge with more than two triangles", "edges with more than two triangles"),
-            (self.orientation_conflicts, "orientation conflict", "orientation conflicts"),
-            (self.duplicate_triangles, "duplicate triangle", "duplicate triangles"),
-            (self.degenerate_triangles, "degenerate triangle", "degenerate triangles"),
-            (self.inverted_shells, "inverted shell", "inverted shells"),
-        ]
+        kinds = [(getattr(self, key), one, many) for key, one, many in _lamella.defect_kinds()]
         return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in kinds if count)
 
 

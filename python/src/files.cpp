@@ -5,6 +5,7 @@
 #include "lamella/polygon/compare.hpp"
 #include "lamella/read/file_kind.hpp"
 #include "lamella/read/layer_file.hpp"
+#include "lamella/read/mesh_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
@@ -264,6 +265,7 @@ void bind_files(py::module_& module) {
     module.def("layer_format", [](const std::string& name, const std::string& path) {
         return std::string(layer_format(name, path).name);
     });
+    module.def("mesh_extensions", &mesh_extensions);
     module.def("layer_formats", [] {
         std::vector<std::tuple<std::string, std::string, std::string>> found;
         for (const LayerFormat& format : layer_formats())

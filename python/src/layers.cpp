@@ -342,10 +342,10 @@ void bind_layer(py::module_& module) {
             "z", [](const SharedLayer& self) { return self.get().z; }, "Where it was cut, in millimetres.")
         .def_property_readonly(
             "bottom", [](const SharedLayer& self) { return self.get().bottom; },
-            "Where the slab of material begins that the layer stands for, in millimetres.")
+            "Where the material begins that the layer stands for, in millimetres.")
         .def_property_readonly(
             "top", [](const SharedLayer& self) { return self.get().top; },
-            "Where that slab ends, in millimetres.")
+            "Where that material ends, in millimetres.")
         .def_property_readonly(
             "thickness", [](const SharedLayer& self) { return self.get().thickness(); },
             "top - bottom, in millimetres.")
@@ -433,9 +433,9 @@ void bind_stack(py::module_& module) {
                                "Where the layers were cut, in millimetres: (layers,) float64.")
         .def_property_readonly("bottom",
                                numbers_of<double>([](const SharedLayer& l) { return l.get().bottom; }),
-                               "Where their slabs of material begin, in millimetres: (layers,) float64.")
+                               "Where the material of the layers begins, in millimetres: (layers,) float64.")
         .def_property_readonly("top", numbers_of<double>([](const SharedLayer& l) { return l.get().top; }),
-                               "Where their slabs of material end, in millimetres: (layers,) float64.")
+                               "Where the material of the layers ends, in millimetres: (layers,) float64.")
         .def_property_readonly("area", measures_of<double>([](const LayerMeasure& m) { return m.area_mm2; }),
                                "The areas of the layers in square millimetres: (layers,) float64.")
         .def_property_readonly("perimeter",

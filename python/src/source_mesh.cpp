@@ -93,12 +93,8 @@ py::dict defects_of(const SourceMesh& source, unsigned threads, const py::object
     fields["sound"] = found.sound();
     fields["shells"] = found.shells;
     fields["cavities"] = found.cavities;
-    fields["boundary_edges"] = found.boundary_edges;
-    fields["nonmanifold_edges"] = found.nonmanifold_edges;
-    fields["orientation_conflicts"] = found.orientation_conflicts;
-    fields["duplicate_triangles"] = found.duplicate_triangles;
-    fields["degenerate_triangles"] = found.degenerate_triangles;
-    fields["inverted_shells"] = found.inverted_shells;
+    for (const DefectKind& kind : defect_kinds)
+        fields[py::str(kind.words.key)] = found.*kind.count;
     return fields;
 }
 
@@ -164,7 +160,7 @@ Plate SourceMesh::plate() const {
 MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm, const Execution& execution) {
     MeshOrigin origin;
     origin.path = file.path;
-    origin.format = format_name(file.format);
+    origin.format = file.format;
     origin.name = file.name;
     origin.stored_triangles = file.stored_triangles;
     const Plate plate = load_plate({.path = file.path, .unit_mm = unit_mm}, std::move(file), execution);
@@ -239,6 +235,12 @@ void bind_meshes(py::module_& module) {
         .def("__repr__", &mesh_text)
         .def(py::pickle(&mesh_state, &mesh_of_state));
 
+    module.def("defect_kinds", [] {
+        std::vector<std::array<std::string_view, 3>> kinds;
+        for (const DefectKind& kind : defect_kinds)
+            kinds.push_back({kind.words.key, kind.words.one, kind.words.many});
+        return kinds;
+    });
     module.def("read_mesh", [](const std::string& path, std::optional<double> unit_mm, bool strict,
                                bool supports, std::uint64_t max_triangles, std::uint64_t max_memory,
                                unsigned threads, const py::object& progress) {

@@ -89,18 +89,6 @@ Meeting described(const IndexedMesh& mesh, const Pair& pair) {
 
 } // namespace
 
-std::string_view meeting_name(MeetingKind kind) noexcept {
-    switch (kind) {
-    case MeetingKind::crossing:
-        return "crossing";
-    case MeetingKind::overlapping:
-        return "overlapping";
-    case MeetingKind::touching:
-        return "touching";
-    }
-    return "";
-}
-
 SelfIntersections find_self_intersections(const IndexedMesh& mesh, const MeetingOptions& options,
                                           const Execution& execution) {
     Executor executor(execution);

@@ -40,7 +40,6 @@ class AmfReader {
         read_document();
         make_nodes();
         make_file();
-        file_.format = MeshFormat::amf;
         file_.unit_mm = document_.unit_mm;
         file_.name = !document_.name.empty() ? document_.name : file_.objects.front().name;
         file_.warnings = remarks_.take();

@@ -29,6 +29,9 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
             return read_npz(package.zip(), limits, execution);
         if (is_3mf(package.zip()))
             return read_slices_3mf(package, limits, execution);
+        if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = options.max_memory});
+            !other->advice.empty())
+            throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, other->advice));
         throw Error(ErrorKind::input,
                     fmt::format("{}: found a zip archive that holds no layers; of archives, 3MF with slice "
                                 "stacks and NumPy arrays are read",

@@ -133,7 +133,8 @@ class LayersJsonReader {
         if (!(index >= 0 && index <= most_index) || index != std::floor(index))
             text_.fail(fmt::format("the index {}", index), "it must be a whole number");
         if (!z || !bottom || !top || !(*bottom <= *z && *z <= *top))
-            text_.fail("a layer without a slab around its cut", "z must lie between bottom and top");
+            text_.fail("a layer that is not cut between its bottom and its top",
+                       "z must lie between bottom and top");
         const LayerStack& before = file_.parts.front().layers;
         if (!before.empty() && !(before.back().z < *z))
             text_.fail(fmt::format("z = {} behind z = {}", *z, before.back().z), "layers must ascend");

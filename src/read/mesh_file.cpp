@@ -29,7 +29,11 @@ namespace {
 MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, const Execution& execution) {
     const ByteSource source =
         is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution) : opened;
-    return mesh_format_of(source, options).read(source, options, execution);
+    const MeshFormatRow& format = mesh_format_of(source, options);
+    MeshFile file = format.read(source, options, execution);
+    if (file.format.empty()) // STL says which of its two forms it has
+        file.format = format.extension;
+    return file;
 }
 
 } // namespace

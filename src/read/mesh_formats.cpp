@@ -38,6 +38,16 @@ bool is_any_stl(const ByteSource& source, const MeshReadOptions&) {
     return is_stl(source);
 }
 
+bool holds(const ZipReader& zip, std::string_view ending) {
+    return std::any_of(zip.entries().begin(), zip.entries().end(),
+                       [&](const ZipEntry& entry) { return lower_case(entry.name).ends_with(ending); });
+}
+
+/// What may be a 3MF package.
+bool holds_model(const ZipReader& zip) {
+    return holds(zip, ".rels") || holds(zip, ".model");
+}
+
 bool is_archive_of_arrays(const ByteSource& source, const MeshReadOptions& options) {
     return is_zip(source.text()) && is_npz(ZipReader(source, options.max_memory));
 }
@@ -47,14 +57,18 @@ bool is_plain_or_packed_amf(const ByteSource& source, const MeshReadOptions& opt
     if (!is_zip(source.text()))
         return is_amf(source.text());
     const ZipReader zip(source, options.max_memory);
-    const auto any = [&](std::string_view suffix) {
-        return std::any_of(zip.entries().begin(), zip.entries().end(),
-                           [&](const ZipEntry& entry) { return entry.name.ends_with(suffix); });
-    };
-    if (any(".rels") || any(".model"))
+    if (holds_model(zip))
         return false;
-    return any(".amf") || any(".AMF") || any(".amf.xml") ||
+    return holds(zip, ".amf") || holds(zip, ".amf.xml") ||
            (zip.entries().size() == 1 && is_amf(zip.read(zip.entries().front()).text()));
+}
+
+/// Such as a job for a resin printer.
+bool is_archive_of_pictures(const ByteSource& source, const MeshReadOptions& options) {
+    if (!is_zip(source.text()))
+        return false;
+    const ZipReader zip(source, options.max_memory);
+    return holds(zip, ".png") && !holds_model(zip);
 }
 
 constexpr std::string_view web_page = "is a web page, no mesh file; download the file itself";
@@ -79,6 +93,9 @@ constexpr std::array rows = {
                             "or verify it as it is",
                   .layers = true},
     MeshFormatRow{.extension = "amf", .recognises = is_plain_or_packed_amf, .read = read_amf},
+    MeshFormatRow{.recognises = is_archive_of_pictures,
+                  .advice = "holds pictures of layers, as for a resin printer: it is sliced already, and "
+                            "neither a mesh nor contours can be read from it"},
     MeshFormatRow{.extension = "3mf", .recognises = by_text<is_zip>, .read = read_three_mf},
     // Texts, or binary behind a head of text.
     MeshFormatRow{.extension = "ply", .recognises = by_text<is_ply>, .goes_by_name = true, .read = read_ply},
@@ -248,26 +265,6 @@ bool is_mesh_name(const std::string& name) {
     return first_row([&](const MeshFormatRow& row) {
                return row.read != nullptr && row.extension == extension;
            }) != nullptr;
-}
-
-const char* format_name(MeshFormat format) noexcept {
-    switch (format) {
-    case MeshFormat::stl_binary:
-        return "stl-binary";
-    case MeshFormat::stl_ascii:
-        return "stl-ascii";
-    case MeshFormat::three_mf:
-        return "3mf";
-    case MeshFormat::amf:
-        return "amf";
-    case MeshFormat::obj:
-        return "obj";
-    case MeshFormat::ply:
-        return "ply";
-    case MeshFormat::off:
-        return "off";
-    }
-    return "unknown";
 }
 
 } // namespace lamella

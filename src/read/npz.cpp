@@ -253,7 +253,7 @@ class NpzReader {
             const double from = bottom.length(i);
             const double to = top.length(i);
             if (!(from <= at && at <= to))
-                z.fail(fmt::format("z = {} outside of its slab [{}, {}]", at, from, to),
+                z.fail(fmt::format("z = {} outside of its layer from {} to {}", at, from, to),
                        "z must lie between bottom and top");
             if (i > 0 && !(z.length(i - 1) < at))
                 z.fail(fmt::format("z = {} behind z = {}", at, z.length(i - 1)), "layers must ascend");

@@ -274,7 +274,6 @@ MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, cons
         return fmt::format("line {}", line_at(text, PieceReader(text, again, triangle - before).run()));
     };
     MeshFile file = make_mesh_file(join(faces, executor), source.name, 1, place, remarks, executor);
-    file.format = MeshFormat::obj;
     if (name != FacePiece::nowhere)
         file.name = first_line(text, name);
     file.objects.front().name = file.name;

@@ -156,7 +156,6 @@ MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, cons
             piece.vertices.push_back({x / w + 0.0, y / w + 0.0, z / w + 0.0});
     };
     MeshFile file = read_face_rows(source, rows, remarks, limits, execution);
-    file.format = MeshFormat::off;
     file.warnings = remarks.take();
     return file;
 }

@@ -157,7 +157,6 @@ MeshFile read_ply(const ByteSource& source, const MeshReadOptions& options, cons
     MeshFile file = header.form == PlyForm::ascii
                         ? read_ascii(source, header, places, remarks, limits, execution)
                         : read_ply_binary(source, header, places, remarks, limits, execution);
-    file.format = MeshFormat::ply;
     file.warnings = remarks.take();
     return file;
 }

@@ -540,7 +540,7 @@ MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOpti
                                 line(sum.garbage), printable(Words(text, sum.garbage).peek(), 40)));
 
     MeshFile file;
-    file.format = MeshFormat::stl_ascii;
+    file.format = "stl-ascii";
     Words words(text, after_byte_order_mark(text));
     words.skip_blanks();
     words.skip_word(); // "solid"

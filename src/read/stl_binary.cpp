@@ -226,7 +226,7 @@ void judge_nonfinite(const ByteSource& source, std::uint64_t count, std::uint64_
 /// Without its triangles.
 MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t nonfinite, Remarks& remarks) {
     MeshFile file;
-    file.format = MeshFormat::stl_binary;
+    file.format = "stl-binary";
     file.name = header_text(source.bytes);
     file.stored_triangles = stored;
     file.nonfinite_triangles = nonfinite;

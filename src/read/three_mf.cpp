@@ -46,7 +46,6 @@ class ThreeMfReader {
                 tell(remark.text, remark.offence);
         make_nodes();
         make_file();
-        file_.format = MeshFormat::three_mf;
         const ThreeMfModel& model = parts_.front().model;
         file_.unit_mm = model.unit_mm;
         file_.name = !model.title.empty() ? model.title : file_.objects.front().name;

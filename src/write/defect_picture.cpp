@@ -149,10 +149,10 @@ struct MarkStyle {
     std::string_view colour;
 };
 constexpr MarkStyle boundary{"boundary loops", "#d00000"};
-constexpr MarkStyle conflict{"conflicting edges", "#e000b0"};
+constexpr MarkStyle conflict{words_of(&Inspection::orientation_conflicts).many, "#e000b0"};
 constexpr MarkStyle crowded{"crowded edges and vertices", "#f08000"};
 constexpr MarkStyle meeting{"pairs of triangles that cross or overlap", "#7030d0"};
-constexpr MarkStyle inverted{"inverted shells", "#0050e0"};
+constexpr MarkStyle inverted{words_of(&Inspection::inverted_shells).many, "#0050e0"};
 
 class Marks {
   public:

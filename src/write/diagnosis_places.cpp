@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -17,8 +18,8 @@ std::string size_text(const Box3& box) {
 }
 
 std::string loop_text(const BoundaryLoop& loop) {
-    return fmt::format("{} of {} edges, {:.4g} mm long: the surface has a hole here, and contours stay open",
-                       loop.closed ? "rim" : "broken rim", loop.edges(), loop.length_mm);
+    return fmt::format("{} of {} edges, {:.4g} mm long: {}", loop.closed ? "rim" : "broken rim", loop.edges(),
+                       loop.length_mm, words_of(&Inspection::boundary_edges).meaning);
 }
 
 /// Its edges as one line: bottom, top, and back along the uprights.
@@ -31,13 +32,8 @@ std::vector<Point3> outline(const Box3& box) {
 }
 
 /// A kind of which the diagnosis lists only some says so.
-std::string kind_text(const char* name, std::size_t listed, std::uint64_t total) {
-    return listed < total ? fmt::format("{}, the first of {}", name, total) : name;
-}
-
-const char* meeting_text(MeetingKind kind) {
-    return kind == MeetingKind::crossing ? "two triangles pass through each other"
-                                         : "two triangles lie upon one another";
+std::string kind_text(std::string_view name, std::size_t listed, std::uint64_t total) {
+    return listed < total ? fmt::format("{}, the first of {}", name, total) : std::string(name);
 }
 
 } // namespace
@@ -45,33 +41,35 @@ const char* meeting_text(MeetingKind kind) {
 std::vector<PagePlace> places_of(const Diagnosis& diagnosis) {
     const Inspection& counts = diagnosis.counts;
     std::vector<PagePlace> places;
-    const auto edges = [&](const char* name, const char* text, const std::vector<EdgePlace>& of,
-                           std::uint64_t total) {
+    const auto edges = [&](std::uint64_t Inspection::*count, const std::vector<EdgePlace>& of) {
+        const DefectWords& words = words_of(count);
         for (const EdgePlace& edge : of)
-            places.push_back({kind_text(name, of.size(), total), text, {edge.begin(), edge.end()}});
+            places.push_back({kind_text(words.one, of.size(), counts.*count),
+                              std::string(words.meaning),
+                              {edge.begin(), edge.end()}});
     };
     for (const BoundaryLoop& loop : diagnosis.loops)
         places.push_back({kind_text("boundary loop", diagnosis.loops.size(), diagnosis.boundary_loops),
                           loop_text(loop), loop.points, loop.closed});
-    edges("orientation conflict", "the triangles at this edge face opposite ways, and contours stay open",
-          diagnosis.conflicting_edges, counts.orientation_conflicts);
-    edges("crowded edge", "more than two triangles share this edge; contours part or touch here",
-          diagnosis.nonmanifold_edges, counts.nonmanifold_edges);
+    edges(&Inspection::orientation_conflicts, diagnosis.conflicting_edges);
+    edges(&Inspection::nonmanifold_edges, diagnosis.nonmanifold_edges);
     for (const Point3& vertex : diagnosis.vertices)
         places.push_back(
-            {kind_text("crowded vertex", diagnosis.vertices.size(), diagnosis.nonmanifold_vertices),
-             "parts of the surface touch in this point",
+            {kind_text(crowded_vertices.one, diagnosis.vertices.size(), diagnosis.nonmanifold_vertices),
+             std::string(crowded_vertices.meaning),
              {vertex}});
+    const DefectWords& inverted = words_of(&Inspection::inverted_shells);
     for (const Shell& shell : diagnosis.shells)
         if (shell.kind == ShellKind::inverted)
-            places.push_back({"inverted shell",
-                              fmt::format("{} triangles in {} face inwards; contours run the wrong way round",
-                                          shell.triangles, size_text(shell.box)),
+            places.push_back({std::string(inverted.one),
+                              fmt::format("{} triangles in {}: {}", shell.triangles, size_text(shell.box),
+                                          inverted.meaning),
                               outline(shell.box)});
     if (diagnosis.self_intersections)
         for (const Meeting& meeting : diagnosis.self_intersections->first)
             if (meeting.kind != MeetingKind::touching)
-                places.push_back({"self-intersection", meeting_text(meeting.kind), {meeting.at}});
+                places.push_back(
+                    {"self-intersection", std::string(words_of(meeting.kind).meaning), {meeting.at}});
     return places;
 }
 

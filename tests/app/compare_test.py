@@ -47,6 +47,15 @@ class Compare(ProgramTest):
         self.assertEqual(found["same"], 3)
         self.assertIn("only torus.json has contours", self.differ("torus.json", "part.json").text)
 
+    def test_the_same_layers_cut_at_other_heights_are_told(self):
+        self.slice("low.json", "--slice-at", "bottom")
+        self.slice("low.cli", "--slice-at", "bottom")
+        result = self.differ("low.json", "low.cli")
+        self.assertRegex(result.err, r"low\.json and low\.cli are cut at different heights: the layer from z = (\S+) to "
+                                     r"\S+ mm at \1 mm in the first and at .* in the middle")
+        self.slice("part.json", "--layers", "2:5")
+        self.assertNotIn("different heights", self.differ("torus.json", "part.json").err)
+
     def test_what_cannot_be(self):
         self.fail_with(3, "missing.cli", "compare", "torus.json", "missing.cli")
         self.fail_with(2, "needs SECOND", "compare", "torus.json")

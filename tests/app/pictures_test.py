@@ -45,6 +45,13 @@ class Pictures(ProgramTest):
         self.assertEqual(picture.chunks, ["IHDR", "IDAT", "IEND"])
         self.assertAlmostEqual(picture.covered() * 0.04725 ** 2, 600, delta=0.5)
 
+    def test_pictures_given_for_a_mesh_or_for_contours_are_told(self):
+        for name in ("part.sl1", "part.zip"):
+            self.succeed("slice", self.box(), "-o", name, *(["--format", "png-zip"] if name == "part.zip" else []))
+            for command in (["slice", name, "-o", "x.cli"], ["convert", name, "x.cli"], ["info", name], ["view", name]):
+                with self.subTest(command):
+                    self.fail_with(3, name + ": holds pictures of layers, .*: it is sliced already", *command)
+
     def test_the_sl1s_has_a_display_of_its_own(self):
         self.succeed("slice", self.box(), "-o", "part.sl1s", "--layer-height", "1")
         archive = self.archive("part.sl1s")

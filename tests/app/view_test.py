@@ -88,7 +88,12 @@ class View(ProgramTest):
         self.succeed("view", "open.stl")
         self.succeed("info", "open.stl", "--report", "mesh.html")
         for name in ("open.html", "mesh.html"):
-            places = element(self.page(name), "notes")["places"]
+            notes = element(self.page(name), "notes")
+            places = notes["places"]
+            facts = {fact["name"]: fact["value"] for section in notes["sections"] for fact in section["facts"]}
+            self.assertEqual((facts["Boundary edges"], facts["Crowded edges"]), ("4", "none"))
+            self.assertIn(" 4 boundary edges: the surface has holes", self.succeed("info", "open.stl").text)
+            self.assertIn("the surface has holes", places[0]["text"])
             self.assertEqual([place["kind"] for place in places], ["boundary loop"])
             self.assertEqual(sorted(places[0]["points"]), [[20, y, z] for y in (0, 30) for z in (0, 10)])
         self.assertEqual(element(self.page("open.html"), "table")["open_chains"], [1] * 100)

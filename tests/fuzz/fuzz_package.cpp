@@ -19,7 +19,7 @@ void read_meshes(const std::string& bytes) {
         const MeshFile file = read_mesh(std::as_bytes(std::span(bytes)), "fuzz",
                                         {.max_triangles = 50'000, .max_memory = 100'000'000}, {.threads = 1});
         require(!file.objects.empty() && !file.instances.empty());
-        if (file.format == MeshFormat::stl_binary)
+        if (file.format == "stl-binary")
             return; // the archive happens to have the count of one
         for (const MeshObject& object : file.objects) {
             require(!object.mesh.empty());

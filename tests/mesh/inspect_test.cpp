@@ -98,6 +98,16 @@ TEST(Inspect, AnEmptyMeshHasNothing) {
     EXPECT_TRUE(found.sound());
 }
 
+TEST(Inspect, AnyKindOfDefectMakesAMeshUnsound) {
+    for (const DefectKind& kind : defect_kinds) {
+        Inspection found;
+        EXPECT_TRUE(found.sound());
+        found.*kind.count = 1;
+        EXPECT_FALSE(found.sound()) << kind.words.key;
+        EXPECT_EQ(words_of(kind.count).key, kind.words.key);
+    }
+}
+
 TEST(Inspect, CountsTheEdgesOfAHole) {
     const Inspection found = inspected(open_cube());
     EXPECT_EQ(found.boundary_edges, 3U);

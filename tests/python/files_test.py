@@ -192,7 +192,7 @@ def test_defects_are_told_in_words():
     found = lamella.inspect((vertices, np.concatenate([faces, faces[:1], [(0, 0, 1)]])))
     assert not found.closed and not found.sound
     assert found.defects == (
-        "4 boundary edges, 3 edges with more than two triangles, 3 orientation conflicts, 1 duplicate triangle, "
+        "4 boundary edges, 3 crowded edges, 3 orientation conflicts, 1 duplicate triangle, "
         "1 degenerate triangle"
     )
     assert lamella.inspect(box_arrays(inward=True)).inverted_shells == 1
@@ -285,6 +285,11 @@ def test_nothing_is_left_of_a_file_that_fails(tmp_path, rook):
     with pytest.raises(Stop):
         lamella.write(tmp_path / "out.cli", lamella.slice(rook, 0.5), progress=progress)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_mesh_formats_are_those_that_the_program_takes(program):
+    told = program.succeed("slice", "--help").decode()
+    assert lamella.mesh_formats() and all(f".{name}" in told for name in lamella.mesh_formats())
 
 
 def test_formats_are_those_of_the_program(program):

@@ -29,19 +29,19 @@ const std::string stl =
 
 TEST(MeshFile, IsReadByItsContentWhateverItsName) {
     for (const std::string name : {"part", "part.stl", "part.obj", "part.off", "part.ply", "part.txt"}) {
-        EXPECT_EQ(read(stl, name).format, MeshFormat::stl_ascii) << name;
-        EXPECT_EQ(read(ply, name).format, MeshFormat::ply) << name;
-        EXPECT_EQ(read(off, name).format, MeshFormat::off) << name;
+        EXPECT_EQ(read(stl, name).format, "stl-ascii") << name;
+        EXPECT_EQ(read(ply, name).format, "ply") << name;
+        EXPECT_EQ(read(off, name).format, "off") << name;
         if (name != "part.off" && name != "part.ply") {
-            EXPECT_EQ(read(obj, name).format, MeshFormat::obj) << name;
+            EXPECT_EQ(read(obj, name).format, "obj") << name;
         }
     }
 }
 
 TEST(MeshFile, IsReadByItsNameWhereTheContentDoesNotTell) {
-    EXPECT_EQ(read(off.substr(4), "part.off").format, MeshFormat::off);
-    EXPECT_EQ(read(off.substr(4), "PART.OFF").format, MeshFormat::off);
-    EXPECT_EQ(read("s off\nxyz\n" + obj, "part.Obj").format, MeshFormat::obj);
+    EXPECT_EQ(read(off.substr(4), "part.off").format, "off");
+    EXPECT_EQ(read(off.substr(4), "PART.OFF").format, "off");
+    EXPECT_EQ(read("s off\nxyz\n" + obj, "part.Obj").format, "obj");
     EXPECT_EQ(error_of("1 2 3\n", "folder.obj/part"),
               "folder.obj/part: line 1: is a text, but no mesh file: found '1 2 3', expected 'solid'");
 }
@@ -72,6 +72,13 @@ TEST(MeshFile, RefusesSliceFilesByWhatTheyHold) {
     }
     EXPECT_EQ(error_of(zip_test::zip_bytes({{.name = "points.npy", .content = "x"}}), "part.npz"),
               "part.npz: is a slice file (NumPy arrays): " + already);
+    for (const std::string picture : {"00000.png", "part/LAYER.PNG"})
+        EXPECT_EQ(
+            error_of(zip_test::zip_bytes(
+                         {{.name = "config.ini", .content = "x"}, {.name = picture, .content = "x"}}),
+                     "job.sl1"),
+            "job.sl1: holds pictures of layers, as for a resin printer: it is sliced already, and neither a "
+            "mesh nor contours can be read from it");
 }
 
 TEST(MeshFile, IsNotGuessedToBeBinaryStlUnderTheNameOfASliceFile) {
@@ -80,8 +87,8 @@ TEST(MeshFile, IsNotGuessedToBeBinaryStlUnderTheNameOfASliceFile) {
             error_of(std::string(300, '\1'), "part." + extension),
             fmt::format("part.{0}: is neither a mesh file nor the slice file that its extension .{0} says",
                         extension));
-    EXPECT_EQ(read(obj, "part.json").format, MeshFormat::obj);
-    EXPECT_EQ(read(stl, "part.cli").format, MeshFormat::stl_ascii);
+    EXPECT_EQ(read(obj, "part.json").format, "obj");
+    EXPECT_EQ(read(stl, "part.cli").format, "stl-ascii");
 }
 
 TEST(MeshFile, GoesByTheExtensionsOfTheFormatsThatAreRead) {

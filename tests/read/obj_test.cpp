@@ -11,7 +11,7 @@ const std::vector<Point3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.2}};
 
 TEST(Obj, ReadsVerticesAndFaces) {
     expect_mesh(triangle, name, corners, {{0, 1, 2}});
-    EXPECT_EQ(read(triangle, name).format, MeshFormat::obj);
+    EXPECT_EQ(read(triangle, name).format, "obj");
 }
 
 TEST(Obj, KeepsSharingAsTheFileHasIt) {

@@ -11,9 +11,9 @@ const std::vector<Point3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.2}};
 
 TEST(Off, ReadsVerticesAndFaces) {
     expect_mesh("OFF\n3 1 0\n" + rows, name, corners, {{0, 1, 2}});
-    EXPECT_EQ(read("OFF\n3 1 0\n" + rows, name).format, MeshFormat::off);
+    EXPECT_EQ(read("OFF\n3 1 0\n" + rows, name).format, "off");
     // By its first word, whatever the name.
-    EXPECT_EQ(read("OFF\n3 1 0\n" + rows, "part.stl").format, MeshFormat::off);
+    EXPECT_EQ(read("OFF\n3 1 0\n" + rows, "part.stl").format, "off");
 }
 
 TEST(Off, TakesTheHeadInAnyLayout) {

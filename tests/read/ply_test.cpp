@@ -64,7 +64,7 @@ TEST(Ply, ReadsAllThreeForms) {
     expect_mesh(head(little) + binary_rows(false), name, corners, {{0, 1, 2}});
     expect_mesh(head(big) + binary_rows(true), name, corners, {{0, 1, 2}});
     // By its first line, whatever the name.
-    EXPECT_EQ(read(head(little) + binary_rows(false), "part.stl").format, MeshFormat::ply);
+    EXPECT_EQ(read(head(little) + binary_rows(false), "part.stl").format, "ply");
 }
 
 std::string strips_head(const std::string& form, const std::string& index_type,

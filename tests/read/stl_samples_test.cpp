@@ -80,7 +80,7 @@ TEST(StlSamples, HaveTheTrianglesAndTheBoxOfTheirTable) {
             continue;
         }
         const MeshFile file = read_mesh(path);
-        EXPECT_EQ(file.format == MeshFormat::stl_ascii, row["format"] == "STL-ascii");
+        EXPECT_EQ(file.format == "stl-ascii", row["format"] == "STL-ascii");
         EXPECT_EQ(std::to_string(file.stored_triangles), row["triangles"]);
         EXPECT_EQ(std::to_string(file.nonfinite_triangles), row["nonfinite_faces"]);
         EXPECT_EQ(file.warnings, std::vector<std::string>{});

@@ -55,6 +55,9 @@ struct Shell {
 
 using EdgePlace = std::array<Point3, 2>;
 
+inline constexpr DefectWords crowded_vertices{"nonmanifold_vertices", "crowded vertex", "crowded vertices",
+                                              "parts of the surface touch in a point; no harm to contours"};
+
 struct Diagnosis {
     Inspection counts;
 

@@ -6,7 +6,10 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace lamella {
 
@@ -37,11 +40,62 @@ struct Inspection {
     /// Every edge is used as often one way as the other: slices have no open chains.
     [[nodiscard]] bool closed() const noexcept { return boundary_edges == 0 && orientation_conflicts == 0; }
     /// Closed, and nothing else counted above.
-    [[nodiscard]] bool sound() const noexcept {
-        return closed() && nonmanifold_edges == 0 && duplicate_triangles == 0 && degenerate_triangles == 0 &&
-               inverted_shells == 0;
-    }
+    [[nodiscard]] bool sound() const noexcept;
 };
+
+/// How a kind of defect is called wherever it is told.
+struct DefectWords {
+    std::string_view key;     ///< as its count is called, here and in JSON
+    std::string_view one;     ///< of them
+    std::string_view many;    ///< of them
+    std::string_view meaning; ///< what it is, and what comes of it in slices
+};
+
+struct DefectKind {
+    std::uint64_t Inspection::*count;
+    bool spoils_contours; ///< they stay open or run the wrong way round
+    DefectWords words;
+};
+
+/// All that an inspection counts.
+inline constexpr std::array<DefectKind, 6> defect_kinds{
+    {{&Inspection::boundary_edges,
+      true,
+      {"boundary_edges", "boundary edge", "boundary edges",
+       "the surface has holes; contours stay open there"}},
+     {&Inspection::nonmanifold_edges,
+      false,
+      {"nonmanifold_edges", "crowded edge", "crowded edges",
+       "more than two triangles share an edge; contours part or touch there"}},
+     {&Inspection::orientation_conflicts,
+      true,
+      {"orientation_conflicts", "orientation conflict", "orientation conflicts",
+       "neighbouring triangles face opposite ways; contours stay open there"}},
+     {&Inspection::duplicate_triangles,
+      false,
+      {"duplicate_triangles", "duplicate triangle", "duplicate triangles",
+       "the same triangle more than once"}},
+     {&Inspection::degenerate_triangles,
+      false,
+      {"degenerate_triangles", "degenerate triangle", "degenerate triangles",
+       "two equal corners; left out of everything"}},
+     {&Inspection::inverted_shells,
+      true,
+      {"inverted_shells", "inverted shell", "inverted shells",
+       "inside out; contours run the wrong way round there"}}}};
+
+/// The words for what this member of Inspection counts.
+[[nodiscard]] constexpr const DefectWords& words_of(std::uint64_t Inspection::*count) {
+    const auto* kind = defect_kinds.begin();
+    while (kind->count != count)
+        ++kind;
+    return kind->words;
+}
+
+inline bool Inspection::sound() const noexcept {
+    return std::all_of(defect_kinds.begin(), defect_kinds.end(),
+                       [this](const DefectKind& kind) { return this->*kind.count == 0; });
+}
 
 /// Counts the defects of a mesh. Expected O(n); parallel where it pays; the same result for any number of
 /// threads. Degenerate triangles (equal corners) are counted and otherwise ignored, as slicing ignores them.

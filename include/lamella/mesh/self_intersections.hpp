@@ -5,11 +5,12 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/inspect.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -20,9 +21,6 @@ enum class MeetingKind {
     overlapping, ///< they lie in one plane and have a piece of area in common
     touching,    ///< they have a point or a segment in common, and one of them ends there
 };
-
-/// "crossing", "overlapping", "touching".
-[[nodiscard]] std::string_view meeting_name(MeetingKind kind) noexcept;
 
 struct Meeting {
     std::uint32_t triangle_a = 0; ///< below triangle_b
@@ -53,6 +51,22 @@ struct SelfIntersections {
 
     [[nodiscard]] std::uint64_t pairs() const noexcept { return crossing + overlapping + touching; }
 };
+
+/// How meetings are called wherever they are told, in the order of MeetingKind.
+struct MeetingWords {
+    std::uint64_t SelfIntersections::*count;
+    DefectWords words;
+};
+inline constexpr std::array<MeetingWords, 3> meeting_words{
+    {{&SelfIntersections::crossing,
+      {"crossing", "crossing", "crossings", "two triangles pass through each other"}},
+     {&SelfIntersections::overlapping,
+      {"overlapping", "overlap", "overlaps", "two triangles lie upon one another in one plane"}},
+     {&SelfIntersections::touching,
+      {"touching", "touch", "touches", "two triangles meet beside their edges"}}}};
+[[nodiscard]] constexpr const DefectWords& words_of(MeetingKind kind) {
+    return meeting_words[static_cast<std::size_t>(kind)].words;
+}
 
 struct MeetingOptions {
     std::size_t keep = 16; ///< bounds SelfIntersections::first, for each half of it

@@ -50,7 +50,7 @@ struct PlatePart {
 /// What became of an input file.
 struct PlateFile {
     std::string path;
-    MeshFormat format = MeshFormat::stl_binary;
+    std::string format; ///< MeshFile::format
     double unit_mm = 1;
     Transform matrix; ///< from the file's coordinates (build items not counted) to the plate's
     std::uint64_t stored_triangles = 0;

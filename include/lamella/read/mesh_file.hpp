@@ -16,11 +16,6 @@
 
 namespace lamella {
 
-enum class MeshFormat { stl_binary, stl_ascii, three_mf, amf, obj, ply, off };
-
-/// "stl-binary", "stl-ascii", "3mf", "amf", "obj", "ply", "off".
-[[nodiscard]] const char* format_name(MeshFormat format) noexcept;
-
 /// The extensions of mesh files, in lower case: "stl", "3mf"...
 [[nodiscard]] std::vector<std::string_view> mesh_extensions();
 
@@ -58,7 +53,7 @@ struct MeshInstance {
 
 struct MeshFile {
     std::string path;
-    MeshFormat format = MeshFormat::stl_binary;
+    std::string format; ///< "stl-binary", "stl-ascii", or else the extension of its format, such as "3mf"
     /// The first solid's name or the header's text, where there is one: valid UTF-8 of one line and some 1000
     /// bytes at most; other bytes are written as \xNN.
     std::string name;

@@ -1,26 +1,51 @@
-#include "stats_json.hpp"
+#include "figures.hpp"
 
 #include "lamella/core/version.hpp"
 
 #include "config_file.hpp"
+#include "numbers.hpp"
 #include "options.hpp"
 #include "repair_options.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
+#include <cassert>
+#include <cctype>
 #include <fstream>
-#include <string>
-#include <string_view>
+#include <utility>
 
 namespace lamella::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+Figure count(std::string_view key, std::uint64_t value, std::string_view name) {
+    return {key, value, name, grouped(value)};
+}
+
+Figure defect(const DefectWords& words, std::uint64_t value, Tone tone) {
+    return {words.key, value, words.many, value == 0 ? "none" : grouped(value),
+            value == 0 ? Tone::good : tone};
+}
+
+Figure stage(Stage stage, double seconds) {
+    return {stage_name(stage), seconds, deed(stage), seconds > 0 ? fmt::format("{:.3f} s", seconds) : ""};
+}
+
+std::string shells_text(const Inspection& found) {
+    if (found.cavities == 0)
+        return grouped(found.shells);
+    return fmt::format("{}, {} of them {}", grouped(found.shells), grouped(found.cavities),
+                       found.cavities == 1 ? "a cavity" : "cavities");
+}
+
+/// Texts of terminals are plain ASCII; a page has room for more.
+std::string typeset(std::string text) {
+    for (const auto& [plain, sign] : {std::pair{" x ", " × "}, {"mm2", "mm²"}, {"mm3", "mm³"}})
+        for (auto at = text.find(plain); at != std::string::npos; at = text.find(plain))
+            text.replace(at, 3, sign);
+    return text;
+}
 
 /// Of this program: what getrusage tells includes the process that started it.
 std::uint64_t peak_rss_bytes() {
@@ -96,7 +121,7 @@ Json inputs_json(const FileResult& result) {
     Json inputs = Json::array();
     for (const PlateFile& file : result.files)
         inputs.push_back({{"path", file.path},
-                          {"format", format_name(file.format)},
+                          {"format", file.format},
                           {"triangles", file.stored_triangles},
                           {"unit", unit_name(file.unit_mm)},
                           {"matrix", matrix_json(file.matrix)}});
@@ -137,13 +162,130 @@ void append_json(std::string& text, const Json& value, std::size_t depth) {
 
 } // namespace
 
-Json defects_json(const Inspection& found) {
-    return {{"boundary_edges", found.boundary_edges},
-            {"nonmanifold_edges", found.nonmanifold_edges},
-            {"orientation_conflicts", found.orientation_conflicts},
-            {"duplicate_triangles", found.duplicate_triangles},
-            {"degenerate_triangles", found.degenerate_triangles},
-            {"inverted_shells", found.inverted_shells}};
+Figures mesh_figures(const Inspection& found) {
+    const bool closed = found.closed();
+    const bool sound = found.sound();
+    return {
+        {"surface",
+         {},
+         "surface",
+         sound    ? "closed, without defects"
+         : closed ? "closed, with defects"
+                  : "not closed",
+         sound    ? Tone::good
+         : closed ? Tone::warning
+                  : Tone::bad},
+        count("triangles", found.triangles, "triangles"),
+        count("vertices", found.vertices, "vertices"),
+        {"bbox", box_json(found.box), "size", size_text(found.box)},
+        {"place", {}, "from", fmt::format("{} to {}", point_text(found.box.min), point_text(found.box.max))},
+        {"volume_mm3", found.volume_mm3, "volume",
+         closed ? fmt::format("{} mm3", brief(found.volume_mm3)) : "none: the surface is not closed"},
+        {"area_mm2", found.area_mm2, "area", fmt::format("{} mm2", brief(found.area_mm2))},
+        {"closed", closed, "closed", closed ? "yes" : "no"},
+        {"shells", found.shells, "shells", shells_text(found)},
+        count("cavities", found.cavities, "cavities")};
+}
+
+Figures defect_figures(const Inspection& found) {
+    Figures figures;
+    for (const DefectKind& kind : defect_kinds)
+        figures.push_back(
+            defect(kind.words, found.*kind.count, kind.spoils_contours ? Tone::bad : Tone::warning));
+    return figures;
+}
+
+Figures meeting_figures(const SelfIntersections& found) {
+    Figures figures;
+    for (const MeetingWords& kind : meeting_words)
+        figures.push_back(defect(kind.words, found.*kind.count, Tone::warning));
+    return figures;
+}
+
+Figures layer_figures(std::uint64_t layers, const LayerMeasure& all, double volume_mm3) {
+    return {count("layers", layers, "layers"),
+            count("contours", all.contours, "contours"),
+            {"open_chains", all.open_chains, "open chains",
+             all.open_chains == 0 ? "none" : grouped(all.open_chains)},
+            count("points", all.points, "points"),
+            {"volume_mm3", volume_mm3, "volume", fmt::format("{} mm3", brief(volume_mm3))}};
+}
+
+Figures run_figures(const FileResult& result) {
+    const SliceReport& report = result.report;
+    const FileResult::Seconds& seconds = result.seconds;
+    Figures figures{
+        count("triangles", result.triangles, "triangles"),
+        {"parts", {}, "parts", result.parts.size() > 1 ? grouped(result.parts.size()) : ""},
+        {"bbox", box_json(result.box), "size", size_text(result.box)},
+        {"engine", result.engine, "engine", result.engine},
+        count("threads", result.threads, "threads"),
+        stage(Stage::read, seconds.read),
+        stage(Stage::weld, seconds.weld),
+        stage(Stage::link, seconds.link),
+        stage(Stage::slice, seconds.slice),
+        stage(Stage::polygon, seconds.polygon),
+        stage(Stage::write, seconds.write),
+        {"total", seconds.total},
+        {"bytes", result.bytes, "written",
+         result.format.empty() ? "" : fmt::format("{}, {}", result.format, byte_size(result.bytes))}};
+    const LayerMeasure all{
+        .contours = report.contours, .open_chains = report.open_chains, .points = report.points};
+    for (Figure& figure : layer_figures(report.layers, all, result.volume_mm3))
+        figures.push_back(std::move(figure));
+    return figures;
+}
+
+Figures picked(const Figures& figures, const std::vector<std::string_view>& keys) {
+    Figures found;
+    for (const std::string_view key : keys)
+        for (const Figure& figure : figures)
+            if (figure.key == key)
+                found.push_back(figure);
+    assert(found.size() == keys.size());
+    return found;
+}
+
+Json as_json(const Figures& figures) {
+    Json object;
+    for (const Figure& figure : figures)
+        object[std::string(figure.key)] = figure.value;
+    return object;
+}
+
+std::string as_lines(const Figures& figures) {
+    std::string text;
+    for (const Figure& figure : figures)
+        if (!figure.text.empty())
+            text += result_line(figure.name, figure.text);
+    return text;
+}
+
+std::vector<PageFact> as_facts(const Figures& figures) {
+    std::vector<PageFact> facts;
+    for (const Figure& figure : figures)
+        if (!figure.text.empty()) {
+            facts.push_back({std::string(figure.name), typeset(figure.text), figure.tone});
+            facts.back().name[0] = static_cast<char>(std::toupper(figure.name[0]));
+        }
+    return facts;
+}
+
+Json point_json(const Point3& p) {
+    return {p.x, p.y, p.z};
+}
+
+Json box_json(const Box3& box) {
+    return {point_json(box.min), point_json(box.max)};
+}
+
+std::string size_text(const Box3& box) {
+    return fmt::format("{} x {} x {} mm", brief(box.max.x - box.min.x), brief(box.max.y - box.min.y),
+                       brief(box.max.z - box.min.z));
+}
+
+std::string point_text(const Point3& p) {
+    return fmt::format("({}, {}, {})", brief(p.x), brief(p.y), brief(p.z));
 }
 
 Json open_gaps_json(const OpenGaps& gaps) {
@@ -151,16 +293,12 @@ Json open_gaps_json(const OpenGaps& gaps) {
         {"open_gaps", gaps.count}, {"longest_open_gap_mm", gaps.longest_mm}, {"open_gaps_mm", gaps.total_mm}};
 }
 
-Json box_json(const Box3& box) {
-    return {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}};
-}
-
 Json stats_json(const Command& command, const FileResult& result) {
     const PlateFile& first = result.files.front();
     Json options = options_in_effect(command);
     options["matrix"] = matrix_json(first.matrix);
     const bool inspected = result.inspection.has_value();
-    const FileResult::Seconds& seconds = result.seconds;
+    const Figures run = run_figures(result);
     Json stats = {{"lamella", version()},
                   {"options", std::move(options)},
                   {"input",
@@ -170,22 +308,11 @@ Json stats_json(const Command& command, const FileResult& result) {
                     {"bbox", box_json(result.box)},
                     {"unit", unit_name(first.unit_mm)},
                     {"volume_mm3", result.mesh_volume_mm3},
-                    {"defects", inspected ? defects_json(*result.inspection) : Json()}}},
-                  {"engine", result.engine},
-                  {"threads", result.threads},
-                  {"seconds",
-                   {{"read", seconds.read},
-                    {"weld", seconds.weld},
-                    {"link", seconds.link},
-                    {"slice", seconds.slice},
-                    {"polygon", seconds.polygon},
-                    {"write", seconds.write},
-                    {"total", seconds.total}}},
-                  {"peak_rss_bytes", peak_rss_bytes()},
-                  {"points", result.report.points},
-                  {"contours", result.report.contours},
-                  {"open_chains", result.report.open_chains},
-                  {"volume_mm3", result.volume_mm3}};
+                    {"defects", inspected ? as_json(defect_figures(*result.inspection)) : Json()}}}};
+    stats.update(as_json(picked(run, {"engine", "threads"})));
+    stats["seconds"] = as_json(picked(run, {"read", "weld", "link", "slice", "polygon", "write", "total"}));
+    stats["peak_rss_bytes"] = peak_rss_bytes();
+    stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3"})));
     if (result.slabs != 0)
         stats["slabs"] = result.slabs;
     if (result.changes) {

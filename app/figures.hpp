@@ -1,0 +1,75 @@
+#pragma once
+
+// The figures of meshes, of layers and of runs. Each is described once, and told from that as JSON, in lines
+// for people, and on pages.
+
+#include "lamella/mesh/self_intersections.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+
+#include "command.hpp"
+#include "messages.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella::app {
+
+struct Figure {
+    std::string_view key; ///< in JSON
+    Json value;
+    std::string_view name = {}; ///< for people
+    std::string text = {};      ///< its value for people; "" where they are not told
+    Tone tone = Tone::plain;    ///< on pages
+};
+using Figures = std::vector<Figure>;
+
+[[nodiscard]] Figures mesh_figures(const Inspection& found);
+[[nodiscard]] Figures defect_figures(const Inspection& found);
+[[nodiscard]] Figures meeting_figures(const SelfIntersections& found);
+[[nodiscard]] Figures layer_figures(std::uint64_t layers, const LayerMeasure& all, double volume_mm3);
+[[nodiscard]] Figures run_figures(const FileResult& result);
+
+/// Those with these keys, in the order of the keys.
+[[nodiscard]] Figures picked(const Figures& figures, const std::vector<std::string_view>& keys);
+[[nodiscard]] Json as_json(const Figures& figures);
+/// Of a result.
+[[nodiscard]] std::string as_lines(const Figures& figures);
+[[nodiscard]] std::vector<PageFact> as_facts(const Figures& figures);
+
+[[nodiscard]] Json point_json(const Point3& p);
+/// What `tell` makes of the first few places.
+template <class Places, class Tell>
+[[nodiscard]] Json list_json(const Places& places, const Tell& tell) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < places.size() && i < 16; ++i)
+        list.push_back(tell(places[i]));
+    return list;
+}
+/// [[x, y, z], [x, y, z]]
+[[nodiscard]] Json box_json(const Box3& box);
+/// "(1, 2, 3)"
+[[nodiscard]] std::string point_text(const Point3& p);
+/// "20 x 30 x 10 mm"
+[[nodiscard]] std::string size_text(const Box3& box);
+
+/// What is missing where contours stay open.
+[[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
+/// What `lamella slice --stats` writes; docs/program.md lists the keys.
+[[nodiscard]] Json stats_json(const Command& command, const FileResult& result);
+/// As text with a line end; names that are not UTF-8 get replacement characters.
+[[nodiscard]] std::string json_text(const Json& object);
+
+/// "rook, rook 2, axle": the labels of the first few.
+template <class Parts>
+[[nodiscard]] std::string labels_text(const Parts& parts) {
+    std::string text;
+    for (std::size_t i = 0; i < parts.size() && i < 8; ++i)
+        text.append(i == 0 ? "" : ", ").append(one_line(parts[i].label));
+    return parts.size() > 8 ? text + ", ..." : text;
+}
+
+} // namespace lamella::app
