@@ -13,6 +13,9 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -146,6 +149,50 @@ TEST_F(Processes, FailOnAllWithTheSameWords) {
     expect_failure(job, "more than the 1000"); // bytes, as one process says it, or several of all pieces
     job.format = "npz";
     expect_failure(job, "1000 bytes that it may");
+}
+
+/// How often each process tells of the progress of each stage, by one thread.
+std::vector<std::map<Stage, int>> calls_of(const FileJob& job, std::size_t processes) {
+    std::vector<std::map<Stage, int>> calls(processes);
+    test::run_processes(processes, [&](Communicator& own) {
+        const Execution counted{.threads = 1, .progress = [&](const Progress& progress) {
+                                    ++calls[own.process()][progress.stage];
+                                }};
+        static_cast<void>(slice_file(job, counted, own));
+    });
+    return calls;
+}
+
+TEST_F(Processes, StopTogetherWhicheverOfThemFailsInWhateverStage) {
+    write_stl(path("part.stl"), part());
+    write_stl_ascii(path("ascii.stl"), make_torus(20, 10, 60, 30), "part");
+    const std::vector<std::string> inputs = folder_.entries();
+    constexpr std::size_t processes = 3;
+    for (const std::string& input : inputs) {
+        FileJob job = job_of({{.path = path(input)}}, 2);
+        job.output = path("out");
+        job.format = input == "part.stl" ? "cli" : "npz"; // written by all processes, by one of them
+        const std::vector<std::map<Stage, int>> calls = calls_of(job, processes);
+        std::filesystem::remove(path("out"));
+        for (std::size_t failing = 0; failing < processes; ++failing)
+            for (const auto& [stage, count] : calls[failing])
+                for (const int call : std::set{1, count / 2 + 1, 5 * count / 6 + 1, count}) {
+                    SCOPED_TRACE(testing::Message() << input << ": process " << failing << " at call " << call
+                                                    << " of " << count << " of " << stage_name(stage));
+                    const Error error = test::common_failure(processes, [&,
+                                                                         stage = stage](Communicator& own) {
+                        int left = own.process() == failing ? call : 0;
+                        const Execution execution{.threads = 1, .progress = [&](const Progress& progress) {
+                                                      if (progress.stage == stage && --left == 0)
+                                                          throw Error(ErrorKind::limit, "no further");
+                                                  }};
+                        static_cast<void>(slice_file(job, execution, own));
+                    });
+                    EXPECT_EQ(error.kind(), ErrorKind::limit);
+                    EXPECT_STREQ(error.what(), "no further");
+                    EXPECT_EQ(folder_.entries(), inputs);
+                }
+    }
 }
 
 TEST_F(Processes, LeaveTheFileAsItWasWhereTheyFail) {
