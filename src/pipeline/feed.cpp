@@ -233,8 +233,10 @@ const Transform& Feed::placement(std::size_t shape) const {
 PlaneCounts Feed::count(const Plan& plan, const Execution& execution) {
     counts_.clear();
     if (files_.empty())
-        for (const PlateShape& shape : plate_.shapes)
-            counts_.push_back(count_planes(shape.mesh, plan, execution));
+        in_agreement(processes_, [&] {
+            for (const PlateShape& shape : plate_.shapes)
+                counts_.push_back(count_planes(shape.mesh, plan, execution));
+        });
     else
         count_streams(plan, execution);
     return counts_of_parts(plan.layers.size());
@@ -310,9 +312,9 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
     in_agreement(*among_, [&] {
         if (!store_->full())
             throw changed_while_read();
+        if (execution.progress)
+            execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
     });
-    if (execution.progress)
-        execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
     return shares;
 }
 

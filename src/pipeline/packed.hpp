@@ -48,6 +48,8 @@ class Unpacker {
     template <class T>
     [[nodiscard]] std::vector<T> get_all() {
         const auto count = get<std::uint64_t>();
+        if (count > rest_.size() / sizeof(T)) // before there is memory for them
+            throw too_short();
         std::vector<T> values(count);
         if (count > 0)
             std::memcpy(values.data(), next(count * sizeof(T)), count * sizeof(T));
@@ -56,9 +58,10 @@ class Unpacker {
     [[nodiscard]] bool empty() const noexcept { return rest_.empty(); }
 
   private:
+    static Error too_short() { return {ErrorKind::internal, "a message between processes is too short"}; }
     const char* next(std::size_t bytes) {
         if (bytes > rest_.size())
-            throw Error(ErrorKind::internal, "a message between processes is too short");
+            throw too_short();
         const char* const at = rest_.data();
         rest_.remove_prefix(bytes);
         return at;

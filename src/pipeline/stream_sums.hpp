@@ -64,13 +64,6 @@ class VolumeSum {
     /// Sums of the batches, in their order.
     [[nodiscard]] const std::vector<double>& pieces() const noexcept { return pieces_; }
 
-    [[nodiscard]] double volume() const noexcept {
-        double total = 0;
-        for (const double piece : pieces_)
-            total += piece;
-        return total / 6;
-    }
-
   private:
     Transform placement_;
     Point3 origin_;

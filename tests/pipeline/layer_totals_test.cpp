@@ -2,14 +2,23 @@
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 
+#include "expect_same_result.hpp"
+#include "fixtures/layers.hpp"
+#include "fixtures/random.hpp"
 #include "pipeline/layer_totals.hpp"
+#include "thread_processes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <thread>
+#include <utility>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -78,7 +87,7 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     const PlannedLayer& above = plan.layers[1];
     const Layer open = chain.finish(above.index, above.z, above.bottom, above.top);
     const Layer empty = LayerBuilder().finish(plan.layers[0].index, plan.layers[0].z, 0, 1);
-    totals.add(std::span(&empty, 1), {GapJoin{{}, {}, 0.25}, GapJoin{{}, {}, 0.5}}, {});
+    totals.add(std::span(&empty, 1), {GapJoin{{}, {}, 0.5}, GapJoin{{}, {}, 0.25}}, {});
     totals.add(std::span(&open, 1), {}, {});
     const FileResult result = told(totals, 1);
     EXPECT_EQ(result.open.layers, 1U);
@@ -88,8 +97,124 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     EXPECT_EQ(result.gaps.closed, 2U);
     EXPECT_EQ(result.gaps.layers, 1U);
     EXPECT_EQ(result.gaps.total_mm, 0.75);
+    EXPECT_EQ(result.gaps.longest_mm, 0.5);
     EXPECT_EQ(result.gaps.first_z, plan.layers[0].z);
     EXPECT_TRUE(result.layers.empty());
+}
+
+/// What was made of one plane.
+struct Plane {
+    std::vector<Layer> parts;
+    std::vector<GapJoin> joins;
+    LayerChanges changes;
+};
+
+/// Rings, some of them inside out, and chains, some of them none: numbers whose sums depend on their order.
+Layer random_layer(test::Random& random, const PlannedLayer& plane) {
+    LayerBuilder builder;
+    for (std::int64_t rings = random.integer(0, 3); rings > 0; --rings) {
+        const double x = random.real(-50, 50);
+        const double y = random.real(-50, 50);
+        test::Contour ring = test::rectangle(x, y, x + random.real(0.1, 9), y + random.real(0.1, 9));
+        if (random.integer(0, 2) == 0)
+            ring = test::reversed(ring);
+        for (const Point2& p : ring)
+            builder.add_point(p);
+        builder.end_contour(true);
+    }
+    for (std::int64_t chains = random.integer(-3, 2); chains > 0; --chains) {
+        for (std::int64_t points = random.integer(2, 5); points > 0; --points)
+            builder.add_point({random.real(-50, 50), random.real(-50, 50)});
+        builder.end_contour(false);
+    }
+    return builder.finish(plane.index, plane.z, plane.bottom, plane.top);
+}
+
+std::vector<Plane> random_planes(test::Random& random, const Plan& plan, std::size_t parts) {
+    std::vector<Plane> planes;
+    for (const PlannedLayer& planned : plan.layers) {
+        Plane& plane = planes.emplace_back();
+        for (std::size_t part = 0; part < parts; ++part)
+            plane.parts.push_back(random_layer(random, planned));
+        for (std::int64_t joins = random.integer(-2, 3); joins > 0; --joins)
+            plane.joins.push_back({{random.real(0, 1), 0}, {0, random.real(0, 1)}, random.real(0.01, 1)});
+        plane.changes = {.changed_layers = random.bits() % 2,
+                         .rings_dropped = random.bits() % 5,
+                         .area_before_mm2 = random.real(0, 99),
+                         .area_after_mm2 = random.real(0, 99)};
+    }
+    return planes;
+}
+
+/// From several threads, which take the planes as they come.
+void add_all(LayerTotals& totals, std::span<const Plane> planes, unsigned threads) {
+    std::atomic<std::size_t> next{0};
+    std::vector<std::thread> team;
+    for (unsigned t = 0; t < threads; ++t)
+        team.emplace_back([&] {
+            for (std::size_t i; (i = next++) < planes.size();) {
+                const Plane& plane = planes[planes.size() - 1 - i];
+                totals.add(plane.parts, plane.joins, plane.changes);
+            }
+        });
+    for (std::thread& thread : team)
+        thread.join();
+}
+
+TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
+    test::Random random(3);
+    for (int round = 0; round < 40; ++round) {
+        SCOPED_TRACE(testing::Message() << "round " << round);
+        FileJob job;
+        job.layer_statistics = random.integer(0, 2) != 0;
+        if (random.integer(0, 2) != 0)
+            job.repair.close_gaps_mm = 1;
+        if (random.integer(0, 2) != 0)
+            job.steps.largest_only = true;
+        const auto parts = static_cast<std::size_t>(random.integer(1, 3));
+        // Not from the first layer on, as those of a shard.
+        const Plan plan =
+            plan_uniform(0, 9, {.layer_height = 0.3}, SliceAt::middle, {.index_range = {{7, 29}}});
+        const std::vector<Plane> planes = random_planes(random, plan, parts);
+        LayerTotals whole(job, plan.layers, parts);
+        for (const Plane& plane : planes)
+            whole.add(plane.parts, plane.joins, plane.changes);
+        const FileResult expected = told(whole, parts);
+
+        const auto processes = static_cast<std::size_t>(random.integer(1, 4));
+        std::vector<std::size_t> bounds{0, planes.size()};
+        while (bounds.size() <= processes) // two may be equal: a process without planes
+            bounds.push_back(
+                static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(planes.size()))));
+        std::sort(bounds.begin(), bounds.end());
+        test::run_processes(processes, [&](Communicator& own) {
+            const std::size_t begin = bounds[own.process()];
+            const std::size_t count = bounds[own.process() + 1] - begin;
+            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count), parts);
+            add_all(mine, std::span(planes).subspan(begin, count), 3);
+            mine.gather(own);
+            EXPECT_EQ(mine.points(), whole.points());
+            test::expect_same(told(mine, parts), expected);
+        });
+    }
+}
+
+TEST(LayerTotals, TellHowManyLayersBeginWithARingThatRunsTheWrongWay) {
+    const Plan plan = plan_uniform(0, 4, {.layer_height = 1});
+    const test::Contour outer = test::rectangle(0, 0, 9, 9);
+    const test::Contour inner = test::rectangle(2, 2, 4, 4);
+    LayerTotals totals(measured(), plan.layers, 1);
+    const std::vector<std::vector<test::Contour>> rings{
+        {outer, test::reversed(inner)}, {test::reversed(outer), inner}, {}, {test::reversed(outer)}};
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        Layer layer = test::layer_of(rings[i]);
+        layer.index = plan.layers[i].index;
+        layer.z = plan.layers[i].z;
+        totals.add(std::span(&layer, 1), {}, {});
+    }
+    const FileResult result = told(totals, 1);
+    EXPECT_EQ(result.inside_out.layers, 2U);
+    EXPECT_EQ(result.inside_out.first_z, plan.layers[1].z);
 }
 
 } // namespace

@@ -1,13 +1,19 @@
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "fixtures/random.hpp"
 #include "pipeline/share_store.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <thread>
 #include <vector>
 
 namespace lamella {
@@ -61,6 +67,116 @@ TEST(ShareStore, SaysWhenTrianglesAreMissingOrTooMany) {
     EXPECT_TRUE(store.add(0, rook.part(rook.size() / 2, rook.size())));
     EXPECT_TRUE(store.full());
     EXPECT_FALSE(store.add(0, rook));
+}
+
+/// Triangles by their coordinates, in ascending order: the same for any order in which they came.
+std::vector<std::array<float, 9>> sorted(const TriangleSoup& triangles) {
+    std::vector<std::array<float, 9>> all(triangles.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Triangle3f triangle = triangles.stored(i);
+        std::memcpy(all[i].data(), &triangle, sizeof triangle);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+/// With corners on planes and between them, some triangles flat, some as high as all.
+TriangleSoup random_triangles(test::Random& random, std::size_t count, std::int64_t height) {
+    std::vector<Triangle3f> triangles(count);
+    for (Triangle3f& triangle : triangles)
+        for (Point3f& p : triangle)
+            p = {static_cast<float>(random.integer(-9, 9)), static_cast<float>(random.integer(-9, 9)),
+                 static_cast<float>(random.integer(-2, 2 * height + 2)) / 2};
+    return TriangleSoup(triangles);
+}
+
+/// Some planes of each of them, in gaps between them perhaps none.
+std::vector<PlaneRange> random_shares(test::Random& random, std::uint32_t planes) {
+    std::vector<PlaneRange> shares;
+    for (std::uint32_t begin = 0; begin < planes;) {
+        const auto end = std::min(planes, begin + static_cast<std::uint32_t>(random.integer(1, 4)));
+        if (random.integer(0, 4) != 0)
+            shares.push_back({begin, end});
+        begin = end;
+    }
+    return shares;
+}
+
+/// Those with a corner above and one below any plane of the share, by the rule of the plan.
+TriangleSoup cut_by(const TriangleSoup& triangles, const Plan& planes, PlaneRange share) {
+    const bool above = planes.rule == PlaneRule::section_above;
+    std::vector<Triangle3f> cut;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const Triangle3 t = triangles.placed(i);
+        const double low = std::min({t[0].z, t[1].z, t[2].z});
+        const double high = std::max({t[0].z, t[1].z, t[2].z});
+        bool any = false;
+        for (std::uint32_t p = share.begin; p < share.end; ++p) {
+            const double z = planes.layers[p].z;
+            any = any || (above ? low <= z && z < high : low < z && z <= high);
+        }
+        if (any)
+            cut.push_back(triangles.stored(i));
+    }
+    return TriangleSoup(cut);
+}
+
+TEST(ShareStore, GivesBackEachTriangleOnceToEachShareWithAPlaneThatCutsIt) {
+    test::Random random(11);
+    for (int round = 0; round < 30; ++round) {
+        SCOPED_TRACE(testing::Message() << "round " << round);
+        constexpr std::int64_t height = 30;
+        Plan planes = plan_uniform(0, height, {.layer_height = 1}, SliceAt::bottom);
+        planes.rule = random.integer(0, 1) == 0 ? PlaneRule::section_above : PlaneRule::section_below;
+        const auto count = static_cast<std::uint32_t>(planes.layers.size());
+        // In one share they wait in memory, in several on the disk.
+        const std::vector<PlaneRange> shares =
+            round % 3 == 0 ? std::vector<PlaneRange>{{3, count - 2}} : random_shares(random, count);
+        std::vector<TriangleSoup> shapes;
+        std::vector<PlaneCounts> counts;
+        for (std::size_t shape = 0; shape < 2; ++shape) {
+            // The second is placed: where it stands says which planes cut it.
+            const TriangleSoup stored = random_triangles(random, 4000, height);
+            shapes.push_back(shape == 0 ? stored : stored.transformed(translation(0, 0, 2.25)));
+            counts.push_back(count_planes(shapes[shape], planes));
+        }
+        ShareStore store(planes, shares, counts);
+        std::vector<std::thread> threads;
+        std::atomic<bool> fits{true};
+        for (std::size_t t = 0; t < 4; ++t)
+            threads.emplace_back([&, t] {
+                // In small pieces, so that they often meet.
+                constexpr std::size_t piece = 8;
+                for (std::size_t shape = 0; shape < shapes.size(); ++shape)
+                    for (std::size_t i = t * piece; i < shapes[shape].size(); i += 4 * piece)
+                        if (!store.add(shape, shapes[shape].part(i, i + piece)))
+                            fits = false;
+            });
+        for (std::thread& thread : threads)
+            thread.join();
+        EXPECT_TRUE(fits);
+        EXPECT_TRUE(store.full());
+        for (std::size_t share = 0; share < shares.size(); ++share)
+            for (std::size_t shape = 0; shape < shapes.size(); ++shape)
+                EXPECT_EQ(sorted(store.take(share, shape, {.threads = 2})),
+                          sorted(cut_by(shapes[shape], planes, shares[share])))
+                    << "share " << share << " of shape " << shape;
+    }
+}
+
+TEST(ShareStore, TakesAndGivesMoreThanIsSortedOrReadAtATime) {
+    std::vector<Triangle3f> triangles;
+    for (std::size_t i = 0; i < 40'000; ++i) // each cut by planes of all shares
+        triangles.push_back({Point3f{static_cast<float>(i), 0, -1}, Point3f{1, 0, 31}, Point3f{0, 1, 31}});
+    const TriangleSoup batch(triangles);
+    const Plan planes = plan_uniform(0, 30, {.layer_height = 1});
+    const std::array<PlaneRange, 3> shares{{{0, 7}, {7, 8}, {9, 30}}};
+    const std::array counts{count_planes(batch, planes)};
+    ShareStore store(planes, shares, counts);
+    EXPECT_TRUE(store.add(0, batch));
+    EXPECT_TRUE(store.full());
+    for (std::size_t share = 0; share < shares.size(); ++share)
+        EXPECT_TRUE(sorted(store.take(share, 0, {.threads = 2})) == sorted(batch)) << share;
 }
 
 } // namespace

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "lamella/pipeline/slice_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lamella::test {
+
+inline void expect_same(const OpenGaps& one, const OpenGaps& other) {
+    EXPECT_EQ(one.count, other.count);
+    EXPECT_EQ(one.longest_mm, other.longest_mm);
+    EXPECT_EQ(one.total_mm, other.total_mm);
+    EXPECT_EQ(one.from, other.from);
+    EXPECT_EQ(one.to, other.to);
+}
+
+inline void expect_same(const LayerChanges& one, const LayerChanges& other) {
+    for (std::uint64_t LayerChanges::*count :
+         {&LayerChanges::changed_layers, &LayerChanges::groups_united, &LayerChanges::rings_united,
+          &LayerChanges::rings_reversed, &LayerChanges::rings_dropped, &LayerChanges::rings_vanished,
+          &LayerChanges::points_dropped, &LayerChanges::hatches_dropped})
+        EXPECT_EQ(one.*count, other.*count);
+    EXPECT_EQ(one.area_before_mm2, other.area_before_mm2);
+    EXPECT_EQ(one.area_after_mm2, other.area_after_mm2);
+}
+
+inline void expect_same(const LayerStatistics& one, const LayerStatistics& other) {
+    EXPECT_EQ(one.index, other.index);
+    EXPECT_EQ(one.z, other.z);
+    EXPECT_EQ(one.thickness, other.thickness);
+    EXPECT_EQ(one.hash, other.hash);
+    for (std::size_t LayerMeasure::*count :
+         {&LayerMeasure::contours, &LayerMeasure::holes, &LayerMeasure::open_chains, &LayerMeasure::points})
+        EXPECT_EQ(one.measure.*count, other.measure.*count);
+    EXPECT_EQ(one.measure.area_mm2, other.measure.area_mm2);
+    EXPECT_EQ(one.measure.perimeter_mm, other.measure.perimeter_mm);
+    expect_same(one.open_gaps, other.open_gaps);
+    expect_same(one.changes, other.changes);
+    ASSERT_EQ(one.joins.size(), other.joins.size());
+    for (std::size_t i = 0; i < one.joins.size(); ++i) {
+        EXPECT_EQ(one.joins[i].from, other.joins[i].from);
+        EXPECT_EQ(one.joins[i].to, other.joins[i].to);
+        EXPECT_EQ(one.joins[i].length_mm, other.joins[i].length_mm);
+    }
+}
+
+/// The same figures of the mesh, its layers and what was written, bit for bit: all but times, and who did
+/// what.
+inline void expect_same(const FileResult& one, const FileResult& other) {
+    EXPECT_EQ(one.triangles, other.triangles);
+    EXPECT_EQ(one.box, other.box);
+    EXPECT_EQ(one.mesh_volume_mm3, other.mesh_volume_mm3);
+    EXPECT_EQ(one.volume_mm3, other.volume_mm3);
+    EXPECT_EQ(one.planned_layers, other.planned_layers);
+    EXPECT_EQ(one.bottom, other.bottom);
+    EXPECT_EQ(one.top, other.top);
+    EXPECT_EQ(one.bytes, other.bytes);
+    EXPECT_EQ(one.warnings, other.warnings);
+    for (std::uint64_t SliceReport::*count :
+         {&SliceReport::layers, &SliceReport::contours, &SliceReport::open_chains, &SliceReport::points})
+        EXPECT_EQ(one.report.*count, other.report.*count);
+    for (FileResult::Affected FileResult::*kind : {&FileResult::open, &FileResult::inside_out}) {
+        EXPECT_EQ((one.*kind).layers, (other.*kind).layers);
+        EXPECT_EQ((one.*kind).first_z, (other.*kind).first_z);
+    }
+    expect_same(one.open_gaps, other.open_gaps);
+    EXPECT_EQ(one.gaps.closed, other.gaps.closed);
+    EXPECT_EQ(one.gaps.longest_mm, other.gaps.longest_mm);
+    EXPECT_EQ(one.gaps.total_mm, other.gaps.total_mm);
+    EXPECT_EQ(one.gaps.layers, other.gaps.layers);
+    EXPECT_EQ(one.gaps.first_z, other.gaps.first_z);
+    EXPECT_EQ(one.changes.has_value(), other.changes.has_value());
+    if (one.changes && other.changes)
+        expect_same(*one.changes, *other.changes);
+    ASSERT_EQ(one.layers.size(), other.layers.size());
+    for (std::size_t i = 0; i < one.layers.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << "layer " << i);
+        expect_same(one.layers[i], other.layers[i]);
+    }
+    ASSERT_EQ(one.parts.size(), other.parts.size());
+    for (std::size_t i = 0; i < one.parts.size(); ++i) {
+        EXPECT_EQ(one.parts[i].label, other.parts[i].label);
+        EXPECT_EQ(one.parts[i].box, other.parts[i].box);
+        for (std::uint64_t PartResult::*count :
+             {&PartResult::triangles, &PartResult::contours, &PartResult::open_chains, &PartResult::points})
+            EXPECT_EQ(one.parts[i].*count, other.parts[i].*count);
+    }
+}
+
+} // namespace lamella::test

@@ -1,0 +1,127 @@
+#include "lamella/mesh/shapes.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+#include "core/memory_size.hpp"
+#include "pipeline/job_memory.hpp"
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lamella::job_memory_cases {
+namespace {
+
+constexpr std::uint64_t mib = std::uint64_t{1} << 20;
+
+JobMemory limited_to(std::uint64_t bytes) {
+    FileJob job;
+    job.max_memory = bytes;
+    return JobMemory(job);
+}
+
+/// From one byte to a terabyte.
+template <class Body>
+void for_limits(const Body& body) {
+    for (std::uint64_t limit = 1; limit <= mib * mib; limit *= 4)
+        body(limit);
+}
+
+TEST(JobMemory, IsWhatTheJobAsksForElseWhatIsUsual) {
+    EXPECT_EQ(limited_to(5 * mib).limit, 5 * mib);
+    EXPECT_TRUE(limited_to(5 * mib).asked);
+    const JobMemory usual((FileJob()));
+    EXPECT_EQ(usual.limit, usual_memory());
+    EXPECT_FALSE(usual.asked);
+}
+
+TEST(JobMemory, GrantsPointsInFlightAQuarterOfTheLimitAndNeverFewerForMore) {
+    constexpr std::uint64_t bytes_of_a_point_and_its_text = 56;
+    for (const unsigned threads : {1U, 2U, 64U}) {
+        std::uint64_t before = 1;
+        for_limits([&](std::uint64_t limit) {
+            const std::uint64_t points = limited_to(limit).points_in_flight(threads);
+            EXPECT_GE(points, before) << limit;
+            EXPECT_TRUE(points == 1 || points * bytes_of_a_point_and_its_text <= limit / 4) << limit;
+            before = points;
+        });
+        // Where there is more than enough, as many as slicing takes by itself: 56 MiB of points a thread.
+        EXPECT_EQ(before, threads * (56 * mib / sizeof(Point2)));
+    }
+}
+
+TEST(JobMemory, KeepsMessagesAndOutputOfSeveralProcessesWithinAQuarter) {
+    for_limits([&](std::uint64_t limit) {
+        const JobMemory memory = limited_to(limit);
+        EXPECT_EQ(memory.of_messages(1), 0U);
+        for (const std::size_t processes : {2U, 3U, 100U}) {
+            const std::uint64_t messages = memory.of_messages(processes);
+            EXPECT_LE(messages, limit / 4);
+            EXPECT_LE(memory.of_output(), messages / 2);
+            // What a process sends, and what it gets where all send everything to it.
+            const std::uint64_t round = memory.triangles_in_a_round(processes);
+            const std::uint64_t on_their_way = (1 + processes) * round * sizeof(Triangle3f);
+            constexpr std::uint64_t fewest = 1 << 12;
+            EXPECT_TRUE(round == fewest || on_their_way <= messages / 2) << limit << " by " << processes;
+            EXPECT_GE(round, fewest);
+        }
+    });
+}
+
+TEST(JobMemory, AsksForMoreWithMoreThreadsPlanesAndTriangles) {
+    EXPECT_LT(JobMemory::overhead(1, 0), JobMemory::overhead(2, 0));
+    EXPECT_LT(JobMemory::overhead(1, 0), JobMemory::overhead(1, 1));
+    const JobMemory memory = limited_to(1024 * mib);
+    const Mesh small = make_sphere(1, 2);
+    const Mesh large = make_sphere(1, 3);
+    EXPECT_LT(memory.of_mesh(small, 1), memory.of_mesh(large, 1));
+    EXPECT_LT(memory.of_mesh(large, 1), memory.of_mesh(large, 2));
+}
+
+TEST(JobMemory, CountsTheMeshAsItIsStored) {
+    const JobMemory memory = limited_to(1024 * mib);
+    const TriangleSoup soup = make_sphere(1, 4);
+    const IndexedMesh indexed = weld(soup);
+    const std::uint64_t stored = indexed.vertices.size() * sizeof indexed.vertices.front() +
+                                 indexed.triangles.size() * sizeof indexed.triangles.front();
+    EXPECT_EQ(memory.of_mesh(soup, 2) - soup.size() * sizeof(Triangle3f),
+              memory.of_mesh(indexed, 2) - stored);
+}
+
+TEST(JobMemory, AsksForEachRecordOfABinaryFileAndNoLessForATextOfTheSamePart) {
+    const TemporaryFolder folder;
+    const TriangleSoup some = make_sphere(1, 4);
+    const TriangleSoup more = make_sphere(1, 5);
+    write_stl(folder.file("some.stl"), some);
+    write_stl(folder.file("more.stl"), more);
+    write_stl_ascii(folder.file("text.stl"), some, "part");
+    const MeshInput binary(folder.file("some.stl"));
+    const JobMemory memory = limited_to(1024 * mib);
+    const std::uint64_t bytes = memory.of_whole(binary, false, 1);
+    const std::uint64_t each =
+        (memory.of_whole(MeshInput(folder.file("more.stl")), false, 1) - bytes) / (more.size() - some.size());
+    EXPECT_GT(each, 50U + sizeof(Triangle3f));          // a record, and what slicing makes of it
+    EXPECT_GT(memory.of_whole(binary, true, 1), bytes); // placed in double
+    EXPECT_GE(memory.of_whole(MeshInput(folder.file("text.stl")), false, 1), bytes);
+}
+
+TEST(JobMemory, KeepsNoMoreOfStandardInputThanCouldBeSlicedThere) {
+    const TemporaryFolder folder;
+    write_stl(folder.file("none.stl"), TriangleSoup());
+    const TriangleSoup part = make_sphere(1, 5);
+    write_stl(folder.file("part.stl"), part);
+    const MeshInput file(folder.file("part.stl"));
+    // Where the limit allows just these bytes of it to be kept, its triangles can be sliced within the limit.
+    for (const unsigned threads : {1U, 4U}) {
+        std::uint64_t limit = file.bytes();
+        while (limited_to(limit).of_input(threads) < file.bytes())
+            limit += 100;
+        const JobMemory memory = limited_to(limit);
+        const std::uint64_t around = memory.of_whole(MeshInput(folder.file("none.stl")), true, threads);
+        EXPECT_LE(memory.of_whole(file, true, threads) - around, limit) << threads;
+    }
+}
+
+} // namespace
+} // namespace lamella::job_memory_cases

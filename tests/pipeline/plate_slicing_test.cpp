@@ -1,0 +1,228 @@
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/shapes.hpp"
+
+#include "fixtures/random.hpp"
+#include "pipeline/plate_builder.hpp"
+#include "pipeline/plate_slicing.hpp"
+#include "slicing/expect_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace lamella::plate_slicing_cases {
+namespace {
+
+/// Each of its own object; with copies.
+Plate plate_of(std::vector<std::pair<TriangleSoup, std::uint64_t>> shapes) {
+    std::vector<PlateInput> inputs;
+    std::vector<MeshFile> files;
+    for (auto& [mesh, copies] : shapes) {
+        inputs.push_back({.path = "a.stl", .copies = copies, .spacing_mm = 0.1});
+        MeshFile& file = files.emplace_back();
+        file.objects.push_back({"", mesh});
+        file.instances.emplace_back();
+    }
+    return build_plate(inputs, std::move(files), {});
+}
+
+Plan plan_of(const Plate& plate, double layer_height) {
+    return plan_uniform(plate.box.min.z, plate.box.max.z, {.layer_height = layer_height});
+}
+
+/// What a sink was given.
+struct Delivered {
+    std::vector<std::vector<Layer>> written; ///< planes, in the order in which they were written
+    SliceReport report;
+};
+
+Delivered deliver(const Plate& plate, const Plan& plan, std::uint64_t points_in_flight,
+                  const Execution& execution = {.threads = 3}, const Engine& engine = engines().front()) {
+    Delivered delivered;
+    const PlateSink sink = [&](std::span<const Layer> parts) {
+        return [&delivered, kept = std::vector<Layer>(parts.begin(), parts.end())] {
+            delivered.written.push_back(kept);
+        };
+    };
+    delivered.report = slice_plate_to(sink, plate, plan, execution, engine, points_in_flight);
+    return delivered;
+}
+
+/// All planes in ascending order, with the layers that each part has by itself.
+void expect_layers(const Delivered& delivered, const Plate& plate, const Plan& plan) {
+    ASSERT_EQ(delivered.written.size(), plan.layers.size());
+    for (std::size_t part = 0; part < plate.parts.size(); ++part) {
+        const PlatePart& its = plate.parts[part];
+        const LayerStack alone = slice(plate.shapes[its.shape].mesh, plan);
+        for (std::size_t i = 0; i < plan.layers.size(); ++i) {
+            ASSERT_EQ(delivered.written[i].size(), plate.parts.size());
+            const Layer& layer = delivered.written[i][part];
+            EXPECT_EQ(layer.index, plan.layers[i].index);
+            EXPECT_EQ(layer.z, plan.layers[i].z);
+            EXPECT_EQ(layer.bottom, plan.layers[i].bottom);
+            EXPECT_EQ(layer.top, plan.layers[i].top);
+            EXPECT_TRUE(in_normal_form(layer));
+            LayerBuilder moved;
+            for (std::size_t c = 0; c < alone[i].contours(); ++c) {
+                for (const Point2& p : alone[i].contour(c))
+                    moved.add_point({p.x + its.dx, p.y + its.dy});
+                moved.end_contour(alone[i].closed(c));
+            }
+            EXPECT_TRUE(same_contours(layer, moved.finish(0, 0, 0, 0))) << "part " << part << " plane " << i;
+        }
+    }
+}
+
+TEST(PlateSlicing, GivesEachPlaneOnceInOrderWithTheLayersOfItsPartsHoweverFewPointsMayWait) {
+    const std::vector<Plate> plates{plate_of({{make_torus(6, 2, 48, 24), 1}}),
+                                    plate_of({{make_torus(6, 2, 48, 24), 3}, {make_sphere(3, 3), 1}})};
+    for (const Plate& plate : plates) {
+        const Plan plan = plan_of(plate, 0.07);
+        for (const std::uint64_t points : {0U, 1U, 100U, 2000U, 1'000'000U}) {
+            SCOPED_TRACE(testing::Message() << plate.parts.size() << " parts, " << points << " points");
+            expect_layers(deliver(plate, plan, points), plate, plan);
+        }
+    }
+}
+
+TEST(PlateSlicing, GivesBrokenPartsTheLayersThatTheyHaveAlone) {
+    test::Random random(2);
+    for (int round = 0; round < 10; ++round) {
+        std::vector<Triangle3f> some;
+        const TriangleSoup whole = make_torus(6, 2, 24, 12);
+        for (std::size_t i = 0; i < whole.size(); ++i)
+            if (random.integer(0, 5) != 0)
+                some.push_back(whole.stored(i));
+        const Plate plate = plate_of({{TriangleSoup(some), 2}, {make_box(1, 2, 3), 1}});
+        const Plan plan = plan_of(plate, 0.3);
+        expect_layers(deliver(plate, plan, static_cast<std::uint64_t>(random.integer(0, 500))), plate, plan);
+    }
+}
+
+TEST(PlateSlicing, KeepsTheNormalFormWhereMovingMakesPointsEqual) {
+    // Two rings whose first points differ by less than numbers can tell where the part stands: there the
+    // other coordinate decides which comes first.
+    const auto box_at = [](float x, float y) {
+        std::vector<Triangle3f> triangles;
+        const TriangleSoup box = make_box(1, 1, 1);
+        for (std::size_t i = 0; i < box.size(); ++i) {
+            Triangle3f t = box.stored(i);
+            for (Point3f& p : t)
+                p = {p.x + x, p.y + y, p.z};
+            triangles.push_back(t);
+        }
+        return triangles;
+    };
+    std::vector<Triangle3f> both = box_at(1e-6F, 0);
+    const std::vector<Triangle3f> other = box_at(0, 5);
+    both.insert(both.end(), other.begin(), other.end());
+    Plate plate = plate_of({{TriangleSoup(both), 2}});
+    plate.parts[1].dx = 0x1p40;
+    const Plan plan = plan_of(plate, 0.5);
+    const Delivered delivered = deliver(plate, plan, 0);
+    const Layer& here = delivered.written.front()[0];
+    const Layer& there = delivered.written.front()[1];
+    EXPECT_EQ(here.contour(0).front().y, 5);
+    EXPECT_EQ(there.contour(0).front().y, 0);
+    expect_layers(delivered, plate, plan);
+}
+
+TEST(PlateSlicing, SlicesAShapeOnceForAllItsParts) {
+    const TriangleSoup torus = make_torus(6, 2, 24, 16);
+    const Engine& counting = engine("eecc");
+    const Plate one = plate_of({{torus, 1}});
+    const Plate nine = plate_of({{torus, 9}});
+    const Plan plan = plan_of(one, 0.5);
+    const SliceReport alone = deliver(one, plan, 0, {}, counting).report;
+    const SliceReport together = deliver(nine, plan, 0, {}, counting).report;
+    ASSERT_TRUE(alone.matching && together.matching);
+    EXPECT_EQ(together.matching->inserted.total(), alone.matching->inserted.total());
+}
+
+TEST(PlateSlicing, TellsProgressOfAllWindowsAsThatOfOneRunToItsEnd) {
+    const Plate plate = plate_of({{make_torus(6, 2, 48, 24), 2}, {make_sphere(3, 3), 2}});
+    const Plan plan = plan_of(plate, 0.1);
+    for (const std::uint64_t points : {0U, 1000U}) {
+        std::map<Stage, Progress> last;
+        const Execution told{.threads = 2, .progress = [&](const Progress& progress) {
+                                 Progress& before = last[progress.stage];
+                                 EXPECT_GE(progress.done, before.done) << stage_name(progress.stage);
+                                 EXPECT_TRUE(before.total == 0 || before.total == progress.total);
+                                 before = progress;
+                             }};
+        static_cast<void>(deliver(plate, plan, points, told));
+        ASSERT_TRUE(last.contains(Stage::slice) && last.contains(Stage::link));
+        for (const auto& [stage, progress] : last)
+            EXPECT_EQ(progress.done, progress.total) << stage_name(stage);
+        EXPECT_EQ(last[Stage::slice].total, plate.shapes.size() * plan.layers.size());
+    }
+}
+
+/// In how many windows the plate is sliced: each looks at all triangles, so many of them are told of a stage.
+std::uint64_t windows_of(const Plate& plate, const Plan& plan, std::uint64_t points_in_flight,
+                         const Engine& engine = engines().front(), Stage stage = Stage::link) {
+    std::uint64_t triangles = 0;
+    for (const PlateShape& shape : plate.shapes)
+        triangles += shape.mesh.size();
+    std::uint64_t looked_at = 0;
+    const Execution execution{.threads = 1, .progress = [&](const Progress& progress) {
+                                  if (progress.stage == stage)
+                                      looked_at = progress.total;
+                              }};
+    static_cast<void>(deliver(plate, plan, points_in_flight, execution, engine));
+    EXPECT_EQ(looked_at % triangles, 0U);
+    return looked_at / triangles;
+}
+
+TEST(PlateSlicing, FillsWindowsWithTwiceThePointsInFlight) {
+    // 2 x 10 points of the walls of a cylinder and 8 of a box on each plane.
+    const Plate plate = plate_of({{make_cylinder(3, 5, 10), 2}, {make_box(1, 2, 5), 1}});
+    const Plan plan = plan_of(plate, 0.1);
+    ASSERT_EQ(plan.layers.size(), 50U);
+    constexpr std::uint64_t points_of_a_plane = 28;
+    for (const std::uint64_t points_in_flight : {1U, 14U, 27U, 28U, 41U, 42U, 200U, 699U, 700U}) {
+        const std::uint64_t planes = std::max<std::uint64_t>(1, 2 * points_in_flight / points_of_a_plane);
+        EXPECT_EQ(windows_of(plate, plan, points_in_flight), (50 + planes - 1) / planes) << points_in_flight;
+    }
+}
+
+TEST(PlateSlicing, SlicesAllPlanesAtOnceWhereTheEngineWelds) {
+    const Plate plate = plate_of({{make_cylinder(3, 5, 10), 2}, {make_box(1, 2, 5), 1}});
+    EXPECT_EQ(windows_of(plate, plan_of(plate, 0.1), 1, engine("eecc")), 1U);
+}
+
+TEST(PlateSlicing, StopsWithWhatTheSinkThrows) {
+    const Plate plate = plate_of({{make_torus(6, 2, 24, 16), 2}});
+    const Plan plan = plan_of(plate, 0.1);
+    std::size_t written = 0;
+    const auto slice_until = [&](bool in_order) {
+        const PlateSink sink = [&, in_order](std::span<const Layer> parts) -> std::function<void()> {
+            const bool now = parts.front().index == 20;
+            if (now && !in_order)
+                throw Error(ErrorKind::output, "no room");
+            return [&written, now] {
+                if (now)
+                    throw Error(ErrorKind::output, "no room");
+                ++written;
+            };
+        };
+        test::expect_error(ErrorKind::output, {"no room"}, [&] {
+            static_cast<void>(slice_plate_to(sink, plate, plan, {.threads = 2}, engines().front(), 500));
+        });
+    };
+    slice_until(true);
+    EXPECT_EQ(written, 20U);
+    written = 0;
+    slice_until(false);
+    EXPECT_LE(written, 20U);
+}
+
+} // namespace
+} // namespace lamella::plate_slicing_cases

@@ -1,0 +1,213 @@
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/shapes.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+#include "expect_same_result.hpp"
+#include "fixtures/rounds.hpp"
+#include "temporary_folder.hpp"
+#include "thread_processes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+// Processes as threads of one process: all of slice_file by several but the messages themselves.
+
+namespace lamella {
+namespace {
+
+/// What is sliced. With a sanitizer it is a part with fewer triangles.
+TriangleSoup part() {
+    return test::sanitized ? make_torus(20, 10, 120, 60) : make_rook();
+}
+
+class Processes : public testing::Test {
+  protected:
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
+
+    [[nodiscard]] std::string content(const std::string& name) const { return file_bytes(path(name)); }
+
+    static FileJob job_of(std::vector<PlateInput> inputs, double layer_height) {
+        FileJob job;
+        job.inputs = std::move(inputs);
+        job.layering.cut = UniformLayers{.layer_height = layer_height};
+        job.layer_statistics = true;
+        return job;
+    }
+
+    /// The results of all processes, none of which may fail.
+    static std::vector<FileResult> slice_by(std::size_t processes, const FileJob& job) {
+        std::vector<FileResult> results(processes);
+        test::run_processes(processes, [&](Communicator& own) {
+            results[own.process()] = slice_file(job, {.threads = 2}, own);
+        });
+        return results;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Processes, WriteTheBytesOfOneProcessWithAnyNumberOfThem) {
+    write_stl(path("part.stl"), part());
+    const auto numbers_of_processes =
+        test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{1, 2, 3, 5, 50};
+    for (const LayerFormat& format : layer_formats()) {
+        if (format.directory)
+            continue;
+        FileJob job = job_of({{.path = path("part.stl")}}, 1.5);
+        job.format = format.name;
+        job.write.page.viewer = "<!--lamella-data-->"; // what the library asks of a viewer
+        job.output = path("one");
+        const FileResult one = slice_file(job);
+        const std::string expected = content("one");
+        for (const std::size_t processes : numbers_of_processes) {
+            SCOPED_TRACE(testing::Message() << format.name << " by " << processes);
+            job.output = path("one"); // some formats repeat the name
+            for (const FileResult& many : slice_by(processes, job))
+                test::expect_same(one, many);
+            EXPECT_EQ(content("one"), expected);
+        }
+    }
+}
+
+TEST_F(Processes, TakePlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
+    write_stl(path("part.stl"), part());
+    // Every seventh triangle is missing: chains everywhere.
+    const TriangleSoup whole = part();
+    std::vector<Triangle3f> some;
+    for (std::size_t i = 0; i < whole.size(); ++i)
+        if (i % 7 != 0)
+            some.push_back(whole.stored(i));
+    write_stl(path("broken.stl"), TriangleSoup(some));
+    write_stl_ascii(path("ascii.stl"), whole, "part");
+
+    FileJob plain = job_of({}, 2);
+    plain.output = path("out.cli");
+    std::vector<FileJob> jobs(6, plain);
+    jobs[0].inputs = {{.path = path("part.stl"), .copies = 3}, {.path = path("broken.stl")}};
+    jobs[1].inputs = {{.path = path("broken.stl")}};
+    jobs[1].repair.close_gaps_mm = 0.5;
+    jobs[2].inputs = {{.path = path("ascii.stl")}};
+    jobs[3].inputs = {{.path = path("part.stl")}};
+    jobs[3].engine = "eecc";
+    jobs[4].inputs = {{.path = path("part.stl"), .placement = rotation('x', 40)}};
+    jobs[4].layering.cut = AdaptiveLayers{.min_height = 0.5, .max_height = 2};
+    jobs[5].inputs = {{.path = path("part.stl"), .unit_mm = 25.4, .placement = rotation('y', 30)}};
+    jobs[5].steps.offset_mm = -0.1;
+    const auto numbers_of_processes =
+        test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{2, 5};
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const FileResult one = slice_file(jobs[i]);
+        const std::string expected = content("out.cli");
+        for (const std::size_t processes : numbers_of_processes) {
+            SCOPED_TRACE(testing::Message() << "job " << i << " by " << processes);
+            for (const FileResult& many : slice_by(processes, jobs[i]))
+                test::expect_same(one, many);
+            EXPECT_EQ(content("out.cli"), expected);
+        }
+    }
+}
+
+TEST_F(Processes, FailOnAllWithTheSameWords) {
+    write_stl(path("part.stl"), part());
+    FileJob plain = job_of({{.path = path("part.stl")}}, 0.1);
+    plain.output = path("out.cli");
+    const auto expect_failure = [&](const FileJob& job, const std::string& words) {
+        for (const std::size_t processes : {1, 3}) {
+            const Error error = test::common_failure(processes, [&](Communicator& own) {
+                static_cast<void>(slice_file(job, {.threads = 2}, own));
+            });
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+            EXPECT_EQ(folder_.entries(), std::vector<std::string>{"part.stl"});
+        }
+    };
+    FileJob job = plain;
+    job.inputs.front().path = path("missing.stl");
+    expect_failure(job, "no such file");
+    job = plain;
+    job.inputs.front().path = "-";
+    expect_failure(job, "standard input");
+    job = plain;
+    job.layering.cut = UniformLayers{.layer_height = 1000};
+    expect_failure(job, "layer height");
+    job = plain;
+    job.output = path("nowhere/out.cli");
+    expect_failure(job, "does not exist");
+    job.output = path("nowhere/out.npz"); // which one of the processes writes
+    expect_failure(job, "does not exist");
+    job = plain;
+    job.write.most_bytes = 1000;
+    expect_failure(job, "more than the 1000"); // bytes, as one process says it, or several of all pieces
+    job.format = "npz";
+    expect_failure(job, "1000 bytes that it may");
+}
+
+/// How often each process tells of the progress of each stage, by one thread.
+std::vector<std::map<Stage, int>> calls_of(const FileJob& job, std::size_t processes) {
+    std::vector<std::map<Stage, int>> calls(processes);
+    test::run_processes(processes, [&](Communicator& own) {
+        const Execution counted{.threads = 1, .progress = [&](const Progress& progress) {
+                                    ++calls[own.process()][progress.stage];
+                                }};
+        static_cast<void>(slice_file(job, counted, own));
+    });
+    return calls;
+}
+
+TEST_F(Processes, StopTogetherWhicheverOfThemFailsInWhateverStage) {
+    write_stl(path("part.stl"), part());
+    write_stl_ascii(path("ascii.stl"), make_torus(20, 10, 60, 30), "part");
+    const std::vector<std::string> inputs = folder_.entries();
+    constexpr std::size_t processes = 3;
+    for (const std::string& input : inputs) {
+        FileJob job = job_of({{.path = path(input)}}, 2);
+        job.output = path("out");
+        job.format = input == "part.stl" ? "cli" : "npz"; // written by all processes, by one of them
+        const std::vector<std::map<Stage, int>> calls = calls_of(job, processes);
+        std::filesystem::remove(path("out"));
+        for (std::size_t failing = 0; failing < processes; ++failing)
+            for (const auto& [stage, count] : calls[failing])
+                for (const int call : std::set{1, count / 2 + 1, 5 * count / 6 + 1, count}) {
+                    SCOPED_TRACE(testing::Message() << input << ": process " << failing << " at call " << call
+                                                    << " of " << count << " of " << stage_name(stage));
+                    const Error error = test::common_failure(processes, [&,
+                                                                         stage = stage](Communicator& own) {
+                        int left = own.process() == failing ? call : 0;
+                        const Execution execution{.threads = 1, .progress = [&](const Progress& progress) {
+                                                      if (progress.stage == stage && --left == 0)
+                                                          throw Error(ErrorKind::limit, "no further");
+                                                  }};
+                        static_cast<void>(slice_file(job, execution, own));
+                    });
+                    EXPECT_EQ(error.kind(), ErrorKind::limit);
+                    EXPECT_STREQ(error.what(), "no further");
+                    EXPECT_EQ(folder_.entries(), inputs);
+                }
+    }
+}
+
+TEST_F(Processes, LeaveTheFileAsItWasWhereTheyFail) {
+    write_stl(path("part.stl"), make_torus(20, 10, 60, 30));
+    write_file(path("out.cli"), "what was there");
+    FileJob job = job_of({{.path = path("part.stl")}}, 1);
+    job.output = path("out.cli");
+    job.write.most_bytes = 1000;
+    for (const std::size_t processes : {1, 3})
+        EXPECT_EQ(test::common_failure(
+                      processes, [&](Communicator& own) { static_cast<void>(slice_file(job, {}, own)); })
+                      .kind(),
+                  ErrorKind::limit);
+    EXPECT_EQ(content("out.cli"), "what was there");
+}
+
+} // namespace
+} // namespace lamella

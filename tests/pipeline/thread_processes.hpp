@@ -1,0 +1,218 @@
+#pragma once
+
+// Processes as threads of one process: all that several of them do but the messages themselves.
+
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/processes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace lamella::test {
+
+/// What the threads share. A process that is gone ends the others: whoever waits for it throws, so that a
+/// test fails where processes would hang.
+class Meeting {
+  public:
+    /// What a process brings to a step that all take.
+    struct Post {
+        std::string_view step;
+        std::string_view said = {};
+        std::span<const std::uint64_t> numbers = {};
+        std::span<const std::span<const std::byte>> outgoing = {};
+    };
+
+    explicit Meeting(std::size_t processes) : posts_(processes), gone_(processes, false) {}
+
+    [[nodiscard]] std::size_t size() const noexcept { return posts_.size(); }
+
+    /// look(posts of all processes), which stay as they are until all have looked.
+    template <class Look>
+    void meet(std::size_t process, const Post& post, const Look& look) {
+        posts_[process] = post;
+        wait();
+        for (const Post& other : posts_)
+            if (other.step != post.step)
+                throw std::logic_error("processes take different steps at a time");
+        look(std::span<const Post>(posts_));
+        wait();
+    }
+
+    void send(std::size_t from, std::size_t to, std::string_view bytes) {
+        const std::lock_guard lock(mutex_);
+        messages_[{from, to}].emplace_back(bytes);
+        changed_.notify_all();
+    }
+
+    std::string receive(std::size_t from, std::size_t to) {
+        std::unique_lock lock(mutex_);
+        std::deque<std::string>& queue = messages_[{from, to}];
+        changed_.wait(lock, [&] { return !queue.empty() || gone_[from]; });
+        if (queue.empty())
+            throw std::runtime_error("a process is gone that should have sent something");
+        std::string message = std::move(queue.front());
+        queue.pop_front();
+        return message;
+    }
+
+    void leave(std::size_t process) {
+        const std::lock_guard lock(mutex_);
+        gone_[process] = true;
+        any_gone_ = true;
+        changed_.notify_all();
+    }
+
+    /// Whether what was sent was received.
+    [[nodiscard]] bool quiet() const {
+        return std::all_of(messages_.begin(), messages_.end(),
+                           [](const auto& queue) { return queue.second.empty(); });
+    }
+
+  private:
+    void wait() {
+        std::unique_lock lock(mutex_);
+        const std::uint64_t phase = phase_;
+        if (++waiting_ == posts_.size()) {
+            waiting_ = 0;
+            ++phase_;
+            changed_.notify_all();
+            return;
+        }
+        changed_.wait(lock, [&] { return phase_ != phase || any_gone_; });
+        if (phase_ == phase)
+            throw std::runtime_error("a process is gone that others wait for");
+    }
+
+    std::vector<Post> posts_;
+    std::vector<bool> gone_;
+    bool any_gone_ = false;
+    std::size_t waiting_ = 0;
+    std::uint64_t phase_ = 0;
+    std::map<std::pair<std::size_t, std::size_t>, std::deque<std::string>> messages_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+};
+
+class ThreadProcess final : public Communicator {
+  public:
+    ThreadProcess(Meeting& meeting, std::size_t process) : meeting_(meeting), process_(process) {}
+
+    [[nodiscard]] std::size_t process() const noexcept override { return process_; }
+    [[nodiscard]] std::size_t size() const noexcept override { return meeting_.size(); }
+
+    void sum(std::span<std::uint64_t> values) override {
+        std::vector<std::uint64_t> total(values.size(), 0);
+        meeting_.meet(process_, {.step = "sum", .numbers = values}, [&](std::span<const Meeting::Post> all) {
+            for (const Meeting::Post& other : all)
+                for (std::size_t i = 0; i < total.size(); ++i)
+                    total[i] += other.numbers[i];
+        });
+        std::copy(total.begin(), total.end(), values.begin());
+    }
+
+    std::vector<std::string> gather(std::string_view mine) override {
+        std::vector<std::string> said;
+        meeting_.meet(process_, {.step = "gather", .said = mine}, [&](std::span<const Meeting::Post> all) {
+            for (const Meeting::Post& other : all)
+                said.emplace_back(other.said);
+        });
+        return said;
+    }
+
+    std::vector<std::uint64_t> exchange(std::span<const std::uint64_t> outgoing) override {
+        std::vector<std::uint64_t> incoming;
+        meeting_.meet(process_, {.step = "exchange of numbers", .numbers = outgoing},
+                      [&](std::span<const Meeting::Post> all) {
+                          for (const Meeting::Post& from : all)
+                              incoming.push_back(from.numbers[process_]);
+                      });
+        return incoming;
+    }
+
+    void exchange(std::span<const std::span<const std::byte>> outgoing,
+                  std::span<const std::span<std::byte>> incoming) override {
+        meeting_.meet(process_, {.step = "exchange of bytes", .outgoing = outgoing},
+                      [&](std::span<const Meeting::Post> all) {
+                          for (std::size_t from = 0; from < size(); ++from) {
+                              const std::span<const std::byte> sent = all[from].outgoing[process_];
+                              ASSERT_EQ(sent.size(), incoming[from].size());
+                              if (!sent.empty())
+                                  std::memcpy(incoming[from].data(), sent.data(), sent.size());
+                          }
+                      });
+    }
+
+    void send(std::size_t to, std::string_view bytes) override { meeting_.send(process_, to, bytes); }
+    std::string receive(std::size_t from) override { return meeting_.receive(from, process_); }
+
+  private:
+    Meeting& meeting_;
+    std::size_t process_;
+};
+
+/// Runs body(communicator) as so many processes. What each of them threw; what is no Error counts as
+/// internal.
+template <class Body>
+std::vector<std::optional<Error>> failures_of(std::size_t processes, const Body& body) {
+    Meeting meeting(processes);
+    std::vector<std::optional<Error>> failures(processes);
+    std::vector<std::thread> threads;
+    for (std::size_t p = 0; p < processes; ++p)
+        threads.emplace_back([&, p] {
+            ThreadProcess own(meeting, p);
+            try {
+                body(own);
+            } catch (const Error& error) {
+                failures[p] = error;
+            } catch (const std::exception& error) {
+                failures[p] = Error(ErrorKind::internal, error.what());
+            }
+            meeting.leave(p);
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_TRUE(meeting.quiet()) << "a message was never received";
+    return failures;
+}
+
+/// The same where none of them may fail.
+template <class Body>
+void run_processes(std::size_t processes, const Body& body) {
+    for (const std::optional<Error>& failure : failures_of(processes, body))
+        EXPECT_FALSE(failure.has_value()) << failure->what();
+}
+
+/// The same where all of them have to fail, and alike.
+template <class Body>
+Error common_failure(std::size_t processes, const Body& body) {
+    const std::vector<std::optional<Error>> failures = failures_of(processes, body);
+    Error common(ErrorKind::internal, "none failed");
+    for (std::size_t p = 0; p < processes; ++p) {
+        EXPECT_TRUE(failures[p].has_value()) << "process " << p << " did not fail";
+        if (p == 0 && failures[p])
+            common = *failures[p];
+        if (failures[p]) {
+            EXPECT_EQ(failures[p]->kind(), common.kind()) << failures[p]->what();
+            EXPECT_STREQ(failures[p]->what(), common.what());
+        }
+    }
+    return common;
+}
+
+} // namespace lamella::test
