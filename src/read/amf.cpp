@@ -214,10 +214,10 @@ class AmfReader {
             notes_.push_back(
                 fmt::format("line {}: edges and normals bend triangles; they were passed over, as "
                             "all {} of them, and triangles are flat",
-                            document_.bent.line, document_.bent.count));
+                            document_.bent.first, document_.bent.count));
         if (document_.supports.count != 0)
             notes_.push_back(fmt::format("line {}: {} volumes are supports; they were left out",
-                                         document_.supports.line, document_.supports.count));
+                                         document_.supports.first, document_.supports.count));
         if (not_printable_ != 0)
             notes_.push_back(fmt::format("{} instances are marked as not to be printed; they were left out",
                                          not_printable_));

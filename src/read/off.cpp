@@ -131,8 +131,7 @@ MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, cons
     try {
         counts = read_head(text);
     } catch (const TextFault& fault) {
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: {}", source.name, found_instead(text, fault.offset, fault.expected)));
+        refuse_text(source, fault);
     }
     Remarks remarks(source.name, options.strict);
     ReadLimits limits(source.name, options);

@@ -294,10 +294,8 @@ class BinaryReader {
             }
         });
         at_ = sum.at;
-        if (thin_faces_ != 0)
-            remarks_.add(
-                fmt::format("byte {}: left out {} {} of fewer than three corners (this is the first)",
-                            first_thin_ - begin_, thin_faces_, thin_faces_ == 1 ? "face" : "faces"));
+        if (thin_faces_.count != 0)
+            tell_thin_faces(remarks_, fmt::format("byte {}", thin_faces_.first), thin_faces_.count);
     }
 
     /// Calls visit(corners, row) for the triangles of all strips, where `row` begins. Returns the end.
@@ -413,7 +411,7 @@ class BinaryReader {
                 fail_cut_off(element, row);
             const std::uint64_t corners = whole_number_at<swapped>(list, length_type_);
             if (corners < 3) {
-                first_thin_ = thin_faces_++ == 0 ? row_begin : first_thin_;
+                thin_faces_.note(static_cast<std::size_t>(row_begin - begin_));
                 continue;
             }
             triangles += corners - 2;
@@ -502,8 +500,7 @@ class BinaryReader {
     std::uint64_t corners_ = 0;
     std::uint64_t row_bytes_ = 0;
     std::size_t index_offset_ = 0;
-    std::uint64_t thin_faces_ = 0;
-    const std::byte* first_thin_ = nullptr;
+    Occurrences thin_faces_;
 };
 
 } // namespace
