@@ -95,25 +95,9 @@ class AmfReader {
             // It may be at fault, or only be written in a way that is no good for skimming.
             read_by_parser();
         }
-        std::vector<MeshText> texts;
-        std::vector<AmfObject*> owners;
-        for (AmfObject& object : document_.objects)
-            if (!object.text.vertices.empty() || !object.text.triangles.empty()) {
-                texts.push_back(object.text);
-                owners.push_back(&object);
-            }
-        std::vector<std::optional<IndexedMesh>> meshes =
-            read_mesh_texts(texts, amf_text_form(), limits_, executor_);
-        if (std::all_of(meshes.begin(), meshes.end(), [](const auto& mesh) { return mesh.has_value(); })) {
-            for (std::size_t i = 0; i < meshes.size(); ++i)
-                owners[i]->mesh = std::move(*meshes[i]);
-        } else {
-            for (const std::optional<IndexedMesh>& mesh : meshes)
-                if (mesh)
-                    give_back(*mesh, limits_);
-            meshes.clear();
+        AmfDocument* const document = &document_;
+        if (!read_skimmed_meshes(std::span(&document, 1), amf_text_form(), limits_, executor_).front())
             read_by_parser();
-        }
         source_.bytes = {};
         source_.owner.reset();
     }

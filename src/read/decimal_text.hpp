@@ -32,6 +32,14 @@ struct DecimalDigits {
         const auto whole = static_cast<double>(mantissa);
         return exponent < 0 ? whole / powers[-exponent] : whole * powers[exponent];
     }
+    /// Whether a number that no double or float can hold, and that begins with these digits, is too large
+    /// rather than too small: the place of its first digit that is not 0 tells.
+    [[nodiscard]] bool is_huge(const char* digits) const noexcept {
+        std::ptrdiff_t zeros = 0;
+        for (; *digits == '0' || *digits == '.'; ++digits)
+            zeros += *digits == '0' ? 1 : 0;
+        return exponent + (count - zeros) > 0;
+    }
 };
 
 /// Takes the digits, the point and the exponent of a number behind its sign.
@@ -87,12 +95,7 @@ inline const char* read_decimal(const char* first, const char* end, double& valu
     }
     const auto [stop, code] = std::from_chars(digits, number.end, value);
     if (code == std::errc::result_out_of_range) {
-        // Too large or too small? The first digit that is not 0 tells.
-        const char* lead = digits;
-        std::ptrdiff_t zeros = 0;
-        for (; *lead == '0' || *lead == '.'; ++lead)
-            zeros += *lead == '0' ? 1 : 0;
-        if (number.exponent + (number.count - zeros) > 0)
+        if (number.is_huge(digits))
             return nullptr;
         value = 0;
     }

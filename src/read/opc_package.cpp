@@ -56,10 +56,6 @@ std::string decoded(std::string_view reference) {
 
 } // namespace
 
-bool OpcPackage::has_relationships(std::string_view part) const noexcept {
-    return zip_.find(list_of(part)) != nullptr;
-}
-
 std::vector<OpcRelationship> OpcPackage::relationships(std::string_view part) const {
     std::vector<OpcRelationship> found;
     const ZipEntry* const entry = zip_.find(list_of(part));

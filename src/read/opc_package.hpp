@@ -30,10 +30,8 @@ class OpcPackage {
 
     [[nodiscard]] const ZipReader& zip() const noexcept { return zip_; }
 
-    /// The relationships of a part, or those of the package for "". None when it has no list of them; whether
-    /// it has one tells `has_relationships`.
+    /// The relationships of a part, or those of the package for "". None when it has no list of them.
     [[nodiscard]] std::vector<OpcRelationship> relationships(std::string_view part) const;
-    [[nodiscard]] bool has_relationships(std::string_view part) const noexcept;
 
     /// What a reference that stands in `part` means: absolute ("/3D/a.model") or relative to its folder.
     [[nodiscard]] static std::string resolve(std::string_view part, std::string_view reference);

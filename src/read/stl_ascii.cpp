@@ -24,65 +24,6 @@ namespace lamella {
 
 namespace {
 
-/// `keyword` is in lower case.
-bool matches(std::string_view word, std::string_view keyword) {
-    return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
-                                                       [](char w, char k) { return lower_case(w) == k; });
-}
-
-/// Walks over a text word by word.
-class Words {
-  public:
-    Words(std::string_view text, std::size_t from)
-        : begin_(text.data()), at_(text.data() + from), end_(text.data() + text.size()) {}
-
-    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
-    [[nodiscard]] bool at_end() const { return at_ == end_; }
-    [[nodiscard]] const char* position() const { return at_; }
-    [[nodiscard]] const char* text_end() const { return end_; }
-    void move_to(const char* position) { at_ = position; }
-
-    void skip_blanks() {
-        while (at_ != end_ && is_blank(*at_))
-            ++at_;
-    }
-
-    /// Skips blanks and says whether the line went on.
-    bool skip_blanks_in_line() {
-        while (at_ != end_ && is_blank(*at_) && !is_line_end(*at_))
-            ++at_;
-        return at_ != end_ && !is_line_end(*at_);
-    }
-
-    /// The word that begins here (empty at the end).
-    [[nodiscard]] std::string_view peek() const {
-        const char* stop = at_;
-        while (stop != end_ && !is_blank(*stop))
-            ++stop;
-        return {at_, static_cast<std::size_t>(stop - at_)};
-    }
-
-    void skip_word() {
-        while (at_ != end_ && !is_blank(*at_))
-            ++at_;
-    }
-
-    /// Skips the keyword when it is the word that begins here.
-    bool take(std::string_view keyword) {
-        const auto left = static_cast<std::size_t>(end_ - at_);
-        if (left < keyword.size() || !matches({at_, keyword.size()}, keyword) ||
-            (left > keyword.size() && !is_blank(at_[keyword.size()])))
-            return false;
-        at_ += keyword.size();
-        return true;
-    }
-
-  private:
-    const char* begin_;
-    const char* at_;
-    const char* end_;
-};
-
 /// A number, NaN or infinity may begin with it. The words of a facet that are not numbers never do.
 bool begins_like_number(std::string_view word) {
     return !word.empty() && (std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos ||

@@ -4,6 +4,7 @@
 
 #include "container/byte_source.hpp"
 #include "core/executor.hpp"
+#include "core/lower_case.hpp"
 #include "read/coordinate_text.hpp"
 
 #include <algorithm>
@@ -49,6 +50,55 @@ namespace lamella {
         ++at;
     return at;
 }
+
+/// Whether the word is this keyword, which is in lower case, in any case.
+[[nodiscard]] inline bool matches(std::string_view word, std::string_view keyword) {
+    return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
+                                                       [](char w, char k) { return lower_case(w) == k; });
+}
+
+/// Walks over a text word by word.
+class Words {
+  public:
+    Words(std::string_view text, std::size_t from)
+        : begin_(text.data()), at_(text.data() + from), end_(text.data() + text.size()) {}
+
+    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
+    [[nodiscard]] bool at_end() const { return at_ == end_; }
+    [[nodiscard]] const char* position() const { return at_; }
+    [[nodiscard]] const char* text_end() const { return end_; }
+    void move_to(const char* position) { at_ = position; }
+
+    void skip_blanks() { at_ = lamella::skip_blanks(at_, end_); }
+
+    /// Skips blanks and says whether the line went on.
+    bool skip_blanks_in_line() {
+        at_ = skip_spaces(at_, end_);
+        return at_ != end_ && !is_line_end(*at_);
+    }
+
+    /// The word that begins here (empty at the end).
+    [[nodiscard]] std::string_view peek() const { return word_at(at_, end_); }
+
+    void skip_word() { at_ += peek().size(); }
+
+    void skip_line() { at_ = skip_to_line_end(at_, end_); }
+
+    /// Skips the keyword when it is the word that begins here.
+    bool take(std::string_view keyword) {
+        const auto left = static_cast<std::size_t>(end_ - at_);
+        if (left < keyword.size() || !matches({at_, keyword.size()}, keyword) ||
+            (left > keyword.size() && !is_blank(at_[keyword.size()])))
+            return false;
+        at_ += keyword.size();
+        return true;
+    }
+
+  private:
+    const char* begin_;
+    const char* at_;
+    const char* end_;
+};
 
 /// What makes a text unreadable.
 struct TextFault {
