@@ -200,13 +200,10 @@ std::string first_line(std::string_view text, std::size_t offset) {
 bool looks_like_obj(std::string_view text) {
     constexpr std::size_t enough = 65'536;
     text = text.substr(after_byte_order_mark(text), enough);
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (at = skip_blanks(at, end); at != end && *at == '#'; at = skip_blanks(at, end))
-        at = skip_to_line_end(at, end);
-    const std::string_view word = word_at(at, end);
+    Words words(text, 0);
+    words.skip_comments();
     constexpr std::array keywords{"v"sv, "vt"sv, "vn"sv, "o"sv, "g"sv, "mtllib"sv, "usemtl"sv};
-    return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
+    return std::find(keywords.begin(), keywords.end(), words.peek()) != keywords.end();
 }
 
 MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {

@@ -48,8 +48,7 @@ class OffHead {
 
     /// The next word, across lines and comments; empty at the end.
     std::string_view peek() {
-        for (words_.skip_blanks(); !words_.at_end() && *words_.position() == '#'; words_.skip_blanks())
-            words_.skip_line();
+        words_.skip_comments();
         return words_.peek();
     }
 

@@ -84,6 +84,12 @@ class Words {
 
     void skip_line() { at_ = skip_to_line_end(at_, end_); }
 
+    /// Skips blanks, and lines that begin with '#'.
+    void skip_comments() {
+        for (skip_blanks(); at_ != end_ && *at_ == '#'; skip_blanks())
+            skip_line();
+    }
+
     /// Skips the keyword when it is the word that begins here.
     bool take(std::string_view keyword) {
         const auto left = static_cast<std::size_t>(end_ - at_);
