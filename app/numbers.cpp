@@ -2,12 +2,14 @@
 
 #include "lamella/core/error.hpp"
 
+#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <system_error>
+#include <type_traits>
 
 namespace lamella::app {
 namespace {
@@ -23,14 +25,20 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// The whole of `text` as a number, or nothing.
+/// The whole of `text` as a number, or nothing. What is too large for a double is infinite.
 template <class Number>
 bool read(std::string_view text, Number& value) {
     text = trimmed(text);
     if (text.size() > 1 && text[0] == '+' && text[1] != '-')
         text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size();
+    const char* const end = text.data() + text.size();
+    if constexpr (std::is_floating_point_v<Number>) {
+        const auto [last, error] = fast_float::from_chars(text.data(), end, value);
+        return error == std::errc() && last == end;
+    } else {
+        const auto [last, error] = std::from_chars(text.data(), end, value);
+        return error == std::errc() && last == end;
+    }
 }
 
 /// The two ends of "a:b"; an end that is left out keeps the value that it has.

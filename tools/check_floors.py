@@ -38,6 +38,7 @@ ROOMS = {
 # the hash in one for layers and one for files), text formatting in all of them.
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
+    "fast_float": "src/core/parse_number.cpp",
     "libdeflate.h": "src/container/inflate.cpp",
     "polyclipping": "src/polygon/clipping.cpp",
     "xxhash.h": "src/container/file_hash.cpp src/contour/normal_form.cpp",
@@ -57,7 +58,7 @@ STANDARD = set(
     execution filesystem format forward_list fstream functional future initializer_list iomanip ios iosfwd
     iostream istream iterator latch limits list locale map memory memory_resource mutex new numbers numeric
     optional ostream queue random ranges ratio regex scoped_allocator semaphore set shared_mutex
-    source_location span sstream stack stdexcept stop_token streambuf string string_view strstream
+    source_location span sstream stack stdexcept streambuf string string_view strstream
     syncstream system_error thread tuple type_traits typeindex typeinfo unordered_map unordered_set utility
     valarray variant vector version""".split()
 )

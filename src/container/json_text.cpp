@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "core/parse_number.hpp"
 
 #include <fmt/format.h>
 
@@ -149,8 +150,8 @@ double JsonText::number() {
     double value = 0;
     const char first = from == end ? '\0' : *from;
     const bool begins = first == '-' || (first >= '0' && first <= '9'); // neither "inf" nor "nan"
-    const auto [to, error] = std::from_chars(from, end, value);
-    if (!begins || error != std::errc() || !std::isfinite(value))
+    const char* const to = parse_number(from, end, value);
+    if (!begins || to == from || !std::isfinite(value))
         fail(here(), "a number is expected");
     at_ += static_cast<std::size_t>(to - from);
     return value;

@@ -59,7 +59,7 @@ void append_sorted(std::vector<Value>& all, const std::vector<Value>& part) {
 
 EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places) {
     const std::size_t n = mesh.triangles.size();
-    EdgeSurvey survey{{}, UnionFind(n), PageArray<std::uint8_t>(n, Fill::zero), {}};
+    EdgeSurvey survey{{}, UnionFind(n), PageArray<std::atomic<std::uint8_t>>(n, Fill::zero), {}};
     std::vector<Worker> workers(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned w) {
         Worker& worker = workers[w];

@@ -170,8 +170,8 @@ void check_heads(const std::string& one, std::string_view head, const std::strin
     };
     throw Error(ErrorKind::input,
                 fmt::format("{} and {}: their heads differ: found {} and {}; they are not of one job", one,
-                            other, line(head, static_cast<std::size_t>(differ.in1 - head.begin())),
-                            line(other_head, static_cast<std::size_t>(differ.in2 - other_head.begin()))));
+                            other, line(head, static_cast<std::size_t>(differ.first - head.begin())),
+                            line(other_head, static_cast<std::size_t>(differ.second - other_head.begin()))));
 }
 
 std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint64_t layers,

@@ -94,25 +94,9 @@ class AmfReader {
             // It may be at fault, or only be written in a way that is no good for skimming.
             read_by_parser();
         }
-        std::vector<MeshText> texts;
-        std::vector<AmfObject*> owners;
-        for (AmfObject& object : document_.objects)
-            if (!object.text.vertices.empty() || !object.text.triangles.empty()) {
-                texts.push_back(object.text);
-                owners.push_back(&object);
-            }
-        std::vector<std::optional<IndexedMesh>> meshes =
-            read_mesh_texts(texts, amf_text_form(), limits_, executor_);
-        if (std::all_of(meshes.begin(), meshes.end(), [](const auto& mesh) { return mesh.has_value(); })) {
-            for (std::size_t i = 0; i < meshes.size(); ++i)
-                owners[i]->mesh = std::move(*meshes[i]);
-        } else {
-            for (const std::optional<IndexedMesh>& mesh : meshes)
-                if (mesh)
-                    give_back(*mesh, limits_);
-            meshes.clear();
+        AmfDocument* const document = &document_;
+        if (!read_skimmed_meshes(std::span(&document, 1), amf_text_form(), limits_, executor_).front())
             read_by_parser();
-        }
         source_.bytes = {};
         source_.owner.reset();
     }
@@ -213,10 +197,10 @@ class AmfReader {
             notes_.push_back(
                 fmt::format("line {}: edges and normals bend triangles; they were passed over, as "
                             "all {} of them, and triangles are flat",
-                            document_.bent.line, document_.bent.count));
+                            document_.bent.first, document_.bent.count));
         if (document_.supports.count != 0)
             notes_.push_back(fmt::format("line {}: {} volumes are supports; they were left out",
-                                         document_.supports.line, document_.supports.count));
+                                         document_.supports.first, document_.supports.count));
         if (not_printable_ != 0)
             notes_.push_back(fmt::format("{} instances are marked as not to be printed; they were left out",
                                          not_printable_));

@@ -5,6 +5,7 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 
 #include "read/mesh_text.hpp"
+#include "read/remarks.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -45,25 +46,14 @@ struct AmfConstellation {
     std::vector<AmfInstance> instances;
 };
 
-/// Oddities of which one wants to know how often they occur, and where first.
-struct Counted {
-    std::size_t count = 0;
-    std::size_t line = 0;
-
-    void note(std::size_t where) {
-        if (count++ == 0)
-            line = where;
-    }
-};
-
 struct AmfDocument {
     std::optional<double> unit_mm;
     std::string name;
     bool radians = false;
     std::vector<AmfObject> objects;
     std::vector<AmfConstellation> constellations;
-    Counted bent;     ///< edges and normals
-    Counted supports; ///< volumes that were left out
+    Occurrences bent;     ///< edges and normals
+    Occurrences supports; ///< volumes that were left out
 };
 
 /// Reads a document, which errors call `name`. `supports`: take volumes of type support, too. `skim`: leave

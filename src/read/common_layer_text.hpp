@@ -3,11 +3,11 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "core/parse_number.hpp"
 #include "read/coordinate_text.hpp"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -67,8 +67,8 @@ class CommonLayerText {
         if (from != end && *from == '+')
             ++from;
         double value = 0;
-        const auto [to, error] = std::from_chars(from, end, value, std::chars_format::general);
-        if (error != std::errc() || !std::isfinite(value)) {
+        const char* const to = parse_number(from, end, value);
+        if (to == from || !std::isfinite(value)) {
             at_ = begin;
             fail(fmt::format("'{}'", printable(rest().substr(0, rest().find_first_of(", \t\r\n")), 40)),
                  fmt::format("{} must be a number", what));

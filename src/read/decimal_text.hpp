@@ -2,12 +2,12 @@
 
 // Numbers in texts, quickly: most of the bytes of a mesh in a text file are digits.
 
-#include <charconv>
+#include "core/parse_number.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <system_error>
 
 namespace lamella {
 
@@ -85,17 +85,9 @@ inline const char* read_decimal(const char* first, const char* end, double& valu
         value = negative ? 0.0 - size : size;
         return number.end;
     }
-    const auto [stop, code] = std::from_chars(digits, number.end, value);
-    if (code == std::errc::result_out_of_range) {
-        // Too large or too small? The first digit that is not 0 tells.
-        const char* lead = digits;
-        std::ptrdiff_t zeros = 0;
-        for (; *lead == '0' || *lead == '.'; ++lead)
-            zeros += *lead == '0' ? 1 : 0;
-        if (number.exponent + (number.count - zeros) > 0)
-            return nullptr;
-        value = 0;
-    }
+    parse_number(digits, number.end, value);
+    if (std::isinf(value))
+        return nullptr;
     value = negative ? 0.0 - value : value;
     return number.end;
 }

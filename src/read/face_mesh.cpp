@@ -124,39 +124,7 @@ std::uint64_t bytes_of(const FacePiece& piece) {
     return piece.vertices.size() * sizeof(Point3) + piece.triangles.size() * sizeof(Corners);
 }
 
-} // namespace
-
-std::optional<Corners> TriangleStrip::add(std::uint32_t corner) noexcept {
-    const bool odd = corners_ % 2 != 0;
-    const Corners triangle =
-        odd ? Corners{last_, last_but_one_, corner} : Corners{last_but_one_, last_, corner};
-    const bool whole = ++corners_ >= 3;
-    last_but_one_ = std::exchange(last_, corner);
-    const auto& [a, b, c] = triangle;
-    return whole && a != b && b != c && c != a ? std::optional(triangle) : std::nullopt;
-}
-
-void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t offset) {
-    if (corners.size() < 3) {
-        ++thin_faces;
-        first_thin = std::min(first_thin, offset);
-        return;
-    }
-    if (corners.size() > 3)
-        polygons.push_back({triangles.size(), static_cast<std::uint32_t>(corners.size() - 2)});
-    for (std::size_t k = 2; k < corners.size(); ++k)
-        triangles.push_back({corners[0], corners[k - 1], corners[k]});
-}
-
-void count_piece(const FacePiece& piece, ReadLimits& limits) {
-    limits.add_triangles(piece.triangles.size());
-    limits.add_bytes(bytes_of(piece));
-}
-
-void give_back_piece(const FacePiece& piece, ReadLimits& limits) {
-    limits.give_back(piece.triangles.size(), bytes_of(piece));
-}
-
+/// All pieces, in order. Empties them.
 FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor) {
     struct Begin {
         std::uint64_t vertex = 0;
@@ -186,9 +154,8 @@ FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor) {
             FacePiece& piece = pieces[i];
             const Begin& begin = begins[i];
             for (const std::uint64_t corner : piece.relative) {
-                std::uint32_t& v = piece.triangles[corner / 3][corner % 3];
-                if (v != FacePiece::no_vertex)
-                    v += static_cast<std::uint32_t>(begin.vertex);
+                // One that lies before this piece has wrapped round, and wraps back.
+                piece.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
             }
             std::copy(piece.vertices.begin(), piece.vertices.end(),
                       faces.mesh.vertices.begin() + static_cast<std::ptrdiff_t>(begin.vertex));
@@ -204,6 +171,38 @@ FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor) {
         }
     });
     return faces;
+}
+
+} // namespace
+
+std::optional<Corners> TriangleStrip::add(std::uint32_t corner) noexcept {
+    const bool odd = corners_ % 2 != 0;
+    const Corners triangle =
+        odd ? Corners{last_, last_but_one_, corner} : Corners{last_but_one_, last_, corner};
+    const bool whole = ++corners_ >= 3;
+    last_but_one_ = std::exchange(last_, corner);
+    const auto& [a, b, c] = triangle;
+    return whole && a != b && b != c && c != a ? std::optional(triangle) : std::nullopt;
+}
+
+void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t offset) {
+    if (corners.size() < 3) {
+        thin_faces.note(offset);
+        return;
+    }
+    if (corners.size() > 3)
+        polygons.push_back({triangles.size(), static_cast<std::uint32_t>(corners.size() - 2)});
+    for (std::size_t k = 2; k < corners.size(); ++k)
+        triangles.push_back({corners[0], corners[k - 1], corners[k]});
+}
+
+void count_piece(const FacePiece& piece, ReadLimits& limits) {
+    limits.add_triangles(piece.triangles.size());
+    limits.add_bytes(bytes_of(piece));
+}
+
+void give_back_piece(const FacePiece& piece, ReadLimits& limits) {
+    limits.give_back(piece.triangles.size(), bytes_of(piece));
 }
 
 MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned first_vertex,
@@ -240,19 +239,41 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
         if (first != none) {
             const std::string where = place(first);
             file.nonfinite_triangles = std::erase_if(mesh.triangles, unusable);
-            if (mesh.triangles.empty())
-                fail(fmt::format(
-                    "{}: holds no usable triangle: each of the {} has a corner that is NaN or infinite",
-                    where, file.stored_triangles));
-            remarks.add(fmt::format("{}: left out {} of {} triangles, which have a corner that is NaN or "
-                                    "infinite (this is the first)",
-                                    where, file.nonfinite_triangles, file.stored_triangles));
+            tell_nonfinite(remarks, where, file.nonfinite_triangles, file.stored_triangles);
         }
     }
     drop_unused(mesh, executor);
     file.objects.push_back({{}, Mesh(std::move(mesh))});
     file.instances.push_back({});
     return file;
+}
+
+MeshFile make_mesh_file(const ByteSource& source, const PieceParser<FacePiece>& parser,
+                        std::vector<FacePiece>& pieces, unsigned first_vertex, Remarks& remarks,
+                        Executor& executor) {
+    Occurrences thin_faces;
+    Occurrences free_form;
+    std::vector<std::uint64_t> ends; // of the pieces, in triangles
+    for (const FacePiece& piece : pieces) {
+        thin_faces.add(piece.thin_faces);
+        free_form.add(piece.free_form);
+        ends.push_back((ends.empty() ? 0 : ends.back()) + piece.triangles.size());
+    }
+    const auto line = [&](std::size_t offset) {
+        return fmt::format("line {}", line_of(source, offset));
+    };
+    if (thin_faces.count != 0)
+        tell_thin_faces(remarks, line(thin_faces.first), thin_faces.count);
+    if (free_form.count != 0)
+        remarks.add(fmt::format("{}: left out free-form curves and surfaces; only faces are read",
+                                line(free_form.first)));
+    const auto place = [&](std::uint64_t triangle) {
+        const auto i =
+            static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
+        const std::uint64_t before = i == 0 ? 0 : ends[i - 1];
+        return fmt::format("line {}", parser.line_of_triangle(pieces[i], triangle - before));
+    };
+    return make_mesh_file(join(pieces, executor), source.name, first_vertex, place, remarks, executor);
 }
 
 } // namespace lamella

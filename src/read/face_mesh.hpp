@@ -8,7 +8,9 @@
 #include "core/executor.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "read/text_pieces.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -27,15 +29,8 @@ struct FaceFan {
     std::uint32_t triangles;
 };
 
-/// What makes a piece of text unreadable.
-struct TextFault {
-    std::size_t offset;
-    std::string expected;
-};
-
 /// Faces, and the vertices that stand among them.
-struct FacePiece {
-    static constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
+struct FacePiece : TextPiece {
     /// Names no vertex, as there are never so many.
     static constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
@@ -44,9 +39,9 @@ struct FacePiece {
     std::vector<FaceFan> polygons;
     /// Corners (3 t + k: corner k of triangle t) that count from the first vertex of this piece.
     std::vector<std::uint64_t> relative;
-    std::uint64_t thin_faces = 0; ///< of fewer than three corners
-    std::size_t first_thin = nowhere;
-    std::optional<TextFault> fault;
+    Occurrences thin_faces;     ///< of fewer than three corners
+    Occurrences free_form;      ///< curves and surfaces that are not made of faces
+    std::size_t name = nowhere; ///< where that of the first object stands
 
     /// Adds the corners of a face that begins at `offset`.
     void add_face(const std::vector<std::uint32_t>& corners, std::size_t offset);
@@ -72,13 +67,15 @@ struct FaceMesh {
     std::vector<FaceFan> polygons;
 };
 
-/// Counts a piece as soon as it is there, before the next ones are read.
+/// Counts a piece as soon as it is parsed, before the next ones are.
 void count_piece(const FacePiece& piece, ReadLimits& limits);
+/// How many pieces are parsed ahead: some for each thread, however many there are.
+[[nodiscard]] inline std::size_t face_pieces_ahead(const Executor& executor) noexcept {
+    return std::max<std::size_t>(32, std::size_t{8} * executor.workers());
+}
+
 /// Takes back that it was counted.
 void give_back_piece(const FacePiece& piece, ReadLimits& limits);
-
-/// All pieces, in order. Empties them.
-[[nodiscard]] FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor);
 
 /// How a reader tells where triangle t came from, such as "line 7".
 using TrianglePlace = std::function<std::string(std::uint64_t triangle)>;
@@ -89,5 +86,10 @@ using TrianglePlace = std::function<std::string(std::uint64_t triangle)>;
 /// triangle is left.
 [[nodiscard]] MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned first_vertex,
                                       const TrianglePlace& place, Remarks& remarks, Executor& executor);
+
+/// Joins pieces, which it empties, and makes a mesh file of them.
+[[nodiscard]] MeshFile make_mesh_file(const ByteSource& source, const PieceParser<FacePiece>& parser,
+                                      std::vector<FacePiece>& pieces, unsigned first_vertex, Remarks& remarks,
+                                      Executor& executor);
 
 } // namespace lamella

@@ -19,54 +19,6 @@ namespace lamella {
 
 namespace {
 
-/// Calls visit(at) for each row from `begin` to `end` until it says false; `visit` returns where the next
-/// line may begin.
-template <class Visit>
-void for_rows(const char* begin, const char* end, char comment, Visit visit) {
-    for (const char* at = skip_blanks(begin, end); at != nullptr && at != end;) {
-        if (comment != '\0' && *at == comment)
-            at = skip_to_line_end(at, end);
-        else
-            at = visit(at);
-        if (at != nullptr)
-            at = skip_blanks(at, end);
-    }
-}
-
-/// A stretch of the text and the rows in it.
-struct RowRange {
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    std::uint64_t first_row = 0;
-    std::uint64_t last_row = 0; ///< exclusive
-};
-
-/// Reads the rows of one piece, until the triangle with this number is there. Returns where it stopped.
-std::size_t read_piece(std::string_view text, const RowRange& range, const FaceRows& rows, RowLayout layout,
-                       FacePiece& piece,
-                       std::uint64_t last_triangle = std::numeric_limits<std::uint64_t>::max()) {
-    std::uint64_t row = range.first_row;
-    std::size_t stopped = range.end;
-    RowWords words(text.substr(0, range.end), text.data() + range.begin, layout);
-    try {
-        for_rows(text.data() + range.begin, text.data() + range.end, rows.comment,
-                 [&](const char* at) -> const char* {
-                     if (row == range.last_row)
-                         return nullptr;
-                     words.move_to(at);
-                     rows.read_row(row++, words, piece);
-                     if (piece.triangles.size() > last_triangle) {
-                         stopped = static_cast<std::size_t>(at - text.data());
-                         return nullptr;
-                     }
-                     return words.end_row();
-                 });
-    } catch (TextFault& fault) {
-        piece.fault = std::move(fault);
-    }
-    return stopped;
-}
-
 /// How many rows there are, if each line is one for certain, as in most texts: none begins with a blank or
 /// ends with a CR alone, and there are no comments. Sixteen bytes at a time, which is many times faster than
 /// to look at what each line holds.
@@ -114,10 +66,10 @@ std::uint64_t count_rows(std::string_view text, char comment) {
         return *count;
     const char* const end = text.data() + text.size();
     std::uint64_t count = 0;
-    for_rows(text.data(), end, comment, [&](const char* at) {
-        ++count;
-        return skip_to_line_end(at, end);
-    });
+    for (const char* at = skip_blanks(text.data(), end); at != end; at = skip_blanks(at, end)) {
+        count += comment != '\0' && *at == comment ? 0 : 1;
+        at = skip_to_line_end(at, end);
+    }
     return count;
 }
 
@@ -258,145 +210,103 @@ class RowsReader {
           progress_(execution, Stage::read, source.bytes.size()), text_(source.text()) {}
 
     MeshFile run() {
-        read_lines(rows_.any_lines ? RowLayout::exact_lines : RowLayout::lines);
-        if (failure_ && rows_.any_lines)
-            read_other_layouts();
-        if (failure_)
-            throw Error(ErrorKind::input, fmt::format("{}: {}", source_.name, failure_->text));
-        tell_thin_faces();
-        std::vector<std::uint64_t> ends; // of the pieces, in triangles
-        for (const FacePiece& piece : pieces_)
-            ends.push_back((ends.empty() ? 0 : ends.back()) + piece.triangles.size());
-        const auto place = [&](std::uint64_t triangle) {
-            const auto i =
-                static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
-            FacePiece again;
-            const std::size_t offset =
-                read_piece(text_, ranges_[i], rows_, layout_, again, triangle - (i == 0 ? 0 : ends[i - 1]));
-            return fmt::format("line {}", line_at(text_, offset));
-        };
-        MeshFile file = make_mesh_file(join(pieces_, executor_), source_.name, 0, place, remarks_, executor_);
+        read(rows_.any_lines ? RowLayout::exact_lines : RowLayout::lines);
+        if (fault_ && rows_.any_lines) {
+            const std::size_t first_odd_line = fault_->offset;
+            read(RowLayout::words);
+            if (fault_ && count_rows(text_.substr(rows_.begin), rows_.comment) == all_rows()) {
+                read(RowLayout::lines);
+                if (!fault_)
+                    remarks_.add(fmt::format("line {}: left out what the line has beyond the values of its "
+                                             "row (this is the first)",
+                                             line_of(source_, first_odd_line)));
+            }
+        }
+        if (fault_)
+            refuse_text(source_, *fault_);
+        MeshFile file = make_mesh_file(source_, *parser_, pieces_, 0, remarks_, executor_);
         progress_.finish();
         return file;
     }
 
   private:
-    struct Failure {
-        std::size_t offset;
-        std::string text;
-    };
+    [[nodiscard]] std::uint64_t all_rows() const { return rows_.rows + rows_.more_rows; }
 
-    void read_lines(RowLayout layout) {
-        const std::vector<std::size_t> cuts = cut_at_lines(text_, rows_.begin);
-        const std::size_t count = cuts.size() - 1;
-        start(layout, count);
-        std::vector<std::uint64_t> lines(count);
-        executor_.for_chunks(count, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = begin; i < end; ++i)
-                lines[i] = count_rows(text_.substr(cuts[i], cuts[i + 1] - cuts[i]), rows_.comment);
-        });
-        lines_ = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            ranges_[i] = {cuts[i], cuts[i + 1], lines_, rows_.rows};
-            lines_ += lines[i];
-        }
-        executor_.for_chunks(count, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = begin; i < end; ++i) {
-                if (ranges_[i].first_row < rows_.rows)
-                    read_piece(text_, ranges_[i], rows_, layout_, pieces_[i]);
-                count_piece(pieces_[i], limits_);
-                release(source_, source_.bytes.subspan(cuts[i], cuts[i + 1] - cuts[i]));
-                progress_.add(cuts[i + 1] - cuts[i]);
-            }
-        });
-        for (const FacePiece& piece : pieces_)
-            if (const auto& fault = piece.fault) {
-                fail(*fault);
-                return;
-            }
-        if (lines_ < rows_.rows)
-            fail_at_end(lines_, rows_.rows);
-    }
-
-    /// Only where a row has ended is it known where the next one begins, so this is a single walk.
-    void read_words() {
-        start(RowLayout::words, 0);
-        const std::uint64_t all_rows = rows_.rows + rows_.more_rows;
-        const char* const end = text_.data() + text_.size();
-        RowWords words(text_, skip_blanks(text_.data() + rows_.begin, end), layout_);
-        for (std::uint64_t row = 0; row < all_rows;) {
-            executor_.check_cancelled();
-            ranges_.push_back({words.offset(), text_.size(), row, all_rows});
-            RowRange& range = ranges_.back();
-            FacePiece& piece = pieces_.emplace_back();
-            constexpr std::size_t piece_bytes = std::size_t{1} << 20;
-            try {
-                for (; row < all_rows && words.offset() - range.begin < piece_bytes; ++row)
-                    rows_.read_row(row, words, piece);
-            } catch (const TextFault& fault) {
-                count_piece(piece, limits_); // it is given back with the others
-                if (fault.offset == text_.size())
-                    fail_at_end(row, all_rows);
-                else
-                    fail(fault);
-                return;
-            }
-            range.last_row = row;
-            count_piece(piece, limits_);
-            release(source_, source_.bytes.subspan(range.begin, words.offset() - range.begin));
-        }
-        words.move_to(skip_blanks(text_.data() + words.offset(), end));
-        if (words.offset() != text_.size())
-            fail({words.offset(),
-                  fmt::format("the end of the file after the {} rows of {}", all_rows, rows_.counted_where)});
-    }
-
-    void read_other_layouts() {
-        const std::size_t first_odd_line = failure_->offset;
-        read_words();
-        if (!failure_ || lines_ != rows_.rows + rows_.more_rows)
-            return;
-        read_lines(RowLayout::lines);
-        if (!failure_)
-            remarks_.add(
-                fmt::format("line {}: left out what the line has beyond the values of its row (this is "
-                            "the first)",
-                            line_at(text_, first_odd_line)));
-    }
-
-    void start(RowLayout layout, std::size_t pieces) {
-        layout_ = layout;
-        failure_.reset();
+    /// Reads all pieces anew, up to the first fault.
+    void read(RowLayout layout) {
         for (const FacePiece& piece : pieces_)
             give_back_piece(piece, limits_);
         pieces_.clear();
-        pieces_.resize(pieces);
-        ranges_.assign(pieces, {});
+        const bool words = layout == RowLayout::words;
+        const std::uint64_t rows = words ? all_rows() : rows_.rows;
+        PieceFormat<FacePiece> format;
+        format.parse = [this, layout, rows](FacePiece& piece, std::uint64_t most_triangles) {
+            parse(piece, layout, rows, most_triangles);
+        };
+        format.find_cut = [this](std::size_t from, std::size_t limit) {
+            return find_line(text_, from, limit);
+        };
+        format.guess = [this](std::vector<FacePiece>& pieces) {
+            guess_rows(pieces);
+        };
+        // Only where a row of words has ended is it known where the next one begins.
+        parser_.emplace(source_, rows_.begin, std::move(format), executor_, progress_,
+                        words ? 1 : face_pieces_ahead(executor_));
+        pieces_ = parser_->rest([&](const FacePiece& piece) { count_piece(piece, limits_); });
+        const FacePiece& last = pieces_.back();
+        fault_ = last.fault;
+        if (last.after < rows && (!fault_ || (words && fault_->offset == text_.size())))
+            fault_ = {text_.size(),
+                      fmt::format("the file ends after {} rows, expected {} by {} (it is cut off, or the "
+                                  "numbers there are wrong)",
+                                  last.after, rows, rows_.counted_where),
+                      false};
     }
 
-    void fail(const TextFault& fault) {
-        failure_ = {fault.offset, found_instead(text_, fault.offset, fault.expected)};
-    }
-
-    void fail_at_end(std::uint64_t found, std::uint64_t expected) {
-        failure_ = {
-            text_.size(),
-            fmt::format("line {}: the file ends after {} rows, expected {} by {} (it is cut off, or the "
-                        "numbers there are wrong)",
-                        line_at(text_, text_.size()), found, expected, rows_.counted_where)};
-    }
-
-    void tell_thin_faces() {
-        std::uint64_t thin = 0;
-        std::size_t first_thin = FacePiece::nowhere;
-        for (const FacePiece& piece : pieces_) {
-            thin += piece.thin_faces;
-            first_thin = std::min(first_thin, piece.first_thin);
+    /// Reads the rows of a piece, which is about all of the text once there are as many as needed.
+    void parse(FacePiece& piece, RowLayout layout, std::uint64_t rows, std::uint64_t most_triangles) const {
+        const char* const begin = text_.data();
+        const char* const end = begin + text_.size();
+        const char* const limit = begin + piece.limit;
+        RowWords words(text_, begin + piece.begin, layout);
+        const char* at = skip_blanks(begin + piece.begin, end);
+        piece.after = piece.before;
+        try {
+            for (; at < limit; at = skip_blanks(at, end)) {
+                if (rows_.comment != '\0' && *at == rows_.comment) {
+                    at = skip_to_line_end(at, end);
+                    continue;
+                }
+                if (piece.after >= rows) {
+                    if (layout == RowLayout::words)
+                        throw TextFault{static_cast<std::size_t>(at - begin),
+                                        fmt::format("the end of the file after the {} rows of {}", rows,
+                                                    rows_.counted_where)};
+                    at = end;
+                    break;
+                }
+                words.move_to(at);
+                rows_.read_row(piece.after, words, piece);
+                if (piece.triangles.size() > most_triangles)
+                    break;
+                ++piece.after;
+                at = words.end_row();
+            }
+        } catch (TextFault& fault) {
+            piece.fault = std::move(fault);
         }
-        if (thin != 0)
-            remarks_.add(
-                fmt::format("line {}: left out {} {} of fewer than three corners (this is the first)",
-                            line_at(text_, first_thin), thin, thin == 1 ? "face" : "faces"));
+        piece.end = static_cast<std::size_t>(at - begin);
+    }
+
+    /// A line that begins in a piece is a row of it.
+    void guess_rows(std::vector<FacePiece>& pieces) {
+        std::vector<std::uint64_t> counts(pieces.size());
+        executor_.for_chunks(pieces.size() - 1, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            counts[i] =
+                count_rows(text_.substr(pieces[i].begin, pieces[i].limit - pieces[i].begin), rows_.comment);
+        });
+        for (std::size_t i = 1; i < pieces.size(); ++i)
+            pieces[i].before = pieces[i - 1].before + counts[i - 1];
     }
 
     const ByteSource& source_;
@@ -406,12 +316,9 @@ class RowsReader {
     Executor executor_;
     ProgressMeter progress_;
     std::string_view text_;
-
-    RowLayout layout_ = RowLayout::lines;
-    std::vector<RowRange> ranges_; ///< of the pieces
+    std::optional<PieceParser<FacePiece>> parser_;
     std::vector<FacePiece> pieces_;
-    std::uint64_t lines_ = 0; ///< that hold a word
-    std::optional<Failure> failure_;
+    std::optional<TextFault> fault_;
 };
 
 } // namespace

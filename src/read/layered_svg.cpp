@@ -5,6 +5,7 @@
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
+#include "core/parse_number.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/read_limits.hpp"
 #include "read/text_pieces.hpp"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -49,10 +49,10 @@ class Numbers {
         const char* const end = from + text_.size();
         if (from != end && *from == '+')
             ++from;
-        const auto [to, error] = std::from_chars(from, end, value);
+        const char* const to = parse_number(from, end, value);
         // What lies further away could make sums and areas overflow; no part is near it.
         constexpr double farthest = 1e100;
-        if (error != std::errc() || !(std::abs(value) <= farthest))
+        if (to == from || !(std::abs(value) <= farthest))
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: found '{}'; a coordinate must be a number within {}", name_,
                                     line_, printable(text_.substr(0, text_.find_first_of(" ,")), 40),

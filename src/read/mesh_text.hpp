@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -62,6 +63,38 @@ inline constexpr double farthest_coordinate = 1e38;
                                                                       const MeshTextForm& form,
                                                                       ReadLimits& limits, Executor& executor);
 
+/// Gives back what the limits counted of a mesh.
+void give_back(const IndexedMesh& mesh, ReadLimits& limits);
+
+/// Reads the texts of all objects of documents that were skimmed into their meshes. False for a document with
+/// one that is not plain, which a parser has to read as a whole: the limits no longer count its meshes.
+template <class Document>
+[[nodiscard]] std::vector<bool> read_skimmed_meshes(std::span<Document* const> documents,
+                                                    const MeshTextForm& form, ReadLimits& limits,
+                                                    Executor& executor) {
+    std::vector<MeshText> texts;
+    std::vector<std::pair<std::size_t, IndexedMesh*>> owners; // document and mesh of each
+    for (std::size_t i = 0; i < documents.size(); ++i)
+        for (auto& object : documents[i]->objects)
+            if (!object.text.vertices.empty() || !object.text.triangles.empty()) {
+                texts.push_back(object.text);
+                owners.emplace_back(i, &object.mesh);
+            }
+    std::vector<std::optional<IndexedMesh>> meshes = read_mesh_texts(texts, form, limits, executor);
+    std::vector<bool> plain(documents.size(), true);
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+        if (meshes[k])
+            *owners[k].second = std::move(*meshes[k]);
+        else
+            plain[owners[k].first] = false;
+    }
+    for (std::size_t i = 0; i < documents.size(); ++i)
+        for (const auto& object : documents[i]->objects)
+            if (!plain[i])
+                give_back(object.mesh, limits);
+    return plain;
+}
+
 /// Counts a mesh that grows while a parser reads it, stretch by stretch. What was counted by the time that it
 /// is destroyed is given back, unless it is kept.
 class GrowingMeshCount {
@@ -93,9 +126,6 @@ class GrowingMeshCount {
     std::uint64_t triangles_ = 0;
     std::uint64_t bytes_ = 0;
 };
-
-/// Gives back what the limits counted of a mesh.
-void give_back(const IndexedMesh& mesh, ReadLimits& limits);
 
 /// Triangles that use a vertex twice.
 [[nodiscard]] std::size_t degenerate_triangles(const IndexedMesh& mesh);

@@ -23,33 +23,21 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// A piece of the text and what is in it.
-struct ObjPiece {
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    FacePiece faces = {};
-    std::size_t name = FacePiece::nowhere;      ///< of the first object
-    std::size_t free_form = FacePiece::nowhere; ///< the first surface that is not made of faces
-};
-
-/// Reads a piece line by line.
-class PieceReader {
+/// Parses a piece line by line.
+class ObjLines {
   public:
-    /// Stops at the face that makes triangle `last_triangle`.
-    PieceReader(std::string_view text, ObjPiece& piece,
-                std::uint64_t last_triangle = std::numeric_limits<std::uint64_t>::max())
-        : text_(text.data()), at_(text_ + piece.begin), end_(text_ + piece.end), piece_(piece),
-          last_triangle_(last_triangle) {}
+    ObjLines(std::string_view text, FacePiece& piece, std::uint64_t most_triangles)
+        : text_(text.data()), at_(text_ + piece.begin), end_(text_ + text.size()), piece_(piece),
+          most_triangles_(most_triangles) {}
 
-    /// Returns where it stopped.
-    std::size_t run() {
+    void run() {
         try {
-            while (at_ != end_ && next_line()) {
+            while (next_line()) {
             }
         } catch (TextFault& fault) {
-            piece_.faces.fault = std::move(fault);
+            piece_.fault = std::move(fault);
         }
-        return offset();
+        piece_.end = offset();
     }
 
   private:
@@ -57,7 +45,7 @@ class PieceReader {
 
     bool next_line() {
         at_ = skip_blanks(at_, end_);
-        if (at_ == end_)
+        if (at_ == end_ || offset() >= piece_.limit)
             return false;
         if (begins_with_keyword("v"))
             vertex();
@@ -90,7 +78,7 @@ class PieceReader {
             at_ = stop;
         }
         // Adding zero turns -0 into +0, as everywhere.
-        piece_.faces.vertices.push_back({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0});
+        piece_.vertices.push_back({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0});
     }
 
     bool face() {
@@ -100,12 +88,11 @@ class PieceReader {
         bool relative = false;
         for (to_word(); at_ != end_ && !is_line_end(*at_) && *at_ != '#'; to_word())
             corners_.push_back(corner(relative));
-        FacePiece& faces = piece_.faces;
-        const std::uint64_t first = faces.triangles.size();
-        faces.add_face(corners_, begin);
+        const std::uint64_t first = piece_.triangles.size();
+        piece_.add_face(corners_, begin);
         if (relative)
             note_relative(first);
-        if (faces.triangles.size() > last_triangle_) {
+        if (piece_.triangles.size() > most_triangles_) {
             at_ = text_ + begin;
             return false;
         }
@@ -145,28 +132,26 @@ class PieceReader {
         if (number == 0 || number > furthest)
             return FacePiece::no_vertex;
         relative_[corners_.size()] = true;
-        return static_cast<std::uint32_t>(piece_.faces.vertices.size() - number);
+        return static_cast<std::uint32_t>(piece_.vertices.size() - number);
     }
 
     /// Notes which corners of the face just added count from this piece's first vertex.
     void note_relative(std::uint64_t first_triangle) {
         relative_.resize(corners_.size(), false);
-        FacePiece& faces = piece_.faces;
-        for (std::uint64_t t = first_triangle; t < faces.triangles.size(); ++t) {
+        for (std::uint64_t t = first_triangle; t < piece_.triangles.size(); ++t) {
             const std::array<std::size_t, 3> places{0, t - first_triangle + 1, t - first_triangle + 2};
             for (std::size_t k = 0; k < 3; ++k)
                 if (relative_[places[k]])
-                    faces.relative.push_back(3 * t + k);
+                    piece_.relative.push_back(3 * t + k);
         }
         relative_.clear();
     }
 
     void other() {
-        if (begins_with_keyword("o") && piece_.name == FacePiece::nowhere)
+        if (begins_with_keyword("o") && piece_.name == nowhere)
             piece_.name = offset() + 1;
-        if ((begins_with_keyword("surf") || begins_with_keyword("curv")) &&
-            piece_.free_form == FacePiece::nowhere)
-            piece_.free_form = offset();
+        if (begins_with_keyword("surf") || begins_with_keyword("curv"))
+            piece_.free_form.note(offset());
     }
 
     static bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
@@ -194,8 +179,8 @@ class PieceReader {
     const char* text_;
     const char* at_;
     const char* end_;
-    ObjPiece& piece_;
-    std::uint64_t last_triangle_;
+    FacePiece& piece_;
+    std::uint64_t most_triangles_;
     std::vector<std::uint32_t> corners_;
     std::vector<bool> relative_; ///< which of them count from this piece's first vertex
 };
@@ -215,66 +200,37 @@ std::string first_line(std::string_view text, std::size_t offset) {
 bool looks_like_obj(std::string_view text) {
     constexpr std::size_t enough = 65'536;
     text = text.substr(after_byte_order_mark(text), enough);
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (at = skip_blanks(at, end); at != end && *at == '#'; at = skip_blanks(at, end))
-        at = skip_to_line_end(at, end);
-    const std::string_view word = word_at(at, end);
+    Words words(text, 0);
+    words.skip_comments();
     constexpr std::array keywords{"v"sv, "vt"sv, "vn"sv, "o"sv, "g"sv, "mtllib"sv, "usemtl"sv};
-    return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
+    return std::find(keywords.begin(), keywords.end(), words.peek()) != keywords.end();
 }
 
 MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
     const std::string_view text = source.text();
     ReadLimits limits(source.name, options);
-    const std::vector<std::size_t> cuts = cut_at_lines(text, after_byte_order_mark(text));
-    std::vector<ObjPiece> pieces(cuts.size() - 1);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, text.size());
-    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            pieces[i].begin = cuts[i];
-            pieces[i].end = cuts[i + 1];
-            PieceReader(text, pieces[i]).run();
-            count_piece(pieces[i].faces, limits);
-            release(source, source.bytes.subspan(cuts[i], cuts[i + 1] - cuts[i]));
-            progress.add(cuts[i + 1] - cuts[i]);
-        }
+    PieceFormat<FacePiece> format;
+    format.parse = [text](FacePiece& piece, std::uint64_t most_triangles) {
+        ObjLines(text, piece, most_triangles).run();
+    };
+    format.find_cut = [text](std::size_t from, std::size_t limit) {
+        return find_line(text, from, limit);
+    };
+    PieceParser<FacePiece> parser(source, after_byte_order_mark(text), std::move(format), executor, progress,
+                                  face_pieces_ahead(executor));
+    std::size_t name = nowhere;
+    std::vector<FacePiece> pieces = parser.rest([&](const FacePiece& piece) {
+        count_piece(piece, limits);
+        name = std::min(name, piece.name);
     });
+    if (pieces.back().fault)
+        refuse_text(source, *pieces.back().fault);
 
     Remarks remarks(source.name, options.strict);
-    std::uint64_t thin = 0;
-    std::size_t first_thin = FacePiece::nowhere;
-    std::size_t free_form = FacePiece::nowhere;
-    std::size_t name = FacePiece::nowhere;
-    std::vector<std::uint64_t> ends; // of the pieces, in triangles
-    std::vector<FacePiece> faces;
-    for (ObjPiece& piece : pieces) {
-        if (const auto& fault = piece.faces.fault)
-            throw Error(ErrorKind::input, fmt::format("{}: {}", source.name,
-                                                      found_instead(text, fault->offset, fault->expected)));
-        thin += piece.faces.thin_faces;
-        first_thin = std::min(first_thin, piece.faces.first_thin);
-        free_form = std::min(free_form, piece.free_form);
-        name = std::min(name, piece.name);
-        ends.push_back((ends.empty() ? 0 : ends.back()) + piece.faces.triangles.size());
-        faces.push_back(std::move(piece.faces));
-    }
-    if (thin != 0)
-        remarks.add(fmt::format("line {}: left out {} {} of fewer than three corners (this is the first)",
-                                line_at(text, first_thin), thin, thin == 1 ? "face" : "faces"));
-    if (free_form != FacePiece::nowhere)
-        remarks.add(fmt::format("line {}: left out free-form curves and surfaces; only faces are read",
-                                line_at(text, free_form)));
-    const auto place = [&](std::uint64_t triangle) {
-        const auto piece =
-            static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
-        ObjPiece again{.begin = cuts[piece], .end = cuts[piece + 1]};
-        const std::uint64_t before = piece == 0 ? 0 : ends[piece - 1];
-        return fmt::format("line {}", line_at(text, PieceReader(text, again, triangle - before).run()));
-    };
-    MeshFile file = make_mesh_file(join(faces, executor), source.name, 1, place, remarks, executor);
-    if (name != FacePiece::nowhere)
+    MeshFile file = make_mesh_file(source, parser, pieces, 1, remarks, executor);
+    if (name != nowhere)
         file.name = first_line(text, name);
     file.objects.front().name = file.name;
     file.warnings = remarks.take();

@@ -44,17 +44,15 @@ std::optional<OffKind> kind_of(std::string_view word) {
 /// Walks over the words before the rows.
 class OffHead {
   public:
-    explicit OffHead(std::string_view text)
-        : text_(text), at_(text.data() + after_byte_order_mark(text)), end_(text.data() + text.size()) {}
+    explicit OffHead(std::string_view text) : words_(text, after_byte_order_mark(text)) {}
 
     /// The next word, across lines and comments; empty at the end.
     std::string_view peek() {
-        for (at_ = skip_blanks(at_, end_); at_ != end_ && *at_ == '#'; at_ = skip_blanks(at_, end_))
-            at_ = skip_to_line_end(at_, end_);
-        return word_at(at_, end_);
+        words_.skip_comments();
+        return words_.peek();
     }
 
-    void skip(std::string_view word) { at_ += word.size(); }
+    void skip() { words_.skip_word(); }
 
     std::uint64_t count(std::string_view expected) {
         const std::string_view word = peek();
@@ -67,25 +65,19 @@ class OffHead {
                 throw TextFault{offset(), std::string(expected)};
             value = value * 10 + static_cast<std::uint64_t>(digit - '0');
         }
-        skip(word);
+        skip();
         return value;
     }
 
-    [[nodiscard]] const char* at() const { return at_; }
-    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - text_.data()); }
+    [[nodiscard]] std::size_t offset() const { return words_.offset(); }
 
     /// Whether there is another word in this line.
-    [[nodiscard]] bool line_goes_on() {
-        at_ = skip_spaces(at_, end_);
-        return at_ != end_ && !is_line_end(*at_) && *at_ != '#';
-    }
+    [[nodiscard]] bool line_goes_on() { return words_.skip_blanks_in_line() && *words_.position() != '#'; }
 
-    void skip_line() { at_ = skip_to_line_end(at_, end_); }
+    void skip_line() { words_.skip_line(); }
 
   private:
-    std::string_view text_;
-    const char* at_;
-    const char* end_;
+    Words words_;
 };
 
 struct OffCounts {
@@ -101,7 +93,7 @@ OffCounts read_head(std::string_view text) {
     const std::string_view first = head.peek();
     if (const auto kind = kind_of(first)) {
         counts.kind = *kind;
-        head.skip(first);
+        head.skip();
     }
     if (const std::string_view word = head.peek(); word == "BINARY" || word == "binary")
         throw TextFault{head.offset(), "a text (binary OFF is not read; save it as ASCII OFF or PLY)"};
@@ -131,8 +123,7 @@ MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, cons
     try {
         counts = read_head(text);
     } catch (const TextFault& fault) {
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: {}", source.name, found_instead(text, fault.offset, fault.expected)));
+        refuse_text(source, fault);
     }
     Remarks remarks(source.name, options.strict);
     ReadLimits limits(source.name, options);

@@ -150,7 +150,14 @@ class BinaryReader {
                  ReadLimits& limits, const Execution& execution)
         : source_(source), header_(header), places_(places), remarks_(remarks), limits_(limits),
           executor_(execution), progress_(execution, Stage::read, source.bytes.size()),
-          begin_(source.bytes.data()), at_(begin_ + header.end), end_(begin_ + source.bytes.size()) {}
+          begin_(source.bytes.data()), at_(begin_ + header.end), end_(begin_ + source.bytes.size()) {
+        const PlyElement& element = header.elements[places.face];
+        before_ = steps_of(element, 0, places.corners);
+        after_ = steps_of(element, places.corners + 1, element.properties.size());
+        length_type_ = *element.properties[places.corners].list_length;
+        item_type_ = element.properties[places.corners].type;
+        list_ = {{0, length_type_, item_type_}};
+    }
 
     MeshFile run() {
         const std::size_t last = std::max(places_.vertex, places_.face);
@@ -268,10 +275,6 @@ class BinaryReader {
     }
 
     void read_faces(const PlyElement& element) {
-        before_ = steps_of(element, 0, places_.corners);
-        after_ = steps_of(element, places_.corners + 1, element.properties.size());
-        length_type_ = *element.properties[places_.corners].list_length;
-        item_type_ = element.properties[places_.corners].type;
         if (!plan_even_rows(element))
             plan_rows(element);
 
@@ -294,10 +297,25 @@ class BinaryReader {
             }
         });
         at_ = sum.at;
-        if (thin_faces_ != 0)
-            remarks_.add(
-                fmt::format("byte {}: left out {} {} of fewer than three corners (this is the first)",
-                            first_thin_ - begin_, thin_faces_, thin_faces_ == 1 ? "face" : "faces"));
+        if (thin_faces_.count != 0)
+            tell_thin_faces(remarks_, fmt::format("byte {}", thin_faces_.first), thin_faces_.count);
+    }
+
+    /// The corners in a row of a face or strip.
+    struct CornerList {
+        const std::byte* begin;
+        const std::byte* end;
+        std::uint64_t length;
+        const std::byte* row_end; ///< null where the file ends before
+    };
+
+    CornerList corners_at(const std::byte* row) const {
+        const std::byte* const list = walk<swapped>(before_, row, end_);
+        const std::byte* const list_end = list == nullptr ? nullptr : walk<swapped>(list_, list, end_);
+        if (list_end == nullptr)
+            return {};
+        return {list + ply_bytes(length_type_), list_end, whole_number_at<swapped>(list, length_type_),
+                walk<swapped>(after_, list_end, end_)};
     }
 
     /// Calls visit(corners, row) for the triangles of all strips, where `row` begins. Returns the end.
@@ -308,15 +326,12 @@ class BinaryReader {
         const std::byte* at = strips_;
         for (std::uint64_t row = 0; row < element.rows; ++row) {
             const std::byte* const row_begin = at;
-            const std::byte* const list = walk<swapped>(before_, at, end_);
-            const std::byte* const list_end =
-                list == nullptr ? nullptr : walk<swapped>({{0, length_type_, item_type_}}, list, end_);
-            at = list_end == nullptr ? nullptr : walk<swapped>(after_, list_end, end_);
-            if (at == nullptr)
+            const CornerList corners = corners_at(at);
+            if (corners.row_end == nullptr)
                 fail_cut_off(element, row);
+            at = corners.row_end;
             TriangleStrip strip;
-            for (const std::byte* item = list + ply_bytes(length_type_); item != list_end;
-                 item += ply_bytes(item_type_)) {
+            for (const std::byte* item = corners.begin; item != corners.end; item += ply_bytes(item_type_)) {
                 const std::uint64_t number = whole_number_at<swapped>(item, item_type_);
                 if (number == negative || number == unsigned_minus_one) {
                     strip.restart();
@@ -330,10 +345,6 @@ class BinaryReader {
     }
 
     void read_strips(const PlyElement& element) {
-        before_ = steps_of(element, 0, places_.corners);
-        after_ = steps_of(element, places_.corners + 1, element.properties.size());
-        length_type_ = *element.properties[places_.corners].list_length;
-        item_type_ = element.properties[places_.corners].type;
         strips_ = at_;
         std::uint64_t triangles = 0;
         at_ = for_each_in_strips(element, [&](const Corners&, const std::byte*) { ++triangles; });
@@ -404,17 +415,13 @@ class BinaryReader {
                 runs_.push_back({at, row, triangles, polygons});
             }
             const std::byte* const row_begin = at;
-            at = walk<swapped>(before_, at, end_);
-            const std::byte* const list = at;
-            if (at != nullptr)
-                at = walk<swapped>({{0, length_type_, item_type_}}, at, end_);
-            if (at != nullptr)
-                at = walk<swapped>(after_, at, end_);
-            if (at == nullptr)
+            const CornerList list = corners_at(at);
+            if (list.row_end == nullptr)
                 fail_cut_off(element, row);
-            const std::uint64_t corners = whole_number_at<swapped>(list, length_type_);
+            at = list.row_end;
+            const std::uint64_t corners = list.length;
             if (corners < 3) {
-                first_thin_ = thin_faces_++ == 0 ? row_begin : first_thin_;
+                thin_faces_.note(static_cast<std::size_t>(row_begin - begin_));
                 continue;
             }
             triangles += corners - 2;
@@ -439,18 +446,17 @@ class BinaryReader {
         FaceFan* polygon = faces_.polygons.data() + run.polygons;
         const std::size_t item_bytes = ply_bytes(item_type_);
         for (std::uint64_t row = run.row; row < next.row; ++row) {
-            at = walk<swapped>(before_, at, end_);
-            const std::uint64_t corners = whole_number_at<swapped>(at, length_type_);
-            at += ply_bytes(length_type_);
+            const CornerList list = corners_at(at);
+            const std::uint64_t corners = list.length;
             const auto corner = [&](std::uint64_t k) {
-                return as_vertex(whole_number_at<swapped>(at + k * item_bytes, item_type_));
+                return as_vertex(whole_number_at<swapped>(list.begin + k * item_bytes, item_type_));
             };
             if (corners > 3)
                 *polygon++ = {static_cast<std::uint64_t>(out - faces_.mesh.triangles.data()),
                               static_cast<std::uint32_t>(corners - 2)};
             for (std::uint64_t k = 2; k < corners; ++k)
                 *out++ = {corner(0), corner(k - 1), corner(k)};
-            at = walk<swapped>(after_, at + corners * item_bytes, end_);
+            at = list.row_end;
         }
     }
 
@@ -473,12 +479,11 @@ class BinaryReader {
         const std::byte* at = run->at;
         std::uint64_t before = run->triangles;
         for (std::uint64_t row = run->row;; ++row) {
-            const std::byte* const list = walk<swapped>(before_, at, end_);
-            const std::uint64_t corners = whole_number_at<swapped>(list, length_type_);
-            before += corners < 3 ? 0 : corners - 2;
+            const CornerList corners = corners_at(at);
+            before += corners.length < 3 ? 0 : corners.length - 2;
             if (before > triangle)
                 return fmt::format("byte {}", at - begin_);
-            at = walk<swapped>(after_, walk<swapped>({{0, length_type_, item_type_}}, list, end_), end_);
+            at = corners.row_end;
         }
     }
 
@@ -495,6 +500,7 @@ class BinaryReader {
 
     FaceMesh faces_;
     std::vector<Step> before_; ///< the list of corners, in a row of a face
+    std::vector<Step> list_;
     std::vector<Step> after_;
     PlyType length_type_ = PlyType::uint8;
     PlyType item_type_ = PlyType::int32;
@@ -504,8 +510,7 @@ class BinaryReader {
     std::uint64_t corners_ = 0;
     std::uint64_t row_bytes_ = 0;
     std::size_t index_offset_ = 0;
-    std::uint64_t thin_faces_ = 0;
-    const std::byte* first_thin_ = nullptr;
+    Occurrences thin_faces_;
 };
 
 } // namespace

@@ -3,7 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
-#include "read/coordinate_text.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -35,14 +35,10 @@ constexpr std::array type_names = {
 
 std::vector<std::string_view> words_of(std::string_view line) {
     std::vector<std::string_view> words;
-    const char* const end = line.data() + line.size();
-    for (const char* at = line.data(); at != end;) {
-        if (is_blank(*at)) {
-            ++at;
-            continue;
-        }
-        words.push_back(word_at(at, end));
-        at += words.back().size();
+    Words at(line, 0);
+    for (at.skip_blanks(); !at.at_end(); at.skip_blanks()) {
+        words.push_back(at.peek());
+        at.skip_word();
     }
     return words;
 }

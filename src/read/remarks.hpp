@@ -4,16 +4,39 @@
 
 #include "lamella/core/error.hpp"
 
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace lamella {
 
+/// How often something odd occurs in a file, and where first.
+struct Occurrences {
+    std::uint64_t count = 0;
+    std::size_t first = 0; ///< byte or line
+
+    void note(std::size_t place) {
+        if (count++ == 0)
+            first = place;
+    }
+    /// What was counted in a later part of the file.
+    void add(const Occurrences& later) {
+        first = count == 0 ? later.first : first;
+        count += later.count;
+    }
+};
+
 /// Collects warnings, one line each; for a strict caller the first one is an error instead.
 class Remarks {
   public:
     Remarks(std::string file_name, bool strict) : file_name_(std::move(file_name)), strict_(strict) {}
+
+    [[nodiscard]] const std::string& file_name() const noexcept { return file_name_; }
 
     /// Throws Error{defect} when strict.
     void add(std::string text) {
@@ -29,5 +52,25 @@ class Remarks {
     bool strict_;
     std::vector<std::string> texts_;
 };
+
+/// Tells that `count` of `stored` triangles, not 0, were left out, the first of them at `place`. Throws
+/// Error{input} where no triangle is left.
+inline void tell_nonfinite(Remarks& remarks, std::string_view place, std::uint64_t count,
+                           std::uint64_t stored) {
+    if (count == stored)
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: {}: holds no usable triangle: each of the {} has a corner that is NaN "
+                                "or infinite",
+                                remarks.file_name(), place, stored));
+    remarks.add(fmt::format("{}: left out {} of {} triangles, which have a corner that is NaN or infinite "
+                            "(this is the first)",
+                            place, count, stored));
+}
+
+/// Tells that so many faces were left out, not 0, the first of them at `place`.
+inline void tell_thin_faces(Remarks& remarks, std::string_view place, std::uint64_t count) {
+    remarks.add(fmt::format("{}: left out {} {} of fewer than three corners (this is the first)", place,
+                            count, count == 1 ? "face" : "faces"));
+}
 
 } // namespace lamella

@@ -9,6 +9,7 @@
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
+#include "core/parse_number.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_terms.hpp"
@@ -252,11 +253,10 @@ class SliceModelReader {
         if (text.starts_with('+'))
             text.remove_prefix(1);
         double value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const char* const end = parse_number(text.data(), text.data() + text.size(), value);
         // What lies further away could make sums and areas overflow; no part is near it.
         constexpr double farthest = 1e30;
-        if (text.empty() || error != std::errc() || end != text.data() + text.size() ||
-            !(std::abs(value) <= farthest))
+        if (text.empty() || end != text.data() + text.size() || !(std::abs(value) <= farthest))
             fail(fmt::format("{} = '{}'", name, printable(text, 40)),
                  fmt::format("it must be a number within {}", farthest));
         return value;

@@ -17,82 +17,16 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace lamella {
 
 namespace {
 
-constexpr std::size_t nowhere = std::string_view::npos;
-
-/// What is parsed at a time, before triangles are counted again and the memory of the text is let go of.
-constexpr std::size_t stretch_bytes = 32 * text_piece_bytes;
-
-/// `keyword` is in lower case.
-bool matches(std::string_view word, std::string_view keyword) {
-    return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
-                                                       [](char w, char k) { return lower_case(w) == k; });
-}
-
-/// Walks over a text word by word.
-class Words {
-  public:
-    Words(std::string_view text, std::size_t from)
-        : begin_(text.data()), at_(text.data() + from), end_(text.data() + text.size()) {}
-
-    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
-    [[nodiscard]] bool at_end() const { return at_ == end_; }
-    [[nodiscard]] const char* position() const { return at_; }
-    [[nodiscard]] const char* text_end() const { return end_; }
-    void move_to(const char* position) { at_ = position; }
-
-    void skip_blanks() {
-        while (at_ != end_ && is_blank(*at_))
-            ++at_;
-    }
-
-    /// Skips blanks and says whether the line went on.
-    bool skip_blanks_in_line() {
-        while (at_ != end_ && is_blank(*at_) && !is_line_end(*at_))
-            ++at_;
-        return at_ != end_ && !is_line_end(*at_);
-    }
-
-    /// The word that begins here (empty at the end).
-    [[nodiscard]] std::string_view peek() const {
-        const char* stop = at_;
-        while (stop != end_ && !is_blank(*stop))
-            ++stop;
-        return {at_, static_cast<std::size_t>(stop - at_)};
-    }
-
-    void skip_word() {
-        while (at_ != end_ && !is_blank(*at_))
-            ++at_;
-    }
-
-    /// Skips the keyword when it is the word that begins here.
-    bool take(std::string_view keyword) {
-        const auto left = static_cast<std::size_t>(end_ - at_);
-        if (left < keyword.size() || !matches({at_, keyword.size()}, keyword) ||
-            (left > keyword.size() && !is_blank(at_[keyword.size()])))
-            return false;
-        at_ += keyword.size();
-        return true;
-    }
-
-  private:
-    const char* begin_;
-    const char* at_;
-    const char* end_;
-};
-
 /// A number, NaN or infinity may begin with it. The words of a facet that are not numbers never do.
 bool begins_like_number(std::string_view word) {
-    return !word.empty() && (std::string_view("+-.0123456789").find(word[0]) != nowhere ||
+    return !word.empty() && (std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos ||
                              begins_with_keyword(word, "nan") || begins_with_keyword(word, "inf"));
 }
 
@@ -134,56 +68,40 @@ std::string_view take_name(Words& words) {
     return {first, static_cast<std::size_t>(last - first)};
 }
 
-/// What makes a piece of text unreadable.
-struct Fault {
-    std::size_t offset;
-    std::string text;  ///< what was expected, or the whole story where `found` is false
-    bool found = true; ///< the error shows the word at the offset
-};
-
 /// The text ended within a facet.
 struct CutOff {};
 
-/// A run of facets, and of solids that begin and end between them.
-struct Piece {
-    std::size_t begin = 0; ///< between facets
-    bool begins_in_solid = true;
-    std::size_t limit = 0; ///< parse to the first place between facets that is not before this
-
-    std::size_t end = 0; ///< where that was
-    bool ends_in_solid = false;
-    std::vector<Triangle3f> triangles = {};
+/// A run of facets, and of solids that begin and end between them. What is to be known before it is whether
+/// it begins in a solid.
+struct FacetPiece : TextPiece {
+    std::vector<Triangle3f> triangles;
     std::uint64_t stored = 0; ///< facets, including those with a corner that is not finite
-    std::uint64_t nonfinite = 0;
-    std::size_t first_nonfinite = nowhere;
-    std::uint64_t odd_normals = 0; ///< that are not numbers, or more than three
-    std::size_t first_odd_normal = nowhere;
-    std::size_t first_unended = nowhere; ///< a "solid" while another one has not ended
-    std::size_t cut_off = nowhere;       ///< the facet in which the text ended
-    std::size_t garbage = nowhere;       ///< what follows the last "endsolid"
-    std::optional<Fault> fault = {};
+    Occurrences nonfinite;
+    Occurrences odd_normals; ///< that are not numbers, or more than three
+    Occurrences unended;     ///< a "solid" while another one has not ended
+    Occurrences cut_off;     ///< the facet in which the text ended
+    Occurrences garbage;     ///< what follows the last "endsolid"
 };
 
 /// Parses one piece.
-class PieceParser {
+class FacetParser {
   public:
     /// Stops before the facet that would be one more than `most`.
-    PieceParser(std::string_view text, Piece& piece,
-                std::uint64_t most = std::numeric_limits<std::uint64_t>::max())
-        : words_(text, piece.begin), piece_(piece), most_(most), in_solid_(piece.begins_in_solid) {}
+    FacetParser(std::string_view text, FacetPiece& piece, std::uint64_t most)
+        : words_(text, piece.begin), piece_(piece), most_(most), in_solid_(piece.before != 0) {}
 
     void run() {
         try {
             while (next()) {
             }
         } catch (const CutOff&) {
-            piece_.cut_off = facet_;
+            piece_.cut_off.note(facet_);
             words_.move_to(words_.text_end());
-        } catch (Fault& fault) {
+        } catch (TextFault& fault) {
             piece_.fault = std::move(fault);
         }
         piece_.end = words_.offset();
-        piece_.ends_in_solid = in_solid_;
+        piece_.after = in_solid_ ? 1 : 0;
     }
 
   private:
@@ -203,8 +121,8 @@ class PieceParser {
             in_solid_ = false;
             take_name(words_);
         } else if (words_.take("solid")) {
-            if (in_solid_ && piece_.first_unended == nowhere)
-                piece_.first_unended = here;
+            if (in_solid_)
+                piece_.unended.note(here);
             in_solid_ = true;
             take_name(words_);
         } else {
@@ -221,12 +139,12 @@ class PieceParser {
                 words_.skip_word();
                 return false; // the text was cut off in this word; the solid has not ended
             }
-            throw Fault{here, "'facet' or 'endsolid'"};
+            throw TextFault{here, "'facet' or 'endsolid'"};
         }
         for (Words rest = words_; !rest.at_end(); rest.skip_word(), rest.skip_blanks())
             if (facet_begins(rest))
-                throw Fault{here, "'solid' or the end of the file"};
-        piece_.garbage = here;
+                throw TextFault{here, "'solid' or the end of the file"};
+        piece_.garbage.note(here);
         words_.move_to(words_.text_end());
         return false;
     }
@@ -248,7 +166,7 @@ class PieceParser {
         }
         words_.skip_blanks();
         if (words_.take("vertex"))
-            throw Fault{
+            throw TextFault{
                 facet_,
                 "this facet has more than three vertices, and only triangles can be read; triangulate "
                 "the mesh first",
@@ -259,8 +177,7 @@ class PieceParser {
         if (finite(triangle)) {
             piece_.triangles.push_back(triangle);
         } else {
-            ++piece_.nonfinite;
-            piece_.first_nonfinite = std::min(piece_.first_nonfinite, facet_);
+            piece_.nonfinite.note(facet_);
         }
     }
 
@@ -280,8 +197,8 @@ class PieceParser {
             }
             words_.skip_word();
         }
-        if (odd && piece_.odd_normals++ == 0)
-            piece_.first_odd_normal = facet_;
+        if (odd)
+            piece_.odd_normals.note(facet_);
     }
 
     void expect(std::string_view keyword) {
@@ -290,7 +207,7 @@ class PieceParser {
             return;
         if (ends_in(keyword))
             throw CutOff{};
-        throw Fault{words_.offset(), fmt::format("'{}'", keyword)};
+        throw TextFault{words_.offset(), fmt::format("'{}'", keyword)};
     }
 
     /// Whether the text ends here or with the first letters of this keyword.
@@ -317,7 +234,7 @@ class PieceParser {
         const std::string_view word = words_.peek();
         if (is_last(word))
             throw CutOff{}; // also after a number: who knows how it would have gone on?
-        throw Fault{words_.offset(), std::string(expected_instead(word))};
+        throw TextFault{words_.offset(), std::string(expected_instead(word))};
     }
 
     static bool finite(const Triangle3f& triangle) {
@@ -327,15 +244,14 @@ class PieceParser {
     }
 
     Words words_;
-    Piece& piece_;
+    FacetPiece& piece_;
     std::uint64_t most_;
     bool in_solid_;
     std::size_t facet_ = nowhere;
 };
 
 /// The first place at or after `from`, and before `limit`, where "endfacet" is followed by "facet"; that of
-/// "facet". It is a guess: both words may belong to a name. Nothing beyond the limit is looked at: blanks or
-/// a word of gigabytes would be walked over once for each piece.
+/// "facet". It is a guess: both words may belong to a name.
 std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit) {
     Words words(text.substr(0, limit), from);
     words.skip_word(); // it may have begun before
@@ -351,85 +267,22 @@ std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit)
     return nowhere;
 }
 
-/// Pieces of [begin, end) that are parsed ahead, on the guess that they begin between two facets.
-std::vector<Piece> cut_in_pieces(std::string_view text, std::size_t begin, std::size_t end, bool in_solid) {
-    std::vector<Piece> pieces;
-    pieces.push_back({.begin = begin, .begins_in_solid = in_solid, .limit = end});
-    for (std::size_t from = begin + text_piece_bytes; from < end; from += text_piece_bytes) {
-        const std::size_t cut = find_cut(text, from, std::min(from + text_piece_bytes, end));
-        if (cut == nowhere || cut <= pieces.back().begin)
-            continue;
-        pieces.back().limit = cut;
-        pieces.push_back({.begin = cut, .begins_in_solid = true, .limit = end});
-    }
-    return pieces;
+PieceFormat<FacetPiece> format_of(std::string_view text) {
+    PieceFormat<FacetPiece> format;
+    format.parse = [text](FacetPiece& piece, std::uint64_t most) {
+        FacetParser(text, piece, most).run();
+    };
+    format.find_cut = [text](std::size_t from, std::size_t limit) {
+        return find_cut(text, from, limit);
+    };
+    format.guess = [](std::vector<FacetPiece>& pieces) {
+        for (std::size_t i = 1; i < pieces.size(); ++i)
+            pieces[i].before = 1;
+    };
+    return format;
 }
 
-/// Parses a text stretch by stretch, with no more than a stretch parsed ahead, and lets go of what it has
-/// parsed.
-class Parser {
-  public:
-    Parser(const ByteSource& source, const Execution& execution)
-        : source_(source), text_(source.text()), executor_(execution),
-          progress_(execution, Stage::read, text_.size()), at_(after_byte_order_mark(text_)) {}
-
-    /// What follows, a stretch further or up to the end. The pieces of all results follow one another without
-    /// a gap from the begin of the text to its end or to the first fault, exactly as if it had been parsed
-    /// from front to back: a piece that was parsed ahead counts only when the one before it ended where it
-    /// begins.
-    std::vector<Piece> next() {
-        const std::size_t from = at_;
-        const std::size_t limit = stretch_bytes < text_.size() - at_ ? at_ + stretch_bytes : text_.size();
-        std::vector<Piece> ahead = cut_in_pieces(text_, at_, limit, in_solid_);
-        executor_.for_chunks(ahead.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = begin; i < end; ++i) {
-                PieceParser(text_, ahead[i]).run();
-                progress_.add(ahead[i].limit - ahead[i].begin);
-            }
-        });
-
-        std::vector<Piece> pieces;
-        auto candidate = ahead.begin();
-        do {
-            executor_.check_cancelled();
-            while (candidate != ahead.end() && candidate->begin < at_)
-                ++candidate;
-            if (candidate != ahead.end() && candidate->begin == at_ &&
-                candidate->begins_in_solid == in_solid_) {
-                pieces.push_back(std::move(*candidate++));
-            } else {
-                const auto following = std::find_if(candidate, ahead.end(),
-                                                    [&](const Piece& piece) { return piece.begin > at_; });
-                Piece piece{.begin = at_,
-                            .begins_in_solid = in_solid_,
-                            .limit = following == ahead.end() ? limit : following->begin};
-                PieceParser(text_, piece).run();
-                pieces.push_back(std::move(piece));
-            }
-            at_ = pieces.back().end;
-            in_solid_ = pieces.back().ends_in_solid;
-            done_ = at_ >= text_.size() || pieces.back().fault;
-        } while (at_ < limit && !done_);
-        release(source_, source_.bytes.subspan(from, at_ - from));
-        if (done_)
-            progress_.finish();
-        return pieces;
-    }
-
-    [[nodiscard]] bool done() const { return done_; }
-    [[nodiscard]] Executor& executor() { return executor_; }
-
-  private:
-    const ByteSource& source_;
-    std::string_view text_;
-    Executor executor_;
-    ProgressMeter progress_;
-    std::size_t at_;
-    bool in_solid_ = false;
-    bool done_ = false;
-};
-
-TriangleSoup join(std::vector<Piece>& pieces, Executor& executor) {
+TriangleSoup join(std::vector<FacetPiece>& pieces, Executor& executor) {
     std::vector<std::size_t> first(pieces.size());
     std::size_t count = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -446,50 +299,27 @@ TriangleSoup join(std::vector<Piece>& pieces, Executor& executor) {
     return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
 }
 
-/// Adds up what the pieces count, which come in order, and keeps the first of each kind of oddity.
-void add(Piece& sum, const Piece& piece) {
+/// Adds up what the pieces hold, which come in order.
+void add(FacetPiece& sum, const FacetPiece& piece) {
     sum.stored += piece.stored;
-    sum.nonfinite += piece.nonfinite;
-    sum.first_nonfinite = std::min(sum.first_nonfinite, piece.first_nonfinite);
-    sum.odd_normals += piece.odd_normals;
-    sum.first_odd_normal = std::min(sum.first_odd_normal, piece.first_odd_normal);
-    sum.first_unended = std::min(sum.first_unended, piece.first_unended);
-    sum.cut_off = std::min(sum.cut_off, piece.cut_off);
-    sum.garbage = std::min(sum.garbage, piece.garbage);
-    sum.ends_in_solid = piece.ends_in_solid;
+    sum.nonfinite.add(piece.nonfinite);
+    sum.odd_normals.add(piece.odd_normals);
+    sum.unended.add(piece.unended);
+    sum.cut_off.add(piece.cut_off);
+    sum.garbage.add(piece.garbage);
+    sum.after = piece.after;
     sum.fault = piece.fault;
 }
 
-/// line_at, in little memory.
-std::uint64_t line_of(const ByteSource& source, std::size_t offset) {
-    constexpr std::size_t stretch = std::size_t{1} << 24;
-    std::uint64_t line = 1;
-    for (std::size_t at = 0; at < offset; at += stretch) {
-        const std::size_t bytes = std::min(stretch, offset - at);
-        line += line_at(source.text().substr(at, bytes + 1), bytes) - 1;
-        release(source, source.bytes.subspan(at, bytes));
-    }
-    return line;
-}
-
-void count_triangles(const ByteSource& source, const Piece& piece, ReadLimits& limits) {
-    if (piece.stored <= limits.triangles_left()) {
-        limits.add_triangles(piece.stored);
-        return;
-    }
-    Piece taken{.begin = piece.begin, .begins_in_solid = piece.begins_in_solid, .limit = piece.limit};
-    PieceParser(source.text(), taken, limits.triangles_left()).run();
-    limits.add_triangles(piece.stored, fmt::format("line {}", line_of(source, taken.end)));
-}
-
-/// The same, of what stays in memory.
-void count_piece(const ByteSource& source, const Piece& piece, ReadLimits& limits) {
-    count_triangles(source, piece, limits);
-    limits.add_bytes(piece.triangles.size() * sizeof(Triangle3f), fmt::format("byte {}", piece.end));
+void count_triangles(const PieceParser<FacetPiece>& parser, const FacetPiece& piece, ReadLimits& limits) {
+    const std::uint64_t left = limits.triangles_left();
+    limits.add_triangles(piece.stored, piece.stored <= left
+                                           ? std::string()
+                                           : fmt::format("line {}", parser.line_of_triangle(piece, left)));
 }
 
 /// What is to be said of the text as a whole.
-MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOptions& options) {
+MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshReadOptions& options) {
     const std::string_view text = source.text();
     const auto line = [&](std::size_t offset) {
         return line_of(source, offset);
@@ -497,47 +327,39 @@ MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOpti
     const auto fail = [&](const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
     };
-    if (const auto& fault = sum.fault) {
-        if (!fault->found)
-            fail(fmt::format("line {}: {}", line(fault->offset), fault->text));
-        fail(fmt::format("line {}: found '{}', expected {}", line(fault->offset),
-                         printable(Words(text, fault->offset).peek(), 40), fault->text));
-    }
+    if (sum.fault)
+        refuse_text(source, *sum.fault);
     if (sum.stored == 0)
-        fail(sum.cut_off == nowhere
+        fail(sum.cut_off.count == 0
                  ? fmt::format("holds no triangle: an ASCII STL file without a facet, {} lines long",
                                line(text.size()))
                  : fmt::format("line {}: holds no triangle: the file ends within its first facet",
                                line(text.size())));
-    if (sum.nonfinite == sum.stored)
-        fail(fmt::format(
-            "line {}: holds no usable triangle: each of the {} has a corner that is NaN or infinite",
-            line(sum.first_nonfinite), sum.stored));
 
     Remarks remarks(source.name, options.strict);
-    if (sum.nonfinite != 0)
-        remarks.add(fmt::format("line {}: left out {} of {} triangles, which have a corner that is NaN or "
-                                "infinite (this is the first)",
-                                line(sum.first_nonfinite), sum.nonfinite, sum.stored));
-    if (sum.odd_normals != 0)
+    if (sum.nonfinite.count != 0)
+        tell_nonfinite(remarks, fmt::format("line {}", line(sum.nonfinite.first)), sum.nonfinite.count,
+                       sum.stored);
+    if (sum.odd_normals.count != 0)
         remarks.add(fmt::format("line {}: {} normals are other words or more than three numbers, which were "
                                 "passed over (this is the first); normals are not needed",
-                                line(sum.first_odd_normal), sum.odd_normals));
-    if (sum.first_unended != nowhere)
+                                line(sum.odd_normals.first), sum.odd_normals.count));
+    if (sum.unended.count != 0)
         remarks.add(
             fmt::format("line {}: a solid begins before the one above has ended; 'endsolid' is missing",
-                        line(sum.first_unended)));
-    if (sum.cut_off != nowhere)
+                        line(sum.unended.first)));
+    if (sum.cut_off.count != 0)
         remarks.add(fmt::format("line {}: the file ends within this facet, which is left out; took the {} "
                                 "triangles before it (the file is cut off)",
-                                line(sum.cut_off), sum.stored));
-    else if (sum.ends_in_solid)
+                                line(sum.cut_off.first), sum.stored));
+    else if (sum.after != 0)
         remarks.add(fmt::format("line {}: the file ends without 'endsolid'; it may be cut off, took all {} "
                                 "triangles",
                                 line(text.size()), sum.stored));
-    if (sum.garbage != nowhere)
+    if (sum.garbage.count != 0)
         remarks.add(fmt::format("line {}: left out '{}' and what follows it, after the last 'endsolid'",
-                                line(sum.garbage), printable(Words(text, sum.garbage).peek(), 40)));
+                                line(sum.garbage.first),
+                                printable(Words(text, sum.garbage.first).peek(), 40)));
 
     MeshFile file;
     file.format = "stl-ascii";
@@ -549,7 +371,7 @@ MeshFile describe(const ByteSource& source, const Piece& sum, const MeshReadOpti
     file.objects.push_back({file.name, Mesh()});
     file.instances.push_back({});
     file.stored_triangles = sum.stored;
-    file.nonfinite_triangles = sum.nonfinite;
+    file.nonfinite_triangles = sum.nonfinite.count;
     file.warnings = remarks.take();
     return file;
 }
@@ -575,39 +397,45 @@ bool is_stl_ascii(std::string_view text) {
 MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                         const Execution& execution) {
     ReadLimits limits(source.name, options);
-    Parser parser(source, execution);
-    std::vector<Piece> pieces;
-    Piece sum;
-    while (!parser.done()) {
-        for (Piece& piece : parser.next()) {
-            count_piece(source, piece, limits);
-            add(sum, piece);
-            pieces.push_back(std::move(piece));
-        }
-    }
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, source.bytes.size());
+    PieceParser<FacetPiece> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),
+                                   executor, progress);
+    FacetPiece sum;
+    std::vector<FacetPiece> pieces = parser.rest([&](const FacetPiece& piece) {
+        count_triangles(parser, piece, limits);
+        limits.add_bytes_at(piece.triangles.size() * sizeof(Triangle3f),
+                            [&] { return fmt::format("byte {}", piece.end); });
+        add(sum, piece);
+    });
+    progress.finish();
     MeshFile file = describe(source, sum, options);
-    file.objects.front().mesh = Mesh(join(pieces, parser.executor()));
+    file.objects.front().mesh = Mesh(join(pieces, executor));
     return file;
 }
 
 MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
                           const Execution& execution) {
     ReadLimits limits(source.name, options);
-    Parser parser(source, execution);
-    Piece sum;
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, source.bytes.size());
+    PieceParser<FacetPiece> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),
+                                   executor, progress);
+    FacetPiece sum;
     std::uint64_t batches = 0;
     while (!parser.done()) {
-        std::vector<Piece> pieces = parser.next();
-        for (const Piece& piece : pieces) {
+        std::vector<FacetPiece> pieces = parser.next();
+        for (const FacetPiece& piece : pieces) {
             add(sum, piece);
-            count_triangles(source, piece, limits);
+            count_triangles(parser, piece, limits);
         }
-        parser.executor().for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        executor.for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             if (!pieces[i].triangles.empty())
                 sink(TriangleSoup(std::move(pieces[i].triangles)), batches + i);
         });
         batches += pieces.size();
     }
+    progress.finish();
     return describe(source, sum, options);
 }
 

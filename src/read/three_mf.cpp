@@ -199,34 +199,15 @@ class ThreeMfReader {
     }
 
     void read_meshes(std::size_t first) {
-        std::vector<MeshText> texts;
-        std::vector<std::pair<std::size_t, ThreeMfObject*>> owners; // and their parts
-        for (std::size_t i = first; i < parts_.size(); ++i) {
-            ThreeMfModel& model = parts_[i].model;
-            for (ThreeMfObject& object : model.objects) {
-                if (object.text.vertices.empty() && object.text.triangles.empty())
-                    continue;
-                object.text.prefixes = model.prefixes;
-                texts.push_back(object.text);
-                owners.emplace_back(i, &object);
-            }
-        }
-        std::vector<std::optional<IndexedMesh>> meshes =
-            read_mesh_texts(texts, three_mf_text_form(), limits_, executor_);
-        std::vector<bool> odd(parts_.size());
-        for (std::size_t m = 0; m < meshes.size(); ++m) {
-            const auto& [part, object] = owners[m];
-            if (meshes[m])
-                object->mesh = std::move(*meshes[m]);
-            else
-                odd[part] = true;
-        }
+        std::vector<ThreeMfModel*> models;
+        for (std::size_t i = first; i < parts_.size(); ++i)
+            models.push_back(&parts_[i].model);
+        const std::vector<bool> plain = read_skimmed_meshes(std::span<ThreeMfModel* const>(models),
+                                                            three_mf_text_form(), limits_, executor_);
         for (std::size_t i = first; i < parts_.size(); ++i) {
             Part& part = parts_[i];
-            if (odd[i]) {
+            if (!plain[i - first]) {
                 const std::string name = part.model.part;
-                for (const ThreeMfObject& object : part.model.objects)
-                    give_back(object.mesh, limits_);
                 part.model = read_three_mf_model(part.bytes, name, i == 0, false, limits_,
                                                  [&](std::size_t) { executor_.check_cancelled(); });
             }

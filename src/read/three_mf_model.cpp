@@ -102,6 +102,8 @@ class ModelReader {
         for (const auto& [prefix, space] : spaces_)
             if (!prefix.empty())
                 model_.prefixes.push_back(prefix);
+        for (ThreeMfObject& object : model_.objects)
+            object.text.prefixes = model_.prefixes; // moving the model leaves them where they are
         count_.keep(here());
         return std::move(model_);
     }
@@ -515,12 +517,6 @@ bool read_model_triangles(std::string_view run, const MeshText& text, std::span<
 }
 
 } // namespace
-
-const ThreeMfObject* ThreeMfModel::find(std::uint32_t id) const noexcept {
-    const auto found =
-        std::find_if(objects.begin(), objects.end(), [&](const ThreeMfObject& o) { return o.id == id; });
-    return found == objects.end() ? nullptr : &*found;
-}
 
 ThreeMfModel read_three_mf_model(const ByteSource& source, std::string part, bool is_root, bool skim,
                                  ReadLimits& limits, const std::function<void(std::size_t)>& progress) {

@@ -53,8 +53,6 @@ struct ThreeMfModel {
         bool offence = true;
     };
     std::vector<Remark> remarks;
-
-    [[nodiscard]] const ThreeMfObject* find(std::uint32_t id) const noexcept;
 };
 
 /// Reads a model part. `skim`: leave the vertices and triangles of meshes in `text`, unread, where they stand

@@ -141,6 +141,18 @@ TEST(Obj, IsTheSameForAnyThreads) {
                     name, line));
 }
 
+TEST(Obj, CountsBackAcrossPieces) {
+    // Pieces of a megabyte, all but the first one without a vertex.
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\n";
+    constexpr std::size_t faces = 300'000;
+    for (std::size_t i = 0; i < faces; ++i)
+        text += "f -3 -2 -1\n";
+    const MeshFile file = read(text, name, {}, 2);
+    EXPECT_EQ(mesh_of(file).triangles, std::vector<Corners>(faces, {0, 1, 2}));
+    EXPECT_EQ(error_of(text + "f -3 -2 -4\n", name),
+              name + ": line 300004: a face names a vertex that is not there; expected numbers from 1 to 3");
+}
+
 TEST(Obj, SurvivesHostility) {
     survive_hostility(
         {triangle, "v 0 0 0\nv 2 -3 0\nv 1 0 0\nv 2 3 0\nf 1/1 2/1/1 3//1 4\nf -1 -2 -3 \\\n -4\n",

@@ -1,0 +1,17 @@
+#include "core/parse_number.hpp"
+
+// Not std::from_chars: libc++ has it for whole numbers only, and what is too large or too small would be told by
+// the same code.
+#include <fast_float/fast_float.h>
+
+namespace lamella {
+
+const char* parse_number(const char* from, const char* end, double& value) noexcept {
+    return fast_float::from_chars(from, end, value).ptr;
+}
+
+const char* parse_number(const char* from, const char* end, float& value) noexcept {
+    return fast_float::from_chars(from, end, value).ptr;
+}
+
+} // namespace lamella
