@@ -88,7 +88,7 @@ std::vector<std::string> files_in(const std::string& folder, const std::string& 
         refuse(folder, fmt::format("no file in this folder has a name as of a mesh (.{}); other names can be "
                                    "given in a list",
                                    fmt::join(mesh_extensions(), ", .")));
-    std::ranges::sort(found);
+    std::sort(found.begin(), found.end());
     return found;
 }
 
@@ -117,7 +117,7 @@ std::vector<std::string> files_listed(const std::string& list) {
     std::vector<std::string> lines = lines_of(read_text_file(list));
     if (lines.empty())
         refuse(input_name(list), "the list names no file; expected one path a line");
-    if (std::ranges::find(lines, "-") != lines.end())
+    if (std::find(lines.begin(), lines.end(), "-") != lines.end())
         refuse(input_name(list), "standard input (-) cannot be one of many files");
     return lines;
 }
@@ -149,8 +149,9 @@ std::string filled(std::string_view pattern, const std::array<std::string, 3>& v
     for (std::size_t brace = 0; (brace = rest.find('{')) != std::string_view::npos;) {
         text += rest.substr(0, brace);
         rest.remove_prefix(brace);
-        const auto found = std::ranges::find_if(
-            placeholders, [&](std::string_view placeholder) { return rest.starts_with(placeholder); });
+        const auto found =
+            std::find_if(placeholders.begin(), placeholders.end(),
+                         [&](std::string_view placeholder) { return rest.starts_with(placeholder); });
         if (found == placeholders.end())
             throw Error(ErrorKind::usage,
                         fmt::format("{}: \"{}\" is none of {{name}}, {{folder}} and {{index}}", pattern,

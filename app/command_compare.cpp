@@ -115,8 +115,9 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
         if (!plane.agree)
             differing.push_back(&plane);
     }
-    const auto largest =
-        std::ranges::max_element(differing, {}, [](const ComparedPlane* plane) { return size_of(*plane); });
+    const auto largest = std::max_element(
+        differing.begin(), differing.end(),
+        [](const ComparedPlane* a, const ComparedPlane* b) { return size_of(*a) < size_of(*b); });
 
     if (arguments.json) {
         Json layers = Json::array();

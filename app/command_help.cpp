@@ -35,7 +35,9 @@ Command help_command() {
                          {"lamella help --man | man -l -", "all about all commands"}},
             .run = [arguments](const Context& /*context*/) {
                 const std::vector<Command> commands = all_commands();
-                const auto topic = std::ranges::find(commands, arguments->topic, &Command::name);
+                const auto topic = std::find_if(commands.begin(), commands.end(), [&](const Command& one) {
+                    return one.name == arguments->topic;
+                });
                 if (arguments->man)
                     print(manual_page(commands));
                 else

@@ -119,7 +119,7 @@ class Splitter {
 };
 
 void check_choice(const std::vector<std::string>& choices, const std::string& text) {
-    if (choices.empty() || std::ranges::find(choices, text) != choices.end())
+    if (choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end())
         return;
     const std::string meant = nearest(text, choices);
     refuse(fmt::format("\"{}\" is none of {}{}", text, fmt::join(choices, ", "),
@@ -216,7 +216,8 @@ bool is_on(const std::optional<std::string>& given) {
 /// Options that say nothing without another one.
 void check_company(const Command& command) {
     const auto says = [](const GivenOperand& file, const Option& option) {
-        return std::ranges::find(file.settings, &option, &Setting::option) != file.settings.end();
+        return std::any_of(file.settings.begin(), file.settings.end(),
+                           [&](const Setting& setting) { return setting.option == &option; });
     };
     const auto check = [&](const Option& option) {
         if (option.goes_with.empty() || !is_on(option.given))
@@ -230,7 +231,7 @@ void check_company(const Command& command) {
                     refuse(fmt::format("{}: --{} goes with --{}", file.text, option.name, other.name));
     };
     for (const OptionGroup& group : command.groups)
-        std::ranges::for_each(group.options, check);
+        std::for_each(group.options.begin(), group.options.end(), check);
 }
 
 void check_standard_input(const Command& command) {
@@ -309,7 +310,7 @@ Wish parse(Command& command, std::span<const std::string> words) {
     const auto set = [&](const ConfigEntry& entry) {
         assignment.set(*entry.option, fmt::format("{}: {}", entry.place, entry.option->name), entry.text);
     };
-    std::ranges::for_each(configured.options, set);
+    std::for_each(configured.options.begin(), configured.options.end(), set);
     for (const Words::Word& word : split.words) {
         if (word.option != nullptr)
             assignment.set(*word.option, word.as_typed, word.text);

@@ -247,7 +247,8 @@ bool can_stream(const std::string& output, const MakeArguments& arguments) {
 }
 
 int run_make(const MakeArguments& arguments, const Context& context) {
-    const Body& body = *std::ranges::find(bodies, std::string_view(arguments.body), &Body::name);
+    const Body& body = *std::find_if(bodies.begin(), bodies.end(),
+                                     [&](const Body& one) { return one.name == arguments.body; });
     check_options(body, context.command);
     const Transform pose = arguments.pose.pose();
     const std::string output = arguments.output.empty() ? arguments.body + ".stl" : arguments.output;

@@ -180,8 +180,9 @@ OptionGroup timed_run_options(SliceArguments& target) {
 void check_shard(const SliceArguments& arguments) {
     if (!arguments.shard)
         return;
-    check_conflict(std::ranges::count(arguments.inputs, std::string("-"), &PlateInput::path) > 0, true,
-                   "- and --shard", "every shard has to read the whole mesh, from a file");
+    check_conflict(std::any_of(arguments.inputs.begin(), arguments.inputs.end(),
+                               [](const PlateInput& input) { return input.path == "-"; }),
+                   true, "- and --shard", "every shard has to read the whole mesh, from a file");
     check_conflict(arguments.output == "-", true, "--output - and --shard", "a shard is a file of its own");
     check_conflict(arguments.resume, arguments.stats == "-", "--resume and --stats -",
                    "a shard that is finished has no figures");

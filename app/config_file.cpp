@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -84,7 +85,8 @@ class Reading {
 
   private:
     [[nodiscard]] bool has_own_options() const {
-        return std::ranges::any_of(command_.operands, &Operand::own_options);
+        return std::any_of(command_.operands.begin(), command_.operands.end(),
+                           std::mem_fn(&Operand::own_options));
     }
 
     [[nodiscard]] std::string place_of(const toml::key& key) const {
@@ -105,7 +107,7 @@ class Reading {
     std::vector<ConfiguredInput> inputs(const std::string& place, const toml::node& node) const {
         const toml::array* const list = node.as_array();
         if (list == nullptr ||
-            !std::ranges::all_of(*list, [](const toml::node& one) { return one.is_table(); }))
+            !std::all_of(list->begin(), list->end(), [](const toml::node& one) { return one.is_table(); }))
             refuse_entry(place, "expected [[input]], with the path of a file and options of that one");
         std::vector<ConfiguredInput> found;
         for (const toml::node& one : *list)

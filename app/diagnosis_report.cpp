@@ -69,8 +69,8 @@ std::string shell_text(const Shell& shell) {
 std::vector<Defect> defects_of(const Diagnosis& found) {
     const Inspection& counts = found.counts;
     std::vector<Shell> inverted;
-    std::ranges::copy_if(found.shells, std::back_inserter(inverted),
-                         [](const Shell& shell) { return shell.kind == ShellKind::inverted; });
+    std::copy_if(found.shells.begin(), found.shells.end(), std::back_inserter(inverted),
+                 [](const Shell& shell) { return shell.kind == ShellKind::inverted; });
     const auto triangle = [](std::uint32_t i) {
         return fmt::format("triangle {}", grouped(i));
     };

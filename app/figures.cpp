@@ -142,7 +142,7 @@ Json parts_json(const FileResult& result) {
 
 /// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
 void append_json(std::string& text, const Json& value, std::size_t depth) {
-    if (std::ranges::none_of(value, [](const Json& item) { return item.is_structured(); })) {
+    if (std::none_of(value.begin(), value.end(), [](const Json& item) { return item.is_structured(); })) {
         text += value.dump(-1, ' ', false, Json::error_handler_t::replace);
         return;
     }

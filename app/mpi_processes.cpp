@@ -103,7 +103,7 @@ std::vector<std::uint64_t> MpiProcesses::exchange(std::span<const std::uint64_t>
 // further on and receives from the one s before, so no two send to the same one at a time.
 void MpiProcesses::exchange(std::span<const std::span<const std::byte>> outgoing,
                             std::span<const std::span<std::byte>> incoming) {
-    std::ranges::copy(outgoing[process_], incoming[process_].begin());
+    std::copy(outgoing[process_].begin(), outgoing[process_].end(), incoming[process_].begin());
     for (std::size_t step = 1; step < size_; ++step) {
         const std::size_t to = (process_ + step) % size_;
         const std::size_t from = (process_ + size_ - step) % size_;

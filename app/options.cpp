@@ -33,7 +33,7 @@ Option scale_option(std::optional<std::vector<double>>& target) {
                    if (factors.size() != 1 && factors.size() != 3)
                        throw Error(ErrorKind::usage,
                                    fmt::format("\"{}\" is neither one number nor three", text));
-                   if (std::ranges::find(factors, 0.0) != factors.end())
+                   if (std::find(factors.begin(), factors.end(), 0.0) != factors.end())
                        throw Error(ErrorKind::usage, "a factor of 0 leaves nothing to slice");
                    target = std::move(factors);
                });
@@ -157,14 +157,15 @@ bool PlacementOptions::given() const {
 }
 
 std::string unit_name(double mm) {
-    const auto found = std::ranges::find(units, mm, &Unit::mm);
+    const auto found =
+        std::find_if(units.begin(), units.end(), [&](const Unit& one) { return one.mm == mm; });
     return found != units.end() ? std::string(found->name) : fmt::format("{} mm", exact(mm));
 }
 
 std::optional<double> PlacementOptions::unit_mm() const {
     if (unit.empty())
         return std::nullopt;
-    return std::ranges::find(units, std::string_view(unit), &Unit::name)->mm;
+    return std::find_if(units.begin(), units.end(), [&](const Unit& one) { return one.name == unit; })->mm;
 }
 
 Transform PlacementOptions::pose() const {

@@ -19,7 +19,7 @@ namespace {
 /// "F" or "X,Y".
 AlongXY<double> parse_lengths(const std::string& text) {
     const std::vector<double> numbers = parse_numbers(text);
-    if (numbers.size() > 2 || std::ranges::any_of(numbers, [](double n) { return !(n > 0); }))
+    if (numbers.size() > 2 || std::any_of(numbers.begin(), numbers.end(), [](double n) { return !(n > 0); }))
         throw Error(ErrorKind::usage,
                     fmt::format("\"{}\" is not a length or two, such as 0.05 or 120,68", text));
     return {numbers.front(), numbers.back()};
@@ -42,7 +42,7 @@ AlongXY<std::uint32_t> parse_pixels(const std::string& text) {
     } catch (const Error&) {
         refuse();
     }
-    if (std::ranges::any_of(sides, [](std::uint64_t n) { return n < 1 || n > most_pixels; }))
+    if (std::any_of(sides.begin(), sides.end(), [](std::uint64_t n) { return n < 1 || n > most_pixels; }))
         refuse();
     return {static_cast<std::uint32_t>(sides[0]), static_cast<std::uint32_t>(sides[1])};
 }

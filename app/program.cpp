@@ -48,7 +48,8 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
         messages.result(fmt::format("lamella {}\nMIT licence\n", version()));
         return 0;
     }
-    const auto command = std::ranges::find(commands, words[0], &Command::name);
+    const auto command = std::find_if(commands.begin(), commands.end(),
+                                      [&](const Command& one) { return one.name == words[0]; });
     if (command == commands.end())
         refuse_command(words[0], commands);
     switch (parse(*command, std::span(words).subspan(1))) {

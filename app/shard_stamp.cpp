@@ -126,7 +126,7 @@ void check_stamps(const std::vector<std::string>& paths, const Execution& execut
     const auto has_stamp = [](const std::string& path) {
         return std::filesystem::exists(stamp_path(path));
     };
-    if (std::ranges::none_of(paths, has_stamp))
+    if (std::none_of(paths.begin(), paths.end(), has_stamp))
         return;
     std::vector<Stamped> files;
     for (const std::string& path : paths) {
@@ -137,7 +137,8 @@ void check_stamps(const std::vector<std::string>& paths, const Execution& execut
                                     path, stamp_path(path)));
         files.push_back(stamped(path, execution));
     }
-    std::ranges::sort(files, {}, &Stamped::begin);
+    std::sort(files.begin(), files.end(),
+              [](const Stamped& a, const Stamped& b) { return a.begin < b.begin; });
     const Stamped& first = files.front();
     std::uint64_t next = 0;
     const auto missing = [&](std::uint64_t end) {

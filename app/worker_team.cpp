@@ -80,7 +80,8 @@ WorkerTeam::~WorkerTeam() {
 }
 
 void WorkerTeam::start(const WorkerTask& task) {
-    const auto worker = std::ranges::find_if(workers_, [](const Worker& w) { return !w.task; });
+    const auto worker =
+        std::find_if(workers_.begin(), workers_.end(), [](const Worker& w) { return !w.task; });
     if (worker == workers_.end())
         throw Error(ErrorKind::internal, "all workers have a task");
     // A worker may have died since its last answer: then another one takes its place.

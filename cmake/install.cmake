@@ -11,15 +11,19 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lamella DESTINATION ${CMAKE_INST
 install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+set(pc_packages "expat fmt libdeflate zlib")
+if(LAMELLA_CLIPPER)
+    string(APPEND pc_packages " polyclipping")
+endif()
 # A static library leaves it to its user to link what it needs; a shared one has done so itself.
 get_target_property(library_type lamella TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
     set(LAMELLA_IS_STATIC TRUE)
-    set(pc_requires "Requires: expat fmt libdeflate polyclipping zlib")
+    set(pc_requires "Requires: ${pc_packages}")
     set(pc_libs "-llamella -pthread")
 else()
     set(LAMELLA_IS_STATIC FALSE)
-    set(pc_requires "Requires.private: expat fmt libdeflate polyclipping zlib")
+    set(pc_requires "Requires.private: ${pc_packages}")
     set(pc_libs "-llamella\nLibs.private: -pthread")
 endif()
 

@@ -9,6 +9,7 @@
 #include "lamella/read/mesh_file.hpp"
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -41,7 +42,7 @@ class PlateBuilder {
         std::size_t object;
         std::array<std::array<double, 3>, 3> linear;
         double z;
-        auto operator<=>(const Key&) const = default;
+        std::partial_ordering operator<=>(const Key&) const = default;
     };
 
     static Key key_of(const Instance& instance);

@@ -264,7 +264,8 @@ class LayerWay {
                 made.push_back(take_steps(job_.steps, layer, one));
                 changes += one;
             }
-            step_seconds_.fetch_add(stepping.seconds(), std::memory_order_relaxed);
+            step_nanoseconds_.fetch_add(static_cast<std::uint64_t>(1e9 * stepping.seconds()),
+                                        std::memory_order_relaxed);
             parts = made;
         }
         totals_.add(parts, std::move(joins), changes);
@@ -278,14 +279,17 @@ class LayerWay {
         };
     }
 
-    [[nodiscard]] double step_seconds() const noexcept { return step_seconds_; }   ///< of all threads
+    /// Of all threads.
+    [[nodiscard]] double step_seconds() const noexcept {
+        return 1e-9 * static_cast<double>(step_nanoseconds_);
+    }
     [[nodiscard]] double write_seconds() const noexcept { return write_seconds_; } ///< in order
 
   private:
     const FileJob& job_;
     LayerTotals& totals_;
     JobOutput& output_;
-    std::atomic<double> step_seconds_{0};
+    std::atomic<std::uint64_t> step_nanoseconds_{0};
     double write_seconds_ = 0;
 };
 

@@ -20,9 +20,8 @@ namespace lamella {
 class RowChanges {
   public:
     RowChanges(std::uint32_t width, std::uint32_t rows)
-        : columns_(std::size_t{width} + 2), words_(columns_ / 64 + 1),
-          changes_(std::make_unique_for_overwrite<double[]>(columns_ * rows)), changed_(words_ * rows),
-          touched_(rows) {}
+        : columns_(std::size_t{width} + 2), words_(columns_ / 64 + 1), changes_(new double[columns_ * rows]),
+          changed_(words_ * rows), touched_(rows) {}
 
     /// A row to add to.
     class Row {

@@ -16,7 +16,8 @@ namespace {
 FileKind kind_of_unpacked(std::string_view head) {
     if (is_zip(head)) // NumPy arrays, or a package
         return head.find(".npy") != std::string_view::npos ? FileKind::layers : FileKind::either;
-    const ByteSource source{.name = {}, .bytes = std::as_bytes(std::span(head)), .owner = {}};
+    const ByteSource source{
+        .name = {}, .bytes = std::as_bytes(std::span(head.data(), head.size())), .owner = {}};
     const MeshFormatRow* const format = recognised_format(source, {});
     return format != nullptr && format->layers ? FileKind::layers : FileKind::mesh;
 }
@@ -25,7 +26,7 @@ FileKind kind_of_unpacked(std::string_view head) {
 
 FileKind file_kind(std::string_view head) {
     constexpr std::size_t enough = 4096;
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(head));
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(head.data(), head.size()));
     return kind_of_unpacked(is_gzip(bytes) ? unpack_gzip_head(bytes, enough) : head);
 }
 

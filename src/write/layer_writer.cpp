@@ -170,8 +170,9 @@ std::span<const LayerFormat> layer_formats() noexcept {
 
 const LayerFormat& layer_format(std::string_view name, const std::string& path) {
     const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+    const std::string_view wanted = name.empty() ? std::string_view(extension) : name;
     const auto found = std::find_if(formats.begin(), formats.end(), [&](const LayerFormat& format) {
-        return name.empty() ? format.extension == extension : format.name == name;
+        return (name.empty() ? format.extension : format.name) == wanted;
     });
     if (found != formats.end() && (!name.empty() || !extension.empty()))
         return *found;

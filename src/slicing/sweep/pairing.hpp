@@ -14,6 +14,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <initializer_list>
 #include <tuple>
 #include <vector>
