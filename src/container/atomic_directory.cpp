@@ -29,7 +29,8 @@ fs::path beside(const fs::path& target, int attempt) {
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
     : path_(std::move(path)), may_remove_(std::move(may_remove)) {
     std::error_code error;
-    target_ = fs::weakly_canonical(path_, error); // through symbolic links: they stay
+    if (!path_.empty())                               // of which libraries differ in what it is
+        target_ = fs::weakly_canonical(path_, error); // through symbolic links: they stay
     if (error)
         target_ = path_;
     if (!target_.has_filename()) // "out/"

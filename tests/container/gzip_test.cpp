@@ -30,7 +30,7 @@ std::string packed(std::string_view bytes) {
 }
 
 ByteSource source(std::string_view bytes) {
-    return copy_bytes(std::as_bytes(std::span(bytes)), "part.gz");
+    return copy_bytes(std::as_bytes(std::span(bytes.data(), bytes.size())), "part.gz");
 }
 
 std::string unpacked(std::string_view bytes, std::uint64_t max_bytes = 0) {

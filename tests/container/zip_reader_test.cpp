@@ -18,7 +18,7 @@ using zip_test::zip_bytes;
 using zip_test::ZipPart;
 
 ByteSource source_of(std::string_view bytes) {
-    return copy_bytes(std::as_bytes(std::span(bytes)), "x.zip");
+    return copy_bytes(std::as_bytes(std::span(bytes.data(), bytes.size())), "x.zip");
 }
 
 std::string text_of(const ByteSource& source) {

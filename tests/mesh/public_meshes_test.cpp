@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -52,8 +51,9 @@ TriangleSoup load_stl(const std::filesystem::path& path, bool binary) {
             std::array<float, 3> v{};
             for (float& c : v) {
                 in >> word;
-                const char* first = word.data() + (word[0] == '+' ? 1 : 0);
-                good = std::from_chars(first, word.data() + word.size(), c).ec == std::errc{} && good;
+                char* end = nullptr;
+                c = std::strtof(word.c_str(), &end);
+                good = end != word.c_str() && good;
             }
             corners.push_back({v[0], v[1], v[2]});
         } else if (word == "endloop") {

@@ -46,7 +46,7 @@ struct Fraction {
             g = -g;
         return {{numerator.x / g, numerator.y / g, numerator.z / g, denominator / g}};
     }
-    friend auto operator<=>(const Fraction&, const Fraction&) = default;
+    friend std::strong_ordering operator<=>(const Fraction&, const Fraction&) = default;
 };
 
 using WholeTriangle = std::array<Whole, 3>;

@@ -119,7 +119,8 @@ TEST(PlateBuilder, SharesAShapeOnlyAmongPartsThatDifferInXAndY) {
 }
 
 TEST(PlateBuilder, KeepsEqualMeshesOfTwoFilesApart) {
-    const Plate plate = plate_of({{.path = "a.stl"}, {.path = "b.stl"}}, {boxes(), boxes()});
+    const Plate plate =
+        plate_of(std::vector<PlateInput>{{.path = "a.stl"}, {.path = "b.stl"}}, {boxes(), boxes()});
     ASSERT_EQ(plate.shapes.size(), 2U);
     EXPECT_EQ(plate.shapes[plate.parts[1].shape].input, 1U);
     EXPECT_EQ(plate.files[1].path, "b.stl");
@@ -135,8 +136,9 @@ TEST(PlateBuilder, CallsPartsByTheirFileUnlessSomebodyNamedThem) {
     EXPECT_EQ(labels_of(plate_of({.path = "a.3mf", .label = "mine"}, boxes({{.name = "left"}}))),
               std::vector<std::string>{"mine"});
     // A number that is taken is passed over.
-    EXPECT_EQ(labels_of(plate_of({{.path = "a.stl", .label = "a 2"}, {.path = "a.stl", .copies = 3}},
-                                 {boxes(), boxes()})),
+    EXPECT_EQ(labels_of(plate_of(
+                  std::vector<PlateInput>{{.path = "a.stl", .label = "a 2"}, {.path = "a.stl", .copies = 3}},
+                  {boxes(), boxes()})),
               (std::vector<std::string>{"a 2", "a", "a 3", "a 4"}));
 }
 
@@ -172,7 +174,8 @@ TEST(PlateBuilder, HoldsAMillionPartsAndNoMore) {
                        [&] { static_cast<void>(plate_of({.path = "a.stl", .copies = most + 1})); });
     test::expect_error(ErrorKind::limit, {"b.stl", "1 copy of 2 parts are too many"}, [&] {
         static_cast<void>(
-            plate_of({{.path = "a.stl", .copies = most - 1}, {.path = "b.stl"}}, {boxes(), boxes({{}, {}})}));
+            plate_of(std::vector<PlateInput>{{.path = "a.stl", .copies = most - 1}, {.path = "b.stl"}},
+                     {boxes(), boxes({{}, {}})}));
     });
 }
 

@@ -22,7 +22,8 @@
 namespace lamella::package_test {
 
 inline MeshFile read(std::string_view bytes, const MeshReadOptions& options = {}, unsigned threads = 1) {
-    return read_mesh(std::as_bytes(std::span(bytes)), "x", options, {.threads = threads});
+    return read_mesh(std::as_bytes(std::span(bytes.data(), bytes.size())), "x", options,
+                     {.threads = threads});
 }
 
 /// The error, "" when there is none.

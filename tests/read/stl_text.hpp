@@ -87,7 +87,8 @@ inline std::string upper_case(std::string text) {
 }
 
 inline MeshFile read(std::string_view bytes, const MeshReadOptions& options = {}, unsigned threads = 1) {
-    return read_mesh(std::as_bytes(std::span(bytes)), "part.stl", options, {.threads = threads});
+    return read_mesh(std::as_bytes(std::span(bytes.data(), bytes.size())), "part.stl", options,
+                     {.threads = threads});
 }
 
 /// What an STL file holds.
