@@ -10,7 +10,7 @@ namespace lamella {
 std::vector<Ring> grown(std::span<const std::span<const Point2>> /*rings*/, double /*distance*/,
                         const ClippingGrid& /*grid*/) {
     throw Error(ErrorKind::usage,
-                "`offset`: this build of Lamella was made without Clipper, which offsets contours");
+                "this build of Lamella was made without Clipper, and cannot offset contours");
 }
 
 } // namespace lamella
