@@ -43,7 +43,7 @@ class Executor {
     void for_chunks(std::uint64_t n, std::uint64_t chunk,
                     const std::function<void(std::uint64_t begin, std::uint64_t end, unsigned worker)>& body);
 
-    /// Throws Error{cancelled} when that was requested.
+    /// Throws Error{cancelled} once cancelling was requested.
     void check_cancelled() const;
     /// True when this region should end early: cancelling was requested or another worker has thrown.
     [[nodiscard]] bool stopping() const noexcept {

@@ -129,5 +129,17 @@ TEST(Stage, HasADistinctNameForEachStage) {
     EXPECT_FALSE(names.contains("?"));
 }
 
+TEST(CancelFlag, HearsARequestToTheFlagAroundItButNotTheOtherWay) {
+    CancelFlag outer;
+    CancelFlag inner(&outer);
+    CancelFlag other(&outer);
+    inner.request();
+    EXPECT_TRUE(inner.requested());
+    EXPECT_FALSE(outer.requested());
+    EXPECT_FALSE(other.requested());
+    outer.request();
+    EXPECT_TRUE(other.requested());
+}
+
 } // namespace
 } // namespace lamella
