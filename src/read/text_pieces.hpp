@@ -174,6 +174,7 @@ class PieceParser {
     /// begins.
     std::vector<Piece> next() {
         const std::size_t limit = stretch_bytes_ < text_.size() - at_ ? at_ + stretch_bytes_ : text_.size();
+        const std::size_t begin = at_;
         std::vector<Piece> ahead = cut(limit);
         executor_.for_chunks(ahead.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             parse(ahead[i]);
@@ -198,6 +199,8 @@ class PieceParser {
             before_ = pieces.back().after;
             done_ = at_ >= text_.size() || pieces.back().fault;
         } while (at_ < limit && !done_);
+        // Not piece by piece: whoever reads the next one brings back pages of this one.
+        release(source_, source_.bytes.subspan(begin, at_ - begin));
         return pieces;
     }
 
@@ -247,10 +250,7 @@ class PieceParser {
         return pieces;
     }
 
-    void parse(Piece& piece) const {
-        format_.parse(piece, all_triangles);
-        release(source_, source_.bytes.subspan(piece.begin, piece.end - piece.begin));
-    }
+    void parse(Piece& piece) const { format_.parse(piece, all_triangles); }
 
     const ByteSource& source_;
     std::string_view text_;
