@@ -5,8 +5,7 @@ PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 # One more than there are processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
-ROOMS := core mesh contour container read slicing polygon raster write pipeline
-THREADED := core mesh read slicing pipeline
+ROOMS := core mesh parts contour container read slicing polygon raster write pipeline
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
 
@@ -46,7 +45,7 @@ test: packages  ## build everything and run the tests: a few minutes
 	cmake --build build
 	$(CTEST) --test-dir build
 
-test-all: test-large test-asan test-tsan test-libcxx test-shared fresh  ## the long suites: large programs, sanitizers, fuzz corpora, fresh
+test-all: test-large test-asan test-tsan test-shared fresh  ## the long suites: large programs, sanitizers, fuzz corpora, fresh
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
@@ -64,15 +63,8 @@ test-asan: packages-all
 
 test-tsan: packages-all
 	cmake --preset tsan
-	cmake --build build-tsan --target $(THREADED:%=lamella_%_test)
-	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(THREADED)))$$'
-
-# Clipper's binary belongs to the other standard library: there are no offsets.
-test-libcxx: packages-all
-	cmake --preset libcxx
-	cmake --build build-libcxx --target $(ROOMS:%=lamella_%_test)
-	$(CTEST) --test-dir build-libcxx --label-regex '^($(subst $(blank),|,$(ROOMS)))$$' \
-	         --exclude-regex '^(Offset|LayerSteps|Processes\.TakePlates)'
+	cmake --build build-tsan --target $(ROOMS:%=lamella_%_test)
+	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(ROOMS)))$$'
 
 # What was compiled for the static library serves the shared one.
 test-shared: packages-all
@@ -177,5 +169,5 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
-        test-libcxx test-shared fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core \
+        test-shared fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core \
         python-bench page-bench paper format format-check lint install dist clean

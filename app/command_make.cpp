@@ -1,6 +1,5 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
@@ -9,6 +8,7 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "parts/shapes.hpp"
 #include "standard_streams.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "crash.hpp"
 
-#include "lamella/container/unfinished.hpp"
+#include "lamella/core/unfinished.hpp"
 
 #include <unistd.h>
 

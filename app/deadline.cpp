@@ -1,7 +1,7 @@
 #include "deadline.hpp"
 
-#include "lamella/container/unfinished.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/core/unfinished.hpp"
 
 #include "numbers.hpp"
 

@@ -1,6 +1,6 @@
 #include "interrupt.hpp"
 
-#include "lamella/container/unfinished.hpp"
+#include "lamella/core/unfinished.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>

@@ -3,6 +3,7 @@
 
 #include "experiment.hpp"
 #include "parts.hpp"
+#include "parts/shapes.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 // The kernels one by one (Google Benchmark): rank, weld, link, walk, run, format.
 
 #include "core/executor.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 #include "slicing/sweep/point_kernels.hpp"

@@ -4,6 +4,7 @@
 
 #include "experiment.hpp"
 #include "parts.hpp"
+#include "parts/shapes.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,7 @@
 #include "parts.hpp"
 
+#include "parts/shapes.hpp"
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>

@@ -27,7 +27,7 @@ ROOMS = {
     "contour": ["core"],
     "container": ["core"],
     "read": ["core", "container", "mesh", "contour"],
-    "slicing": ["core", "mesh", "contour"],  # not container: engines never touch files
+    "slicing": ["core", "mesh", "contour"],  # not container: engines know no formats
     "polygon": ["core", "contour"],  # not mesh: layers, whoever made them
     "raster": ["core", "contour"],  # not container: what becomes of pixels is another matter
     "write": ["core", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
@@ -63,9 +63,10 @@ STANDARD = set(
     valarray variant vector version""".split()
 )
 
-# The operating system and the processor: sources of the library may see them, its public headers may not.
-SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|[a-z0-9]+intrin|unistd|fcntl|sched|pthread|poll|signal|"
-                    r"spawn|dirent|dlfcn|cpuid|malloc|errno|limits|stdlib|stdint)(\.h)?$")
+# The operating system: the sources of one room see it.
+SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|(unistd|fcntl|sched|pthread|poll|signal|spawn|dirent|dlfcn|"
+                    r"malloc|errno|limits|stdlib|stdint)(\.h)?)$")
+SYSTEM_ROOM = "src/core/"
 
 # Types at the level of the namespace, as headers lay them out.
 TYPE = re.compile(r"^(?:template <[^\n]*>\n)?(?:class|struct|union|enum class) (\w+)(?: final)?(?: : [^{;\n]*)? \{", re.MULTILINE)
@@ -81,7 +82,7 @@ class House:
 
     def check(self):
         self.check_table()
-        for folder in ["include", "src", "app", "bench", "examples", "python", "tests"]:
+        for folder in ["include", "src", "parts", "app", "bench", "examples", "python", "tests"]:
             for path in sorted((self.root / folder).rglob("*")):
                 if path.suffix in (".hpp", ".cpp", ".h", ".inc"):
                     self.check_file(path)
@@ -127,7 +128,7 @@ class House:
 
     def resolve(self, name, header, quoted):
         """The file of this project that an include means, relative to the root, or None."""
-        places = ["include", "src", "tests"] if quoted else ["include"]
+        places = ["include", "src", "tests", "."] if quoted else ["include"]
         if quoted:
             places.insert(0, str(Path(name).parent))
         for place in places:
@@ -144,7 +145,7 @@ class House:
         if name.startswith("include/"):
             return f"public headers need only the standard library, not <{header}>"
         if SYSTEM.match(header):
-            return None
+            return None if name.startswith(SYSTEM_ROOM) else f"only {SYSTEM_ROOM} knows the operating system"
         library = header.split("/")[0]
         if library in THIRD_PARTY_ANYWHERE:
             return None
@@ -162,6 +163,8 @@ class House:
 
         if target.startswith("tests/"):
             return None if parts[0] == "tests" else "only tests may include what belongs to the tests"
+        if target.startswith("parts/"):
+            return "the library knows no test bodies" if parts[0] in ("include", "src") else None
         if parts[0] in ("include", "src"):
             if user == "door":
                 return None if public else "the door shows public headers only"

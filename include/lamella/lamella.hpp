@@ -24,7 +24,6 @@
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/repair.hpp"
 #include "lamella/mesh/self_intersections.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/read/mesh_input.hpp"
@@ -68,4 +67,4 @@
 
 // Hashes of files, and what is to be removed when a program is stopped by a signal.
 #include "lamella/container/file_hash.hpp"
-#include "lamella/container/unfinished.hpp"
+#include "lamella/core/unfinished.hpp"

@@ -2,7 +2,7 @@
 
 // Bytes that wait for their reader.
 
-#include "container/spill_file.hpp"
+#include "core/spill_file.hpp"
 
 #include <cstddef>
 #include <cstdint>

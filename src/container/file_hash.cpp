@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/byte_source.hpp"
+#include "core/byte_source.hpp"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

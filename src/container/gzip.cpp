@@ -2,8 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/growing_memory.hpp"
 #include "container/inflate.hpp"
+#include "core/growing_memory.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -2,7 +2,7 @@
 
 // Files packed with gzip.
 
-#include "container/byte_source.hpp"
+#include "core/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>

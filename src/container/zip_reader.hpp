@@ -2,7 +2,7 @@
 
 // Reading zip archives that somebody may have made to do harm.
 
-#include "container/byte_source.hpp"
+#include "core/byte_source.hpp"
 
 #include <atomic>
 #include <cstdint>

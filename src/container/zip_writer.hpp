@@ -2,7 +2,7 @@
 
 // Writing zip archives from front to back.
 
-#include "container/atomic_file.hpp"
+#include "core/atomic_file.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,8 +1,7 @@
 #include "lamella/mesh/transform.hpp"
 
 #include "lamella/core/error.hpp"
-
-#include "mesh/unit_circle.hpp"
+#include "lamella/core/unit_circle.hpp"
 
 #include <fmt/format.h>
 

@@ -2,16 +2,14 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/file_piece.hpp"
 #include "pipeline/agreement.hpp"
 #include "pipeline/packed.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <exception>
 #include <filesystem>
 #include <system_error>
@@ -58,31 +56,14 @@ std::vector<Layer> unpacked(const std::string& message) {
 
 /// Writes the bytes from `place` on, into a file that exists.
 void write_at(const std::string& path, std::uint64_t place, const ByteStore& bytes) {
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0)
-        throw output_error(path, errno);
-    const auto fail = [&](int system_error) {
-        ::close(descriptor);
-        throw output_error(path, system_error);
-    };
+    FilePiece piece(path, place);
     std::string block;
     for (std::uint64_t at = 0; at < bytes.size(); at += block.size()) {
         block.resize(std::min<std::uint64_t>(ByteStore::block_bytes, bytes.size() - at));
         bytes.read(at, block);
-        for (std::string_view rest = block; !rest.empty();) {
-            const ssize_t written = ::pwrite(descriptor, rest.data(), rest.size(),
-                                             static_cast<off_t>(place + at + (block.size() - rest.size())));
-            if (written < 0 && errno != EINTR)
-                fail(errno);
-            if (written > 0)
-                rest.remove_prefix(static_cast<std::size_t>(written));
-        }
+        piece.append(block);
     }
-    // Where files live on another machine, the last bytes meet it only now.
-    if (::fsync(descriptor) != 0 && errno != EINVAL)
-        fail(errno);
-    if (::close(descriptor) != 0 && errno != EINTR)
-        throw output_error(path, errno);
+    piece.finish();
 }
 
 } // namespace

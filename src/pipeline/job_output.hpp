@@ -8,8 +8,8 @@
 #include "lamella/slicing/slabs.hpp"
 #include "lamella/write/layer_writer.hpp"
 
-#include "container/atomic_file.hpp"
 #include "container/byte_store.hpp"
+#include "core/atomic_file.hpp"
 
 #include <cstdint>
 #include <functional>

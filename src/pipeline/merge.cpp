@@ -3,8 +3,8 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 
-#include "container/atomic_file.hpp"
-#include "container/byte_source.hpp"
+#include "core/atomic_file.hpp"
+#include "core/byte_source.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

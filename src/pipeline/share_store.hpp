@@ -6,9 +6,9 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slabs.hpp"
 
-#include "container/spill_file.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
+#include "core/spill_file.hpp"
 
 #include <atomic>
 #include <cstddef>

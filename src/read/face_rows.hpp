@@ -5,7 +5,7 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
 
-#include "container/byte_source.hpp"
+#include "core/byte_source.hpp"
 #include "read/face_mesh.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"

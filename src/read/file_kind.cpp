@@ -1,8 +1,8 @@
 #include "lamella/read/file_kind.hpp"
 
-#include "container/byte_source.hpp"
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
+#include "core/byte_source.hpp"
 #include "read/mesh_formats.hpp"
 
 #include <cstddef>

@@ -2,10 +2,10 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/byte_source.hpp"
 #include "container/gzip.hpp"
 #include "container/text_place.hpp"
 #include "container/zip_reader.hpp"
+#include "core/byte_source.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/npz.hpp"
 #include "read/read_limits.hpp"

@@ -3,9 +3,9 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/mesh_input.hpp"
 
-#include "container/byte_source.hpp"
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
+#include "core/byte_source.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/stl.hpp"
 

@@ -3,8 +3,8 @@
 // Open Packaging Conventions: parts in a zip archive, and relationships that say what they are for. 3MF files
 // are such packages.
 
-#include "container/byte_source.hpp"
 #include "container/zip_reader.hpp"
+#include "core/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>

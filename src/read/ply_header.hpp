@@ -2,7 +2,7 @@
 
 // The head of a PLY file: what its rows hold.
 
-#include "container/byte_source.hpp"
+#include "core/byte_source.hpp"
 #include "read/remarks.hpp"
 
 #include <cstddef>

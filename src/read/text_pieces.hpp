@@ -2,7 +2,7 @@
 
 // Texts that are parsed in pieces, by many threads, as if it were from front to back.
 
-#include "container/byte_source.hpp"
+#include "core/byte_source.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
 #include "read/coordinate_text.hpp"

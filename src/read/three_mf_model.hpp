@@ -5,7 +5,7 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/transform.hpp"
 
-#include "container/byte_source.hpp"
+#include "core/byte_source.hpp"
 #include "read/mesh_text.hpp"
 
 #include <cstddef>

@@ -7,8 +7,8 @@
 #include "lamella/polygon/selection.hpp"
 #include "lamella/polygon/simplify.hpp"
 
-#include "container/atomic_file.hpp"
 #include "container/base64.hpp"
+#include "core/atomic_file.hpp"
 #include "write/page_bytes.hpp"
 #include "write/page_text.hpp"
 #include "write/sequential_writer.hpp"

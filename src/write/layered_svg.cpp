@@ -2,8 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/atomic_directory.hpp"
-#include "container/atomic_file.hpp"
+#include "core/atomic_directory.hpp"
+#include "core/atomic_file.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/quoted.hpp"

@@ -1,8 +1,8 @@
 #include "lamella/core/error.hpp"
 #include "lamella/write/layer_page.hpp"
 
-#include "container/atomic_file.hpp"
 #include "container/base64.hpp"
+#include "core/atomic_file.hpp"
 #include "core/executor.hpp"
 #include "mesh/edge_survey.hpp"
 #include "mesh/shells.hpp"

@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/atomic_file.hpp"
+#include "core/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/atomic_directory.hpp"
-#include "container/atomic_file.hpp"
 #include "container/zip_writer.hpp"
+#include "core/atomic_directory.hpp"
+#include "core/atomic_file.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
 #include "write/left_out.hpp"

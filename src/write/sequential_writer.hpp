@@ -4,7 +4,7 @@
 
 #include "lamella/write/layer_writer.hpp"
 
-#include "container/atomic_file.hpp"
+#include "core/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/left_out.hpp"
 

@@ -3,6 +3,7 @@
 
 #include "fixtures/corner_soups.hpp"
 #include "fixtures/random_solids.hpp"
+#include "parts/shapes.hpp"
 
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>

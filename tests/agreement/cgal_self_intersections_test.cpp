@@ -4,6 +4,7 @@
 #include "fixtures/named_solids.hpp"
 #include "fixtures/random.hpp"
 #include "fixtures/shared_meshes.hpp"
+#include "parts/shapes.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>

@@ -2,6 +2,7 @@
 
 #include "fixtures/layer_checks.hpp"
 #include "fixtures/named_solids.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>

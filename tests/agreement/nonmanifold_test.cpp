@@ -4,6 +4,7 @@
 #include "fixtures/meshes.hpp"
 #include "fixtures/named_solids.hpp"
 #include "fixtures/random.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>

@@ -3,6 +3,7 @@
 
 #include "fixtures/layer_checks.hpp"
 #include "fixtures/named_solids.hpp"
+#include "parts/shapes.hpp"
 #include "temporary_folder.hpp"
 
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 #include "fixtures/layer_checks.hpp"
 #include "fixtures/named_solids.hpp"
 #include "fixtures/shared_meshes.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 #include <lamella/lamella.hpp>

@@ -17,7 +17,8 @@ SOUND = {
     "include/lamella/mesh/soup.hpp": '#include "lamella/core/point.hpp"\n',
     "include/lamella/slicing/slice.hpp": '#include "lamella/mesh/soup.hpp"\n',
     "src/core/executor.hpp": "#include <thread>\n#include <sys/mman.h>\n",
-    "src/container/byte_source.hpp": "",
+    "src/container/xml.hpp": "",
+    "parts/shapes.hpp": "",
     "src/contour/normal_form.cpp": "#include <xxhash.h>\n#include <fmt/format.h>\n",
     "src/slicing/sweep.hpp": '#include "core/executor.hpp"\n',
     "src/slicing/sweep.cpp": '#include "sweep.hpp"\n',
@@ -75,7 +76,7 @@ class CheckFloors(unittest.TestCase):
                           "polygon is not below it")
 
     def test_finds_a_room_that_includes_a_lower_room_it_has_no_business_with(self):
-        self.assert_found({"src/slicing/a.cpp": '#include "container/byte_source.hpp"\n'}, "src/slicing/a.cpp:1:",
+        self.assert_found({"src/slicing/a.cpp": '#include "container/xml.hpp"\n'}, "src/slicing/a.cpp:1:",
                           "container is not below it")
 
     def test_finds_a_public_header_that_climbs(self):
@@ -98,6 +99,13 @@ class CheckFloors(unittest.TestCase):
     def test_finds_a_foreign_header_that_nobody_declared(self):
         self.assert_found({"src/polygon/a.cpp": "#include <clipper2/clipper.h>\n"}, "src/polygon/a.cpp:1:",
                           "no library")
+
+    def test_finds_the_operating_system_outside_its_room(self):
+        self.assert_found({"src/polygon/a.cpp": "#include <unistd.h>\n"}, "src/polygon/a.cpp:1:", "only src/core/")
+
+    def test_finds_test_bodies_in_the_library(self):
+        self.assert_found({"src/mesh/a.cpp": '#include "parts/shapes.hpp"\n'}, "src/mesh/a.cpp:1:", "no test bodies")
+        self.assertEqual(self.findings({"app/a.cpp": '#include "parts/shapes.hpp"\n'}), [])
 
     def test_finds_a_source_that_looks_into_a_folder_of_its_room(self):
         for name in ("src/slicing/paper/eecc.cpp", "src/slicing/engines.cpp"):

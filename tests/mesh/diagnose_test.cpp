@@ -1,10 +1,10 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "fixtures/random.hpp"
 #include "mesh/assemble.hpp"
 #include "mesh/naive.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/mesh.hpp"
-#include "lamella/mesh/shapes.hpp"
+
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Counts compared with those of other programs on meshes that people have published.
 
 #include "lamella/mesh/inspect.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "mesh/assemble.hpp"
+#include "parts/shapes.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

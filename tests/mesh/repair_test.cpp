@@ -2,11 +2,11 @@
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/mesh/repair.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "fixtures/random.hpp"
 #include "mesh/assemble.hpp"
 #include "mesh/naive.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

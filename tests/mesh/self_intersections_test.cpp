@@ -1,12 +1,12 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/self_intersections.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "fixtures/random.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "mesh/assemble.hpp"
 #include "mesh/triangle_contact.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

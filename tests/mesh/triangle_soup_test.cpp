@@ -1,8 +1,8 @@
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
 #include "mesh/naive.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

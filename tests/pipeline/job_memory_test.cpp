@@ -1,7 +1,7 @@
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
 #include "core/memory_size.hpp"
+#include "parts/shapes.hpp"
 #include "pipeline/job_memory.hpp"
 #include "temporary_folder.hpp"
 

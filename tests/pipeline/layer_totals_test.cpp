@@ -1,10 +1,10 @@
 #include "lamella/contour/normal_form.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 
 #include "expect_same_result.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
+#include "parts/shapes.hpp"
 #include "pipeline/layer_totals.hpp"
 #include "thread_processes.hpp"
 

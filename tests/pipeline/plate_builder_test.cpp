@@ -1,7 +1,7 @@
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "fixtures/random.hpp"
+#include "parts/shapes.hpp"
 #include "pipeline/plate_builder.hpp"
 #include "slicing/expect_error.hpp"
 

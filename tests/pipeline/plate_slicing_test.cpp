@@ -1,8 +1,8 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "fixtures/random.hpp"
+#include "parts/shapes.hpp"
 #include "pipeline/plate_builder.hpp"
 #include "pipeline/plate_slicing.hpp"
 #include "slicing/expect_error.hpp"

@@ -1,8 +1,8 @@
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
+#include "parts/shapes.hpp"
 #include "slicing/expect_error.hpp"
 #include "temporary_folder.hpp"
 

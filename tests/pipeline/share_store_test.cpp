@@ -1,8 +1,8 @@
 #include "lamella/contour/normal_form.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "fixtures/random.hpp"
+#include "parts/shapes.hpp"
 #include "pipeline/share_store.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
@@ -7,6 +6,7 @@
 
 #include "expect_same_result.hpp"
 #include "fixtures/rounds.hpp"
+#include "parts/shapes.hpp"
 #include "temporary_folder.hpp"
 #include "thread_processes.hpp"
 

@@ -1,6 +1,5 @@
-#include "lamella/mesh/shapes.hpp"
-
 #include "fixtures/random.hpp"
+#include "parts/shapes.hpp"
 #include "pipeline/stream_sums.hpp"
 
 #include <gtest/gtest.h>

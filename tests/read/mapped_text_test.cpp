@@ -1,8 +1,8 @@
 // A file that is read from front to back does not stay in the memory of the program.
 
-#include "container/byte_source.hpp"
 #include "container/zip_reader.hpp"
 #include "container/zip_writer.hpp"
+#include "core/byte_source.hpp"
 #include "read/obj.hpp"
 #include "read/off.hpp"
 #include "read/ply.hpp"

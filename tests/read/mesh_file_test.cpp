@@ -1,9 +1,9 @@
 // Which reader gets a file, and that all of them agree about a solid.
 
 #include "lamella/mesh/inspect.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "container/zip_bytes.hpp"
+#include "parts/shapes.hpp"
 #include "read/face_text.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,10 +1,10 @@
 // A file read batch by batch says the same as one read whole.
 
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/read/mesh_input.hpp"
 
 #include "fixtures/mutations.hpp"
 #include "fixtures/rounds.hpp"
+#include "parts/shapes.hpp"
 #include "read/stl_text.hpp"
 #include "temporary_folder.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "expect_error.hpp"
 #include "fixtures/named_solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/paper/paper_engines.hpp"
 
 #include <gtest/gtest.h>

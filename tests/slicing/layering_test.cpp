@@ -2,10 +2,10 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/mesh.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/layering.hpp"
 
 #include "expect_error.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/section_sum.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "expect_error.hpp"
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

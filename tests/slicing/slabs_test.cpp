@@ -1,5 +1,4 @@
 #include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/slicing/slabs.hpp"
 
@@ -9,6 +8,7 @@
 #include "fixtures/named_solids.hpp"
 #include "fixtures/random.hpp"
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/ranks.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "even_planes.hpp"
@@ -8,6 +7,7 @@
 #include "expect_layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

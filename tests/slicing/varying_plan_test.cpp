@@ -1,8 +1,8 @@
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/varying_plan.hpp"
 
 #include "fixtures/named_solids.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

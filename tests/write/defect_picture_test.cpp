@@ -1,7 +1,7 @@
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/write/defect_picture.hpp"
 
 #include "fixtures/meshes.hpp"
+#include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 

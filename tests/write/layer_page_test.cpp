@@ -2,12 +2,12 @@
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/write/layer_page.hpp"
 
 #include "container/json_text.hpp"
 #include "page_reader.hpp"
+#include "parts/shapes.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 #include "write/page_bytes.hpp"

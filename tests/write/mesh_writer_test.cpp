@@ -1,7 +1,7 @@
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
+#include "parts/shapes.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>

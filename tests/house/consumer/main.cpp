@@ -7,7 +7,20 @@
 int main() {
     if (lamella::version() != std::string(LAMELLA_VERSION))
         return 1;
-    const lamella::TriangleSoup box = lamella::make_box(20, 10, 3);
+    const lamella::Mesh box(lamella::IndexedMesh{
+        {{0, 0, 0}, {20, 0, 0}, {20, 10, 0}, {0, 10, 0}, {0, 0, 3}, {20, 0, 3}, {20, 10, 3}, {0, 10, 3}},
+        {{0, 2, 1},
+         {0, 3, 2},
+         {4, 5, 6},
+         {4, 6, 7},
+         {0, 1, 5},
+         {0, 5, 4},
+         {1, 2, 6},
+         {1, 6, 5},
+         {2, 3, 7},
+         {2, 7, 6},
+         {3, 0, 4},
+         {3, 4, 7}}});
     const lamella::LayerStack layers =
         lamella::slice(box, lamella::plan_uniform(0, 3, {.layer_height = 0.1}));
     for (const char* path : {"consumer.cli", "consumer.svg"}) {

@@ -1,4 +1,5 @@
 #include "fixtures/named_solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/paper/paper_engines.hpp"
 
 #include <gtest/gtest.h>

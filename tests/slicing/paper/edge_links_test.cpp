@@ -1,5 +1,6 @@
 #include "fixtures/named_solids.hpp"
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/naive_section.hpp"
 #include "slicing/paper/edge_links.hpp"
 #include "slicing/paper/paper_engines.hpp"

@@ -1,5 +1,4 @@
-#include "lamella/mesh/shapes.hpp"
-
+#include "parts/shapes.hpp"
 #include "slicing/paper/intersection_lists.hpp"
 
 #include <gtest/gtest.h>

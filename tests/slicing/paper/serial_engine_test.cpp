@@ -1,6 +1,5 @@
-#include "lamella/mesh/shapes.hpp"
-
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/even_planes.hpp"
 #include "slicing/expect_error.hpp"
 #include "slicing/naive_section.hpp"

@@ -1,8 +1,7 @@
-#include "lamella/mesh/shapes.hpp"
-
 #include "core/executor.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/expect_error.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/cut_graph.hpp"

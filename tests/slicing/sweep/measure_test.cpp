@@ -1,7 +1,7 @@
 #include "lamella/core/error.hpp"
-#include "lamella/mesh/shapes.hpp"
 
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/even_planes.hpp"
 #include "slicing/expect_error.hpp"
 #include "slicing/sweep/graph_of.hpp"

@@ -1,9 +1,9 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/sweep/pairing.hpp"
 
 #include <gtest/gtest.h>

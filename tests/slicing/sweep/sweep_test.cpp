@@ -1,11 +1,11 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
-#include "lamella/mesh/shapes.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "fixtures/random.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
 #include "slicing/even_planes.hpp"
 #include "slicing/expect_layers.hpp"
 #include "slicing/naive_section.hpp"

@@ -1,0 +1,126 @@
+#include "core/atomic_directory.hpp"
+
+#include "core/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+namespace lamella {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// `target` with a number and an ending that make it a new, hidden name in the same folder.
+fs::path beside(const fs::path& target, int attempt) {
+    const std::string stem = target.filename().string().substr(0, 200);
+    return target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, getpid(), attempt);
+}
+
+} // namespace
+
+AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
+    : path_(std::move(path)), may_remove_(std::move(may_remove)) {
+    std::error_code error;
+    if (!path_.empty())                               // of which libraries differ in what it is
+        target_ = fs::weakly_canonical(path_, error); // through symbolic links: they stay
+    if (error)
+        target_ = path_;
+    if (!target_.has_filename()) // "out/"
+        target_ = target_.parent_path();
+    if (target_.empty())
+        throw Error(ErrorKind::output, "cannot write a folder without a name");
+    check_replaceable();
+    const UnfinishedName::Creation creation;
+    for (int attempt = 0; working_.empty(); ++attempt) {
+        const fs::path candidate = beside(target_, attempt);
+        if (::mkdir(candidate.c_str(), 0777) == 0)
+            working_ = candidate;
+        else if (errno != EEXIST || attempt > 10'000)
+            throw output_error(target_.string(), errno);
+    }
+    if (!unfinished_.announce(working_.string())) {
+        ::rmdir(working_.c_str());
+        throw Error(ErrorKind::cancelled, "cancelled");
+    }
+}
+
+AtomicDirectory::~AtomicDirectory() {
+    std::error_code ignored;
+    if (!working_.empty())
+        fs::remove_all(working_, ignored);
+}
+
+void AtomicDirectory::check_replaceable() const {
+    std::error_code error;
+    const fs::file_status status = fs::status(target_, error);
+    if (status.type() == fs::file_type::not_found)
+        return;
+    if (!fs::is_directory(status))
+        throw Error(ErrorKind::output,
+                    fmt::format("cannot write '{}': it is a file, and the layers go into a folder; choose "
+                                "another name",
+                                path_));
+    fs::directory_iterator entries(target_, error);
+    for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+        if (!may_remove_(entries->path()))
+            throw Error(ErrorKind::output,
+                        fmt::format("cannot write '{}': the folder holds something else ('{}'); empty it or "
+                                    "choose another name",
+                                    path_, entries->path().filename().string()));
+    }
+    if (error)
+        throw output_error(path_, error.value());
+}
+
+void AtomicDirectory::commit() {
+    if (working_.empty())
+        throw Error(ErrorKind::internal, fmt::format("'{}' was ended twice", path_));
+    // Once it has its name, nobody may be about to remove what is in it.
+    if (!unfinished_.withdraw())
+        throw Error(ErrorKind::cancelled, "cancelled");
+    // Renaming onto a missing or an empty folder needs no more.
+    if (std::rename(working_.c_str(), target_.c_str()) == 0) {
+        working_.clear();
+        return;
+    }
+    if (errno != ENOTEMPTY && errno != EEXIST)
+        throw output_error(target_.string(), errno);
+    check_replaceable();
+    // Old and new one change places at once, so that there is one of them whatever happens.
+    if (::renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+        std::error_code ignored;
+        fs::remove_all(std::exchange(working_, {}), ignored);
+        return;
+    }
+    // Not every file system can do that. The old folder steps aside; should the new one fail to take its
+    // place, it steps back.
+    fs::path aside;
+    for (int attempt = 0; aside.empty(); ++attempt) {
+        const fs::path candidate = beside(target_, attempt);
+        if (fs::exists(fs::symlink_status(candidate)))
+            continue;
+        if (std::rename(target_.c_str(), candidate.c_str()) != 0)
+            throw output_error(target_.string(), errno);
+        aside = candidate;
+    }
+    if (std::rename(working_.c_str(), target_.c_str()) != 0) {
+        const int system_error = errno;
+        if (std::rename(aside.c_str(), target_.c_str()) != 0)
+            throw Error(ErrorKind::output,
+                        fmt::format("cannot write '{}': what was there is now '{}'", path_, aside.string()));
+        throw output_error(target_.string(), system_error);
+    }
+    working_.clear();
+    std::error_code ignored;
+    fs::remove_all(aside, ignored);
+}
+
+} // namespace lamella

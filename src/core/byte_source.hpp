@@ -1,0 +1,50 @@
+#pragma once
+
+// A file as bytes in memory, wherever they come from.
+
+#include "lamella/core/execution.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// The bytes of a file, at least one, and what keeps them alive. Cheap to copy.
+struct ByteSource {
+    std::string name; ///< as errors call it: the path, or "standard input"
+    std::span<const std::byte> bytes;
+    std::shared_ptr<const void> owner; ///< the bytes live as long as any copy of this
+    bool mapped = false;               ///< they are those of a file, and come from it when they are touched
+
+    [[nodiscard]] std::string_view text() const noexcept {
+        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    }
+};
+
+/// Opens a file of any size. A regular file is memory-mapped: nothing is read before it is touched, and the
+/// file must keep its length as long as the bytes live (the system ends a program that touches a page that is
+/// gone with SIGBUS; renaming or deleting the file does no harm). What cannot be mapped, such as a pipe, is
+/// read into memory to its end. "-" is standard input.
+///
+/// Throws Error{input} when the file is missing, empty, a directory, a device or may not be read, and
+/// Error{cancelled} soon after a stop is requested, also while it waits for the other end of a pipe.
+[[nodiscard]] ByteSource open_bytes(const std::string& path, const Execution& execution = {});
+
+/// The same, but of what cannot be mapped no more than `most_in_memory` bytes are kept in memory: what is
+/// longer goes to a spill file (core/spill_file.hpp), and that is mapped. Throws Error{output} when
+/// there is no room for it.
+[[nodiscard]] ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory,
+                                    const Execution& execution = {});
+
+/// Lets go of the memory that a stretch of mapped bytes takes; when touched again, they come from the file
+/// again. So a file larger than memory can be gone through. Does nothing for bytes that are not mapped.
+void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept;
+
+/// A copy of bytes in memory; `name` stands for the path in errors. Throws Error{input} when there are none.
+[[nodiscard]] ByteSource copy_bytes(std::span<const std::byte> bytes, std::string name);
+
+} // namespace lamella

@@ -1,0 +1,46 @@
+#include "core/file_piece.hpp"
+
+#include "core/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <utility>
+
+namespace lamella {
+
+FilePiece::FilePiece(std::string path, std::uint64_t place)
+    : path_(std::move(path)), place_(place), descriptor_(::open(path_.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0)
+        throw output_error(path_, errno);
+}
+
+FilePiece::~FilePiece() {
+    if (descriptor_ >= 0)
+        ::close(descriptor_);
+}
+
+void FilePiece::append(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place_));
+        if (written < 0) {
+            if (errno != EINTR)
+                throw output_error(path_, errno);
+            continue;
+        }
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+        place_ += static_cast<std::uint64_t>(written);
+    }
+}
+
+void FilePiece::finish() {
+    // Where files live on another machine, the last bytes meet it only now.
+    if (::fsync(descriptor_) != 0 && errno != EINVAL)
+        throw output_error(path_, errno);
+    if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)
+        throw output_error(path_, errno);
+}
+
+} // namespace lamella

@@ -1,0 +1,31 @@
+#pragma once
+
+// A piece of a file that several processes write.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// Bytes written one after the other into a file that exists, from a place on. What fails is Error{output}.
+/// For one thread.
+class FilePiece {
+  public:
+    FilePiece(std::string path, std::uint64_t place);
+    ~FilePiece();
+    FilePiece(const FilePiece&) = delete;
+    FilePiece& operator=(const FilePiece&) = delete;
+
+    void append(std::string_view bytes);
+
+    /// Makes sure that all bytes have met the file. To be called once, at the end.
+    void finish();
+
+  private:
+    std::string path_;
+    std::uint64_t place_; ///< of the next byte
+    int descriptor_ = -1;
+};
+
+} // namespace lamella

@@ -1,0 +1,38 @@
+#include "core/growing_memory.hpp"
+
+#include <sys/mman.h>
+
+#include <new>
+
+namespace lamella {
+
+GrowingMemory::GrowingMemory() : capacity_(std::size_t{1} << 20) {
+    void* data = mmap(nullptr, capacity_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (data == MAP_FAILED)
+        throw std::bad_alloc();
+    data_ = static_cast<std::byte*>(data);
+}
+
+GrowingMemory::~GrowingMemory() {
+    munmap(data_, capacity_);
+}
+
+std::span<std::byte> GrowingMemory::room() {
+    if (size_ == capacity_)
+        resize(2 * capacity_);
+    return {data_ + size_, capacity_ - size_};
+}
+
+void GrowingMemory::trim() {
+    resize(size_);
+}
+
+void GrowingMemory::resize(std::size_t bytes) {
+    void* moved = mremap(data_, capacity_, bytes, MREMAP_MAYMOVE);
+    if (moved == MAP_FAILED)
+        throw std::bad_alloc();
+    data_ = static_cast<std::byte*>(moved);
+    capacity_ = bytes;
+}
+
+} // namespace lamella

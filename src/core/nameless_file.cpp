@@ -1,0 +1,56 @@
+#include "core/nameless_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+
+namespace lamella {
+namespace {
+
+// The way to an open file that has no other.
+std::string path_of(int descriptor) {
+    return fmt::format("/proc/self/fd/{}", descriptor);
+}
+
+int open_nameless(const std::string& folder, mode_t permissions) {
+    int descriptor = -1;
+    do
+        descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, permissions);
+    while (descriptor < 0 && errno == EINTR);
+    // What file systems and kernels say that cannot do that.
+    if (descriptor < 0 && (errno == EISDIR || errno == EINVAL))
+        errno = EOPNOTSUPP;
+    return descriptor;
+}
+
+} // namespace
+
+int create_nameless(const std::string& folder, mode_t permissions) {
+    const int descriptor = open_nameless(folder, permissions);
+    if (descriptor < 0 || ::access(path_of(descriptor).c_str(), F_OK) == 0)
+        return descriptor;
+    ::close(descriptor); // there is no /proc
+    errno = EOPNOTSUPP;
+    return -1;
+}
+
+bool name_file(int descriptor, const char* name) {
+    return ::linkat(AT_FDCWD, path_of(descriptor).c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+}
+
+int create_scratch(const std::string& folder) {
+    constexpr mode_t only_mine = 0600;
+    const int nameless = open_nameless(folder, only_mine);
+    if (nameless >= 0 || errno != EOPNOTSUPP)
+        return nameless;
+    std::string pattern = folder + "/lamella-XXXXXX";
+    const int named = ::mkostemp(pattern.data(), O_CLOEXEC);
+    if (named >= 0)
+        ::unlink(pattern.c_str());
+    return named;
+}
+
+} // namespace lamella

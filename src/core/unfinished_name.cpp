@@ -1,0 +1,134 @@
+#include "core/unfinished_name.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <ctime>
+#include <memory>
+#include <utility>
+
+namespace lamella {
+
+// The one thing that the library keeps globally: a thread that ends the process cannot ask the others for
+// their objects, which may be in the middle of anything. A list without locks, so that a stuck thread blocks
+// nobody: slots are used again but never freed, and whoever takes a name out of its slot owns it.
+struct UnfinishedName::Slot {
+    std::atomic<const char*> path{nullptr};
+    Slot* next = nullptr;
+};
+
+namespace {
+
+using Slot = UnfinishedName::Slot;
+
+std::atomic<Slot*> slots{nullptr};
+std::atomic<bool> ending{false};
+std::atomic<int> creations{0};
+
+// Stands in the slots that remove_unfinished has been at: nobody may use them again.
+constexpr char taken[] = "";
+
+// Empties the folder once and removes it; false when something has been added meanwhile.
+bool remove_folder(const char* path) noexcept {
+    const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0)
+        return true;
+    alignas(dirent64) char entries[4096];
+    for (;;) {
+        // The bare call: opendir takes memory.
+        const long size = ::syscall(SYS_getdents64, folder, entries, sizeof entries);
+        if (size <= 0)
+            break;
+        for (long at = 0; at < size;) {
+            const char* const entry = entries + at;
+            unsigned short length = 0;
+            std::memcpy(&length, entry + offsetof(dirent64, d_reclen), sizeof length);
+            ::unlinkat(folder, entry + offsetof(dirent64, d_name), 0); // "." and ".." are refused
+            at += length;
+        }
+    }
+    ::close(folder);
+    return ::rmdir(path) == 0 || errno != ENOTEMPTY;
+}
+
+void remove(const char* path) noexcept {
+    if (::unlink(path) == 0 || (errno != EISDIR && errno != EPERM))
+        return;
+    // Entries that are unlinked while a folder is listed may hide others.
+    constexpr int most_attempts = 100;
+    for (int attempt = 0; attempt < most_attempts && !remove_folder(path); ++attempt) {
+    }
+}
+
+} // namespace
+
+UnfinishedName::Creation::Creation() {
+    ++creations;
+    // Either remove_unfinished sees this one, or this sees that it has begun.
+    if (ending) {
+        --creations;
+        throw Error(ErrorKind::cancelled, "cancelled");
+    }
+}
+
+UnfinishedName::Creation::~Creation() {
+    --creations;
+}
+
+bool UnfinishedName::announce(const std::string& path) {
+    auto copy = std::make_unique<char[]>(path.size() + 1);
+    std::memcpy(copy.get(), path.c_str(), path.size() + 1);
+    Slot* slot = slots;
+    for (; slot != nullptr; slot = slot->next) {
+        const char* unused = nullptr;
+        if (slot->path.compare_exchange_strong(unused, copy.get()))
+            break;
+    }
+    if (slot == nullptr) {
+        slot = new Slot;
+        slot->path = copy.get();
+        slot->next = slots;
+        while (!slots.compare_exchange_weak(slot->next, slot)) {
+        }
+    }
+    static_cast<void>(copy.release()); // it belongs to the slot
+    slot_ = slot;
+    // Either remove_unfinished sees the name, or this sees that it has begun.
+    if (!ending)
+        return true;
+    withdraw();
+    return false;
+}
+
+bool UnfinishedName::withdraw() noexcept {
+    if (slot_ == nullptr)
+        return true;
+    const char* const path = std::exchange(slot_, nullptr)->path.exchange(nullptr);
+    if (path == taken)
+        return false;
+    delete[] path;
+    return true;
+}
+
+void remove_unfinished() noexcept {
+    ending = true;
+    // Not for ever: a file system may be stuck, and a thread that has crashed in a creation does not end it.
+    constexpr timespec a_moment{.tv_sec = 0, .tv_nsec = 1'000'000};
+    for (int moments = 0; creations != 0 && moments < 200; ++moments)
+        ::nanosleep(&a_moment, nullptr);
+    for (Slot* slot = slots; slot != nullptr; slot = slot->next) {
+        const char* const path = slot->path.exchange(taken);
+        if (path != nullptr && path != taken)
+            remove(path);
+    }
+}
+
+} // namespace lamella

@@ -1,0 +1,78 @@
+#include "lamella/core/unit_circle.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace lamella {
+
+namespace {
+
+/// 0 <= angle <= pi / 4. Taylor's series: at a quarter of pi the first term left out is below 2^-60.
+CosSin first_octant(double angle) noexcept {
+    const double q = angle * angle;
+    double cosine = 0;
+    double sine = 0;
+    for (int k = 18; k >= 2; k -= 2) {
+        cosine = (1 - cosine) * q / (k * (k - 1));
+        sine = (1 - sine) * q / (k * (k + 1));
+    }
+    return {1 - cosine, angle - angle * sine};
+}
+
+/// Turns the values within an octant (of the angle, or of what it lacks to the next in odd octants) to the
+/// octant where they belong.
+CosSin in_octant(unsigned octant, CosSin v) noexcept {
+    switch (octant) {
+    case 0:
+        return {v.cos, v.sin};
+    case 1:
+        return {v.sin, v.cos};
+    case 2:
+        return {0.0 - v.sin, v.cos};
+    case 3:
+        return {0.0 - v.cos, v.sin};
+    case 4:
+        return {0.0 - v.cos, 0.0 - v.sin};
+    case 5:
+        return {0.0 - v.sin, 0.0 - v.cos};
+    case 6:
+        return {v.sin, 0.0 - v.cos};
+    default:
+        return {v.cos, 0.0 - v.sin};
+    }
+}
+
+} // namespace
+
+CosSin cos_sin_turn(std::uint64_t i, std::uint64_t n) noexcept {
+    i %= n;
+    unsigned octant = 0;
+    // 8 i / n by long division: 8 i itself might overflow.
+    std::uint64_t rest = i;
+    for (int bit = 0; bit < 3; ++bit) {
+        const bool over = rest >= n - rest;
+        rest = over ? rest - (n - rest) : rest + rest;
+        octant = 2 * octant + (over ? 1 : 0);
+    }
+    if (octant % 2 != 0) {
+        if (rest == 0)
+            return in_octant(octant, {std::sqrt(0.5), std::sqrt(0.5)});
+        rest = n - rest;
+    }
+    const double part = static_cast<double>(rest) / static_cast<double>(n);
+    return in_octant(octant, first_octant(part * (std::numbers::pi / 4)));
+}
+
+CosSin cos_sin_degrees(double degrees) noexcept {
+    const double turned = std::fmod(std::fabs(degrees), 360.0); // exact, as is the subtraction below
+    const auto octant = static_cast<unsigned>(turned / 45);
+    double rest = turned - 45 * octant;
+    if (octant % 2 != 0)
+        rest = 45 - rest;
+    CosSin v = in_octant(octant, first_octant(rest * (std::numbers::pi / 180)));
+    if (degrees < 0)
+        v.sin = 0.0 - v.sin;
+    return v;
+}
+
+} // namespace lamella

@@ -1,0 +1,129 @@
+#include "lamella/core/error.hpp"
+
+#include "core/atomic_directory.hpp"
+#include "core/child_process.hpp"
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+bool is_layer(const fs::path& path) {
+    return path.extension() == ".svg";
+}
+
+std::string error_of(const std::string& path) {
+    try {
+        const AtomicDirectory directory(path, is_layer);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::output);
+        return error.what();
+    }
+    return {};
+}
+
+TEST(AtomicDirectory, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
+    const TemporaryFolder folder;
+    const int code = exit_code_of_child([&] {
+        AtomicDirectory done(folder.file("done"), is_layer);
+        done.commit();
+        AtomicDirectory directory(folder.file("out"), is_layer);
+        for (int i = 0; i < 1000; ++i) // more than one reading of a folder gives
+            write_file(directory.working_path() / (std::to_string(i) + ".svg"), "a");
+        remove_unfinished();
+        try {
+            directory.commit();
+        } catch (const Error& error) {
+            _exit(error.kind() == ErrorKind::cancelled ? 0 : 1); // before any destructor
+        }
+        _exit(2);
+    });
+    EXPECT_EQ(code, 0);
+    EXPECT_EQ(folder.entries(), Names{"done"});
+}
+
+TEST(AtomicDirectory, AppearsWholeAtTheEnd) {
+    const TemporaryFolder folder;
+    for (const char* name : {"out", "slashed/"}) {
+        AtomicDirectory directory(folder.file(name), is_layer);
+        write_file(directory.working_path() / "a.svg", "a");
+        EXPECT_FALSE(fs::exists(folder.file(name)));
+        directory.commit();
+        EXPECT_EQ(file_bytes(fs::path(folder.file(name)) / "a.svg"), "a");
+    }
+    EXPECT_EQ(folder.entries(), (Names{"out", "slashed"}));
+}
+
+TEST(AtomicDirectory, LeavesNothingBehindWhenItIsNotEnded) {
+    const TemporaryFolder folder;
+    {
+        const AtomicDirectory directory(folder.file("out"), is_layer);
+        write_file(directory.working_path() / "a.svg", "a");
+    }
+    EXPECT_EQ(folder.entries(), Names{});
+}
+
+TEST(AtomicDirectory, ReplacesAnEmptyFolderAndOneOfItsOwn) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "out");
+    for (const char* name : {"first.svg", "second.svg"}) {
+        AtomicDirectory directory(folder.file("out"), is_layer);
+        write_file(directory.working_path() / name, "x");
+        directory.commit();
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "out"), {}), 1);
+        EXPECT_TRUE(fs::exists(folder.path() / "out" / name));
+    }
+    EXPECT_EQ(folder.entries(), Names{"out"});
+}
+
+TEST(AtomicDirectory, RefusesAFolderWithSomethingElseInIt) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "out");
+    write_file(folder.path() / "out" / "thesis.txt", "years of work");
+    EXPECT_NE(error_of(folder.file("out")).find("thesis.txt"), std::string::npos);
+    EXPECT_EQ(file_bytes(folder.path() / "out" / "thesis.txt"), "years of work");
+}
+
+TEST(AtomicDirectory, LooksAgainBeforeItReplaces) {
+    const TemporaryFolder folder;
+    {
+        AtomicDirectory directory(folder.file("out"), is_layer);
+        fs::create_directory(folder.path() / "out");
+        write_file(folder.path() / "out" / "thesis.txt", "put there meanwhile");
+        EXPECT_THROW(directory.commit(), Error);
+    }
+    EXPECT_EQ(file_bytes(folder.path() / "out" / "thesis.txt"), "put there meanwhile");
+    EXPECT_EQ(folder.entries(), Names{"out"});
+}
+
+TEST(AtomicDirectory, SaysWhatIsWrongWithThePlace) {
+    const TemporaryFolder folder;
+    write_file(folder.file("file"), "x");
+    EXPECT_NE(error_of(folder.file("file")).find("it is a file"), std::string::npos);
+    EXPECT_NE(error_of(folder.file("file/out")).find("is a file, not a folder"), std::string::npos);
+    EXPECT_NE(error_of(folder.file("no/out")).find("does not exist"), std::string::npos);
+    EXPECT_NE(error_of("").find("without a name"), std::string::npos);
+}
+
+TEST(AtomicDirectory, KeepsASymbolicLinkToAFolder) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "real");
+    fs::create_directory_symlink("real", folder.path() / "link");
+    AtomicDirectory directory(folder.file("link"), is_layer);
+    write_file(directory.working_path() / "a.svg", "a");
+    directory.commit();
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+    EXPECT_TRUE(fs::exists(folder.path() / "real" / "a.svg"));
+}
+
+} // namespace
+} // namespace lamella

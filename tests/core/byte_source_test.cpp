@@ -1,0 +1,208 @@
+#include "lamella/core/error.hpp"
+
+#include "core/byte_source.hpp"
+#include "temporary_folder.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <future>
+
+namespace lamella {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ByteSourceTest : public testing::Test {
+  protected:
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
+
+    /// Returns the path.
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(path(name), std::ios::binary) << text;
+        return path(name);
+    }
+
+  private:
+    TemporaryFolder folder_;
+};
+
+std::string text_of(const ByteSource& source) {
+    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
+}
+
+/// What the error says; fails the test when there is none or it is of another kind.
+std::string error_of(const std::function<void()>& action, ErrorKind kind = ErrorKind::input) {
+    try {
+        action();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind) << error.what();
+        return error.what();
+    }
+    ADD_FAILURE() << "no error";
+    return {};
+}
+
+/// Standard input comes from `descriptor` while this lives.
+class RedirectedInput {
+  public:
+    explicit RedirectedInput(int descriptor) : saved_(dup(STDIN_FILENO)) { dup2(descriptor, STDIN_FILENO); }
+    ~RedirectedInput() {
+        dup2(saved_, STDIN_FILENO);
+        close(saved_);
+    }
+    RedirectedInput(const RedirectedInput&) = delete;
+    RedirectedInput& operator=(const RedirectedInput&) = delete;
+
+  private:
+    int saved_;
+};
+
+std::string some_text(std::size_t size) {
+    std::string text(size, ' ');
+    for (std::size_t i = 0; i < size; ++i)
+        text[i] = static_cast<char>('a' + i * i % 23);
+    return text;
+}
+
+TEST_F(ByteSourceTest, GivesTheBytesOfAFile) {
+    const ByteSource source = open_bytes(write("part", "seven b"));
+    EXPECT_EQ(text_of(source), "seven b");
+    EXPECT_EQ(source.name, path("part"));
+}
+
+TEST_F(ByteSourceTest, KeepsTheBytesOfADeletedFileAsLongAsACopyLives) {
+    ByteSource copy;
+    {
+        const ByteSource source = open_bytes(write("part", "still here"));
+        copy = source;
+    }
+    fs::remove(path("part"));
+    EXPECT_EQ(text_of(copy), "still here");
+    const std::weak_ptr<const void> watch = copy.owner;
+    copy = {};
+    EXPECT_TRUE(watch.expired());
+}
+
+TEST_F(ByteSourceTest, LeavesNoDescriptorOpen) {
+    const std::string file = write("part", "x");
+    const auto open_descriptors = [] {
+        return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+    };
+    const auto before = open_descriptors();
+    const ByteSource source = open_bytes(file);
+    error_of([&] { (void)open_bytes(path("")); });
+    EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST_F(ByteSourceTest, OpensFilesBeyondFourGigabytes) {
+    constexpr std::uint64_t size = (std::uint64_t{5} << 30) + 3;
+    const std::string file = write("huge", "first");
+    std::error_code failed;
+    fs::resize_file(file, size, failed);
+    if (failed)
+        GTEST_SKIP() << "no sparse files here: " << failed.message();
+    {
+        std::fstream out(file, std::ios::binary | std::ios::in | std::ios::out);
+        out.seekp(static_cast<std::streamoff>(size - 4));
+        out << "last";
+    }
+    const ByteSource source = open_bytes(file);
+    ASSERT_EQ(source.bytes.size(), size);
+    EXPECT_EQ(std::memcmp(source.bytes.data(), "first", 5), 0);
+    EXPECT_EQ(std::memcmp(source.bytes.data() + size - 4, "last", 4), 0);
+}
+
+TEST_F(ByteSourceTest, ReadsAPipeToItsEnd) {
+    // More than a pipe holds, more than the first buffer, and not a multiple of anything.
+    const std::string sent = some_text(3'333'333);
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    const auto writer = std::async(std::launch::async, [&] { write("pipe", sent); });
+    const ByteSource source = open_bytes(path("pipe"));
+    EXPECT_EQ(text_of(source), sent);
+}
+
+TEST_F(ByteSourceTest, ReadsStandardInputFromAPipe) {
+    const std::string sent = some_text(200'000);
+    std::array<int, 2> ends{};
+    ASSERT_EQ(pipe(ends.data()), 0);
+    const auto writer = std::async(std::launch::async, [&] {
+        std::size_t done = 0;
+        while (done < sent.size()) {
+            const ssize_t wrote = ::write(ends[1], sent.data() + done, sent.size() - done);
+            if (wrote <= 0)
+                break;
+            done += static_cast<std::size_t>(wrote);
+        }
+        close(ends[1]);
+    });
+    const RedirectedInput input(ends[0]);
+    close(ends[0]);
+    const ByteSource source = open_bytes("-");
+    EXPECT_EQ(text_of(source), sent);
+    EXPECT_EQ(source.name, "standard input");
+}
+
+TEST_F(ByteSourceTest, ReadsOnlyWhatIsLeftOfAHalfReadStandardInput) {
+    const int file = open(write("part", "head tail").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_GE(file, 0);
+    const RedirectedInput input(file);
+    EXPECT_EQ(text_of(open_bytes("-")), "head tail");
+    ASSERT_EQ(lseek(file, 5, SEEK_SET), 5);
+    EXPECT_EQ(text_of(open_bytes("-")), "tail");
+    close(file);
+}
+
+TEST_F(ByteSourceTest, ReadsFilesThatClaimToHaveNoBytes) {
+    EXPECT_FALSE(open_bytes("/proc/self/status").bytes.empty());
+}
+
+TEST_F(ByteSourceTest, StopsWaitingForAPipeWhenAsked) {
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    CancelFlag stop;
+    const auto stopper = std::async(std::launch::async, [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        stop.request();
+    });
+    error_of([&] { (void)open_bytes(path("pipe"), {.cancel = &stop}); }, ErrorKind::cancelled);
+}
+
+TEST_F(ByteSourceTest, NamesWhatIsWrongWithAPath) {
+    EXPECT_EQ(error_of([&] { (void)open_bytes(path("none")); }), path("none") + ": there is no such file");
+    EXPECT_EQ(error_of([&] { (void)open_bytes(write("file", "x") + "/part"); }),
+              path("file/part") + ": there is no such file");
+    EXPECT_EQ(error_of([&] { (void)open_bytes(path("")); }), path("") + ": is a directory, expected a file");
+    EXPECT_EQ(error_of([&] { (void)open_bytes(write("empty", "")); }),
+              path("empty") + ": is empty, expected a file with content");
+    EXPECT_EQ(error_of([&] { (void)open_bytes("/dev/zero"); }),
+              "/dev/zero: is a device, expected a file or a pipe");
+    EXPECT_EQ(error_of([&] { (void)copy_bytes({}, "memory"); }),
+              "memory: is empty, expected a file with content");
+}
+
+TEST_F(ByteSourceTest, NamesAFileThatMayNotBeRead) {
+    if (geteuid() == 0)
+        GTEST_SKIP() << "root may read everything";
+    const std::string file = write("secret", "x");
+    fs::permissions(file, fs::perms::none);
+    EXPECT_EQ(error_of([&] { (void)open_bytes(file); }), file + ": no permission to read this file");
+}
+
+TEST_F(ByteSourceTest, CopiesMemory) {
+    std::string text = "mine";
+    const ByteSource source = copy_bytes(std::as_bytes(std::span(text)), "memory");
+    text = "gone";
+    EXPECT_EQ(text_of(source), "mine");
+    EXPECT_EQ(source.name, "memory");
+}
+
+} // namespace
+} // namespace lamella
