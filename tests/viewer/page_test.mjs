@@ -1,7 +1,7 @@
 // Pages of lamella view, slice --report and info --report in a browser.
 
 import assert from 'node:assert/strict';
-import { writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { colourOf, file, lamella, open, pixelsNear, settled, shown, startBrowser, stopBrowser, tasks, until } from './browser.mjs';
 
@@ -20,6 +20,23 @@ function boxTriangles() {
   return faces.flatMap(([a, b, c, d]) => [[p[a], p[b], p[c]], [p[a], p[c], p[d]]]);
 }
 
+/** Pixels of the colour of the walls and of the outside, counted in what is on the screen. */
+async function bluePixels(page, canvas) {
+  await settled(page);
+  const picture = (await canvas.screenshot()).toString('base64');
+  return page.evaluate(async (picture) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${picture}`;
+    await image.decode();
+    const ctx = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    ctx.drawImage(image, 0, 0);
+    const { data } = ctx.getImageData(0, 0, image.width, image.height);
+    let n = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i + 2] > data[i] + 30) ++n;
+    return n;
+  }, picture);
+}
+
 before(async () => {
   lamella('make', 'rook', '-o', 'rook.stl');
   lamella('make', 'box', '--size', '20,30,10', '-o', 'box.stl');
@@ -29,6 +46,14 @@ before(async () => {
   lamella('view', 'box.stl');
   lamella('view', 'open.stl');
   lamella('info', 'open.stl', '--report', 'open_mesh.html');
+  lamella('make', 'sphere', '--ascii', '--detail', '3', '-o', 'ball.stl');
+  // 1,280 facets of seven lines between the first and the last: without the one that is farthest from the eye at first.
+  const ball = readFileSync(file('ball.stl'), 'utf8').trimEnd().split('\n');
+  const facets = Array.from({ length: 1280 }, (_, t) => ball.slice(1 + 7 * t, 8 + 7 * t));
+  const depth = (facet) => facet.flatMap((line) => line.match(/vertex (\S+) (\S+) (\S+)/)?.slice(1).map(Number) ?? []).reduce((sum, c, i) => sum + c * [0.62, -1, 0.62][i % 3], 0);
+  facets.sort((a, b) => depth(a) - depth(b)).shift();
+  writeFileSync(file('torn.stl'), [ball[0], ...facets.flat(), ball.at(-1), ''].join('\n'));
+  lamella('info', 'torn.stl', '--report', 'torn_mesh.html');
   lamella('slice', 'rook.stl', '-o', 'rook.cli', '--report', 'report.html');
   await startBrowser();
 });
@@ -236,27 +261,22 @@ test('the defects of a mesh are listed and can be gone to', async () => {
   await close();
 });
 
+test('a defect on the far side is seen from there', async () => {
+  const { page, close } = await open('torn_mesh.html', { view: null });
+  await page.waitForSelector('canvas[data-ready]');
+  await page.getByRole('button', { name: /rim of 3 edges/ }).click();
+  const canvas = page.locator('canvas[data-ready]');
+  const { width, height } = await canvas.boundingBox();
+  assert.ok((await bluePixels(page, canvas)) > 0.5 * width * height); // the outside, not the inside through the ball
+  await close();
+});
+
 test('the stack shows the layers up to the one that is chosen', async () => {
   const { page, complaints, close } = await open('box.html', { view: 'stack' });
   await page.waitForSelector('canvas[data-built]');
   await page.getByRole('button', { name: 'Layers above' }).click();
   await page.getByRole('button', { name: 'Front' }).click();
-  /** Pixels of the colour of the walls, counted in what is on the screen. */
-  const blue = async () => {
-    await settled(page);
-    const picture = (await page.locator('canvas[data-built]').screenshot()).toString('base64');
-    return page.evaluate(async (picture) => {
-      const image = new Image();
-      image.src = `data:image/png;base64,${picture}`;
-      await image.decode();
-      const ctx = new OffscreenCanvas(image.width, image.height).getContext('2d');
-      ctx.drawImage(image, 0, 0);
-      const { data } = ctx.getImageData(0, 0, image.width, image.height);
-      let n = 0;
-      for (let i = 0; i < data.length; i += 4) if (data[i + 2] > data[i] + 30) ++n;
-      return n;
-    }, picture);
-  };
+  const blue = () => bluePixels(page, page.locator('canvas[data-built]'));
   const heights = [];
   // The eye is at half the height: from there up nothing of the flat top is seen.
   for (const layer of [49, 74, 99]) {

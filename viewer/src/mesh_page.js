@@ -23,7 +23,7 @@ export async function buildMeshPage(page, store, main, help) {
   const diagonal = Math.hypot(...page.head.box[0].map((low, k) => page.head.box[1][k] - low));
   let view = null;
   const panels = meshPanels(page, store, {
-    place: (place) => view?.lookAt(middleOf(place), Math.max(1.5 * reachOf(place), diagonal / 40)),
+    place: (place) => view?.lookAtOutside(middleOf(place), Math.max(1.5 * reachOf(place), diagonal / 40)),
     shell: (shell, box) => {
       store.set({ shell });
       if (shell === null) view?.fit();

@@ -96,9 +96,35 @@ export class MeshView {
     this.#space.paint(theme);
   }
 
-  /** @param {number[]} place mm of the part's coordinates @param {number} [reach] mm around it */
-  lookAt(place, reach = this.#space.reach / 6) {
-    this.#space.lookAt(new Vector3(...place.map((value, k) => value - this.#origin[k])), reach);
+  /** @param {number[]} place mm of the part's coordinates @param {number} reach mm around it */
+  lookAt(place, reach) {
+    this.#space.lookAt(this.#inScene(place), reach);
+  }
+
+  /** From where the outside of the surface around the place faces. */
+  lookAtOutside(place, reach) {
+    const middle = this.#inScene(place);
+    this.#space.lookAt(middle, reach, this.#outwards(middle, reach));
+  }
+
+  #inScene(place) {
+    return new Vector3(...place.map((value, k) => value - this.#origin[k]));
+  }
+
+  /** The mean normal of the triangles with a corner near the place; undefined where they face all ways. */
+  #outwards(middle, reach) {
+    const { vertices, triangles } = this.#mesh;
+    const corners = [new Vector3(), new Vector3(), new Vector3()];
+    const sum = new Vector3();
+    let area = 0;
+    for (let t = 0; t < triangles.length; t += 3) {
+      corners.forEach((corner, k) => corner.fromArray(vertices, 3 * triangles[t + k]));
+      if (!corners.some((corner) => corner.distanceToSquared(middle) < reach * reach)) continue;
+      const normal = corners[1].clone().sub(corners[0]).cross(corners[2].clone().sub(corners[0]));
+      sum.add(normal);
+      area += normal.length();
+    }
+    return sum.length() > area / 10 ? sum : undefined;
   }
 
   turnBy(sideways, upwards) {

@@ -110,9 +110,14 @@ export class Space {
     this.#lookFrom(new Vector3(...views[name]).normalize(), this.middle, this.reach);
   }
 
-  /** @param {number} reach mm around the place that shall be seen */
-  lookAt(place, reach) {
-    this.#lookFrom(this.camera.position.clone().sub(this.controls.target).normalize(), place, reach);
+  /**
+   * @param {number} reach mm around the place that shall be seen
+   * @param {Vector3} [from] direction to look from; as now unless given
+   */
+  lookAt(place, reach, from = this.camera.position.clone().sub(this.controls.target)) {
+    const direction = from.clone().normalize();
+    if (Math.hypot(direction.x, direction.y) < 0.001) direction.y -= 0.001; // what is up on the screen must be known
+    this.#lookFrom(direction, place, reach);
   }
 
   #lookFrom(direction, target, reach) {
