@@ -2,7 +2,6 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/write/defect_picture.hpp"
 #include "lamella/write/layer_page.hpp"
 
 #include "command_line.hpp"
@@ -36,7 +35,6 @@ struct InfoArguments {
     bool json = false;
     bool strict = false;
     bool self_intersections = false;
-    std::string picture;
     std::string report;
     PlacementOptions placement; ///< the unit only
     ReadLimits limits;
@@ -52,19 +50,15 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     const IndexedMesh mesh = weld(joined(plate, execution), execution);
     DiagnosisOptions options;
     options.self_intersections = arguments.self_intersections;
-    if (!arguments.picture.empty())
-        options.keep = picture_places;
     if (!arguments.report.empty())
-        options.keep = std::max(options.keep, page_places);
+        options.keep = page_places;
     const Diagnosis found = diagnose(mesh, options, execution);
-    if (!arguments.picture.empty())
-        write_text_file(arguments.picture, defect_picture(mesh, found, execution));
     if (!arguments.report.empty())
         write_mesh_page(arguments.report, mesh, found, mesh_notes(file, found), page_options(file.path),
                         execution);
     const std::string text =
         arguments.json ? json_text(mesh_json(file, found, plate)) : mesh_text(file, found, plate);
-    if (arguments.picture == "-" || arguments.report == "-")
+    if (arguments.report == "-")
         context.messages.note(text);
     else
         context.messages.result(text);
@@ -130,11 +124,11 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
     if (arguments.placement.given())
         throw Error(ErrorKind::usage,
                     fmt::format("{}: --unit is for meshes; a slice file knows its unit", file.path));
-    if (arguments.self_intersections || !arguments.picture.empty() || !arguments.report.empty())
+    if (arguments.self_intersections || !arguments.report.empty())
         throw Error(
             ErrorKind::usage,
-            fmt::format("{}: --self-intersections, --picture and --report are for meshes; lamella view "
-                        "writes a page of a slice file",
+            fmt::format("{}: --self-intersections and --report are for meshes; lamella view writes a page of "
+                        "a slice file",
                         file.path));
     const Figures figures = figures_of(file);
     context.messages.result(arguments.json ? json_text(layers_json(file, figures))
@@ -175,24 +169,23 @@ Command info_command() {
                           [arguments](const std::string& text) {
                               arguments->input = text;
                           }}},
-        .groups =
-            {{"What is told",
-              {flag("json", "print JSON", arguments->json),
-               flag("self-intersections",
-                    "look for triangles that cross, overlap or touch one another, too (takes longer)",
-                    arguments->self_intersections),
-               output_file("picture", "draw the mesh with its defects marked, as SVG", arguments->picture),
-               output_file("report", "write a page to look at the mesh, its shells and its defects (HTML)",
-                           arguments->report),
-               unit_option(arguments->placement.unit),
-               flag("strict", "exit with code 4 where there is any defect", arguments->strict)}},
-             run_options(arguments->run,
-                         {include_option(arguments->limits), max_triangles_option(arguments->limits),
-                          max_memory_option(arguments->limits, "what is read takes")}),
-             common_options(true)},
+        .groups = {{"What is told",
+                    {flag("json", "print JSON", arguments->json),
+                     flag("self-intersections",
+                          "look for triangles that cross, overlap or touch one another, too (takes longer)",
+                          arguments->self_intersections),
+                     output_file("report",
+                                 "write a page to look at the mesh, its shells and its defects (HTML)",
+                                 arguments->report),
+                     unit_option(arguments->placement.unit),
+                     flag("strict", "exit with code 4 where there is any defect", arguments->strict)}},
+                   run_options(arguments->run,
+                               {include_option(arguments->limits), max_triangles_option(arguments->limits),
+                                max_memory_option(arguments->limits, "what is read takes")}),
+                   common_options(true)},
         .examples = {{"lamella info part.stl", "is it closed, how large is it?"},
-                     {"lamella info scan.stl --self-intersections --picture scan.svg",
-                      "everything that may be wrong, and a drawing of where"},
+                     {"lamella info scan.stl --self-intersections --report scan.html",
+                      "everything that may be wrong, and a page that shows where"},
                      {"lamella info part.cli --json", "for programs"}},
         .run = [arguments](const Context& context) {
             return run_info(*arguments, context);

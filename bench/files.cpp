@@ -127,7 +127,7 @@ int report(int argc, char** argv) {
     const Options options(
         argc, argv,
         "files [--parts sheet-1225,sheet-1225-shuffled,sheet-100-on-edge,rook,lattice] "
-        "[--formats cli,cli-ascii,svg,slc,json,npz,3mf,dxf,geojson,wkt] [--rounds 3] [--seconds 20]");
+        "[--formats cli,cli-ascii,svg,slc,json,npz,3mf,dxf,geojson] [--rounds 3] [--seconds 20]");
     const int rounds = options.rounds();
     const double limit = options.number("--seconds");
     const std::vector<std::string> formats = options.list("--formats");

@@ -1,17 +1,15 @@
-// Prints the section areas of an STL file of any size, one line for each layer: straight from the triangles,
-// batch by batch, without any of what slicing does.
+// Prints the section areas of a binary STL file of any size, one line for each layer: straight from the
+// triangles, which stay in the file, without any of what slicing does.
 //
 //     stream_areas FILE LAYER_HEIGHT
 
 #include <lamella/core/error.hpp>
-#include <lamella/read/mesh_input.hpp>
+#include <lamella/read/mesh_file.hpp>
 #include <lamella/slicing/plan.hpp>
-#include <lamella/slicing/section_sum.hpp>
+#include <lamella/slicing/slice.hpp>
 
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
-#include <vector>
 
 int main(int argc, char** argv) {
     using namespace lamella;
@@ -20,18 +18,10 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        const MeshInput input(argv[1]);
-        std::mutex mutex;
-        Box3 box;
-        input.stream([&](const TriangleSoup& batch, std::uint64_t) {
-            const Box3 of_batch = bounding_box(batch, {.threads = 1});
-            const std::lock_guard lock(mutex);
-            box.add(of_batch);
-        });
+        const MeshFile file = read_mesh(argv[1]);
+        const Box3 box = bounding_box(file.mesh());
         const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = std::atof(argv[2])});
-        SectionSum sum(plan, {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, 0});
-        input.stream([&](const TriangleSoup& batch, std::uint64_t) { sum.add(batch); });
-        for (const double area : sum.areas())
+        for (const double area : section_areas(file.mesh(), plan))
             std::printf("%.17g\n", area);
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());

@@ -53,7 +53,6 @@
 // Files of layers, meshes, pictures and pages.
 #include "lamella/raster/picture.hpp"
 #include "lamella/read/layer_file.hpp"
-#include "lamella/write/defect_picture.hpp"
 #include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"

@@ -9,11 +9,11 @@
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 #include "lamella/slicing/plan.hpp"
-#include "lamella/slicing/slabs.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "pipeline/job_memory.hpp"
 #include "pipeline/share_store.hpp"
+#include "slicing/slabs.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,7 @@
 #include "pipeline/job_memory.hpp"
 
-#include "lamella/slicing/slabs.hpp"
-
 #include "core/memory_size.hpp"
+#include "slicing/slabs.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
-#include "lamella/slicing/slabs.hpp"
+#include "lamella/slicing/plan.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "container/byte_store.hpp"

@@ -1,8 +1,7 @@
 #include "pipeline/plate_slicing.hpp"
 
-#include "lamella/slicing/slabs.hpp"
-
 #include "core/executor.hpp"
+#include "slicing/slabs.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,11 +4,11 @@
 
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/slicing/plan.hpp"
-#include "lamella/slicing/slabs.hpp"
 
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "core/spill_file.hpp"
+#include "slicing/slabs.hpp"
 
 #include <atomic>
 #include <cstddef>

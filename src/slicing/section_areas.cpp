@@ -1,10 +1,8 @@
-#include "lamella/slicing/section_sum.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "core/executor.hpp"
 #include "slicing/edge_cut.hpp"
 #include "slicing/ranks.hpp"
-#include "slicing/tallies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -72,33 +70,6 @@ std::vector<double> section_areas(const Mesh& mesh, const Plan& plan, const Exec
     for (const std::vector<double>& part : parts)
         for (std::size_t i = 0; i < areas.size(); ++i)
             areas[i] += part[i] / 2;
-    return areas;
-}
-
-struct SectionSum::State {
-    State(const Plan& plan, const Point3& middle)
-        : ranks(plan), origin(middle), twice(std::vector<double>(ranks.count(), 0)) {}
-
-    Ranks ranks;
-    Point3 origin;
-    Tallies<std::vector<double>> twice;
-};
-
-SectionSum::SectionSum(const Plan& plan, const Point3& middle)
-    : state_(std::make_unique<State>(plan, middle)) {}
-SectionSum::~SectionSum() = default;
-
-void SectionSum::add(const Mesh& batch) {
-    state_->twice.add([&](std::vector<double>& twice) {
-        add_sections(batch, state_->ranks, state_->origin, 0, batch.size(), twice);
-    });
-}
-
-std::vector<double> SectionSum::areas() const {
-    std::vector<double> areas(state_->ranks.count(), 0);
-    for (const std::vector<double>& twice : state_->twice.all())
-        for (std::size_t i = 0; i < areas.size(); ++i)
-            areas[i] += twice[i] / 2;
     return areas;
 }
 

@@ -1,4 +1,4 @@
-#include "lamella/slicing/slabs.hpp"
+#include "slicing/slabs.hpp"
 
 #include "lamella/core/error.hpp"
 

@@ -22,15 +22,6 @@
 
 namespace lamella {
 
-/// The planes [begin, end) of a plan, by their positions in it; those of a slab, for example.
-struct PlaneRange {
-    std::uint32_t begin = 0;
-    std::uint32_t end = 0;
-
-    [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
-    friend bool operator==(const PlaneRange&, const PlaneRange&) = default;
-};
-
 /// The plan of a slab.
 [[nodiscard]] Plan part_of(const Plan& plan, PlaneRange slab);
 

@@ -17,7 +17,6 @@
 #include "write/slc.hpp"
 #include "write/slices_3mf.hpp"
 #include "write/strict_writer.hpp"
-#include "write/wkt.hpp"
 
 #include <fmt/format.h>
 
@@ -86,12 +85,6 @@ constexpr std::array formats{
                 .extension = ".geojson",
                 .summary = "GeoJSON, one feature per layer; coordinates to 0.001 mm",
                 .open = open_geojson,
-                .pieces = true,
-                .rounding = text_rounding},
-    LayerFormat{.name = "wkt",
-                .extension = ".csv",
-                .summary = "CSV with the layers as well-known text; coordinates to 0.001 mm",
-                .open = open_wkt,
                 .pieces = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "json",

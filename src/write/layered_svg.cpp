@@ -55,9 +55,9 @@ std::string height_text(double mm) {
 
 class LayeredSvgWriter final : public SequentialWriter {
   public:
-    LayeredSvgWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
+    LayeredSvgWriter(const std::string& path, const LayerFileInfo& info)
         : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = false}),
-          origin_(steps_below(info.box.min)), legacy_z_(options.slic3r_legacy_z) {
+          origin_(steps_below(info.box.min)) {
         for (const PartInfo& part : info.parts)
             part_heads_.push_back(fmt::format("    <g data-lamella-part=\"{}\" data-lamella-label=\"{}\">\n",
                                               part_heads_.size() + 1, xml_escaped(part.label)));
@@ -85,8 +85,6 @@ class LayeredSvgWriter final : public SequentialWriter {
     }
 
     std::string layer_head(const Place& place) override {
-        if (legacy_z_) // the cut, in Slic3r's scaled units taken for unscaled ones
-            return fmt::format("  <g id=\"layer{}\" slic3r:z=\"{}\">\n", place.position, place.z * 1e-6);
         return fmt::format(
             "  <g id=\"layer{}\" slic3r:z=\"{}\" slic3r:slice-z=\"{}\" slic3r:layer-height=\"{}\">\n",
             place.position, height_text(place.top), height_text(place.z),
@@ -140,7 +138,6 @@ class LayeredSvgWriter final : public SequentialWriter {
 
     GridPoint origin_;
     std::vector<std::string> part_heads_; ///< used where there are several
-    bool legacy_z_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 
@@ -254,8 +251,8 @@ class SvgLayersWriter final : public LayerWriter {
 } // namespace
 
 std::unique_ptr<LayerWriter> open_layered_svg(const std::string& path, const LayerFileInfo& info,
-                                              const LayerWriteOptions& options) {
-    return std::make_unique<LayeredSvgWriter>(path, info, options);
+                                              const LayerWriteOptions& /*options*/) {
+    return std::make_unique<LayeredSvgWriter>(path, info);
 }
 
 std::unique_ptr<LayerWriter> open_svg_layers(const std::string& path, const LayerFileInfo& info,

@@ -34,10 +34,6 @@ std::string json_quoted(std::string_view text) {
            '"';
 }
 
-std::string csv_quoted(std::string_view text) {
-    return '"' + escaped(text, [](char c) -> std::string_view { return c == '"' ? "\"\"" : ""; }) + '"';
-}
-
 std::string xml_escaped(std::string_view text) {
     return escaped(text, [](char c) -> std::string_view {
         switch (c) {

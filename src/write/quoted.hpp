@@ -9,8 +9,6 @@ namespace lamella {
 
 /// With quotation marks.
 [[nodiscard]] std::string json_quoted(std::string_view text);
-/// With quotation marks.
-[[nodiscard]] std::string csv_quoted(std::string_view text);
 /// Without quotation marks, for text and attributes.
 [[nodiscard]] std::string xml_escaped(std::string_view text);
 

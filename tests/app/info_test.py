@@ -106,17 +106,6 @@ class Info(ProgramTest):
         self.assertRegex(text, r"\d+ crossings: .*pass through")
         self.assertRegex(text, r"1 pair of shells")
 
-    def test_a_picture(self):
-        self.write("open.stl", binary_stl(open_box(20, 30, 10)))
-        self.succeed("info", "open.stl", "--picture", "open.svg")
-        svg = self.bytes_of("open.svg").decode()
-        self.assertTrue(svg.startswith("<svg ") and svg.endswith("</svg>\n"))
-        self.assertIn("1 boundary loops", svg)
-        self.fail_with(2, "open.stl", "info", "open.stl", "--picture", "open.stl")
-        self.fail_with(6, "nowhere", "info", "open.stl", "--picture", "nowhere/open.svg")
-        self.succeed("slice", self.box(), "-o", "box.cli", "--layer-height", "1")
-        self.fail_with(2, "for meshes", "info", "box.cli", "--picture", "box.svg")
-
     def test_strict_turns_a_defect_into_an_exit_code(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))
         result = self.run_program("info", "--strict", "open.stl")

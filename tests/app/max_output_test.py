@@ -2,7 +2,7 @@
 
 from program import ProgramTest, main
 
-FORMATS = ["cli", "cli-ascii", "svg", "slc", "3mf", "dxf", "geojson", "wkt", "json", "npz", "svg-layers", "png",
+FORMATS = ["cli", "cli-ascii", "svg", "slc", "3mf", "dxf", "geojson", "json", "npz", "svg-layers", "png",
            "png-zip", "sl1", "sl1s"]
 
 

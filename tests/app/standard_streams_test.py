@@ -134,10 +134,6 @@ class StandardStreams(ProgramTest):
     def test_only_one_can_write_standard_output(self):
         self.fail_with(2, "--output - and --report - contradict.*standard output", "slice", "box.stl", "-o", "-", "--format", "cli",
                        "--report", "-")
-        self.fail_with(2, "--picture - and --report - contradict.*standard output", "info", "box.stl", "--picture", "-", "--report", "-")
-        picture = self.succeed("info", "box.stl", "--picture", "-")
-        self.assertTrue(picture.out.startswith(b"<"))
-        self.assertIn("box.stl", picture.err)
 
 
 if __name__ == "__main__":

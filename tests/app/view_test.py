@@ -87,6 +87,9 @@ class View(ProgramTest):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))
         self.succeed("view", "open.stl")
         self.succeed("info", "open.stl", "--report", "mesh.html")
+        streamed = self.succeed("info", "open.stl", "--report", "-")
+        self.assertEqual(streamed.out, self.bytes_of("mesh.html"))
+        self.assertIn("4 boundary edges", streamed.err)
         for name in ("open.html", "mesh.html"):
             notes = element(self.page(name), "notes")
             places = notes["places"]

@@ -18,7 +18,7 @@ from program import ProgramTest, binary_stl, box_triangles  # noqa: E402
 
 INJECTOR = os.environ.get("LAMELLA_FAULT_INJECTOR", "")
 AT_LENGTH = "LAMELLA_FAULTS_AT_LENGTH" in os.environ
-FORMATS = ["cli", "cli-ascii", "svg", "slc", "3mf", "dxf", "geojson", "wkt", "json", "npz", "svg-layers", "png",
+FORMATS = ["cli", "cli-ascii", "svg", "slc", "3mf", "dxf", "geojson", "json", "npz", "svg-layers", "png",
            "png-zip", "sl1", "sl1s"]
 LEAN_FORMATS = ["cli", "3mf", "npz", "svg-layers", "sl1"]
 # What can befall an operation on an output, and whether the program has to get over it.

@@ -20,8 +20,6 @@ PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
 PICTURES = {
     "tutorial_layer.svg": "lamella make rook && lamella slice rook.stl -o layers --format svg-layers --layers 485:486",
-    "tutorial_torn.svg": "lamella make sphere --ascii --detail 3 -o ball.stl && sed 702,708d ball.stl > torn.stl && "
-                         "lamella info torn.stl --picture torn.svg",
 }
 
 

@@ -1,5 +1,4 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/slicing/section_sum.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "expect_error.hpp"
@@ -115,22 +114,6 @@ TEST(SectionAreas, EndWhenTheCallerCancels) {
     stop.request();
     test::expect_error(ErrorKind::cancelled, {},
                        [&] { (void)section_areas(make_sphere(1, 3), plan_listed({0}), {.cancel = &stop}); });
-}
-
-TEST(SectionAreas, AddUpFromBatches) {
-    const TriangleSoup soup = make_torus(6, 2, 60, 40);
-    const Plan plan = plan_uniform(-2, 2, {.layer_height = 0.25});
-    const std::vector<double> whole = section_areas(soup, plan);
-    SectionSum sum(plan, {100, -50, 0});
-    for (std::size_t begin = 0; begin < soup.size(); begin += 97) {
-        std::vector<Triangle3f> batch;
-        for (std::size_t i = begin; i < std::min(soup.size(), begin + 97); ++i)
-            batch.push_back(soup.stored(i));
-        sum.add(TriangleSoup(std::move(batch)));
-    }
-    ASSERT_EQ(sum.areas().size(), whole.size());
-    for (std::size_t p = 0; p < whole.size(); ++p)
-        EXPECT_NEAR(sum.areas()[p], whole[p], 1e-9);
 }
 
 } // namespace

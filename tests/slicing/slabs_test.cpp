@@ -1,6 +1,5 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/transform.hpp"
-#include "lamella/slicing/slabs.hpp"
 
 #include "even_planes.hpp"
 #include "expect_error.hpp"
@@ -10,6 +9,7 @@
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/ranks.hpp"
+#include "slicing/slabs.hpp"
 
 #include <gtest/gtest.h>
 

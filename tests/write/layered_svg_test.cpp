@@ -42,12 +42,6 @@ TEST(LayeredSvg, HasTheseBytes) {
             polygons + "</svg>\n");
 }
 
-TEST(LayeredSvg, WritesTheCutTimesAMillionthForLegacyReaders) {
-    const std::string text = svg(square_with_hole(), {.slic3r_legacy_z = true});
-    EXPECT_TRUE(contains(text, "<g id=\"layer0\" slic3r:z=\"2.5e-07\">"));
-    EXPECT_TRUE(contains(text, "<g id=\"layer1\" slic3r:z=\"7.5e-07\">"));
-}
-
 TEST(LayeredSvg, CountsFromTheCornerOfTheBox) {
     LayerBuilder builder;
     add_contour(builder, {{-5.0004, 20}, {5, 20}, {5, 30.0126}});

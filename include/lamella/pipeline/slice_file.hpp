@@ -13,7 +13,6 @@
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
-#include "lamella/slicing/slabs.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"

@@ -28,6 +28,15 @@ struct Plan {
     PlaneRule rule = PlaneRule::section_above;
 };
 
+/// The planes [begin, end) of a plan, by their positions in it.
+struct PlaneRange {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
+    friend bool operator==(const PlaneRange&, const PlaneRange&) = default;
+};
+
 /// Layers of one height, the first one possibly of another. Lengths in mm.
 struct UniformLayers {
     double layer_height = 0.1;

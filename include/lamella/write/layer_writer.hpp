@@ -75,8 +75,6 @@ struct LayerWriteOptions {
     double units_mm = usual_units_mm;
     /// Common Layer Interface, binary: 16-bit coordinates; Error{usage} where they do not fit.
     bool short_form = false;
-    /// Layered SVG: write slic3r:z as Slic3r 1.x does (slicing height times 1e-6).
-    bool slic3r_legacy_z = false;
     /// png, png-zip, sl1, sl1s.
     PictureOptions picture = {};
     /// sl1, sl1s.

@@ -2,9 +2,8 @@
 
 // Who works on a task: the worker that sweeps it alone, or all workers of the executor.
 
-#include "lamella/slicing/slabs.hpp"
-
 #include "core/executor.hpp"
+#include "slicing/slabs.hpp"
 #include "slicing/sweep/columns.hpp"
 #include "slicing/sweep/runs.hpp"
 

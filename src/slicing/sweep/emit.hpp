@@ -7,7 +7,6 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/slicing/plan.hpp"
-#include "lamella/slicing/slabs.hpp"
 
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/crew.hpp"

@@ -3,7 +3,7 @@
 // Measuring: for each plane of a run the points are computed, in the cache, only to learn where the ring
 // starts in normal form and how many points it keeps.
 
-#include "lamella/slicing/slabs.hpp"
+#include "lamella/slicing/plan.hpp"
 
 #include "core/executor.hpp"
 #include "slicing/ranks.hpp"

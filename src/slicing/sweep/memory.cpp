@@ -1,5 +1,4 @@
-#include "lamella/slicing/slabs.hpp"
-
+#include "slicing/slabs.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 // successor. All planes up to there are a run.
 
 #include "lamella/core/point.hpp"
-#include "lamella/slicing/slabs.hpp"
+#include "lamella/slicing/plan.hpp"
 
 #include "slicing/sweep/columns.hpp"
 #include "slicing/sweep/walk.hpp"

@@ -2,7 +2,7 @@
 
 // Who sweeps which planes.
 
-#include "lamella/slicing/slabs.hpp"
+#include "lamella/slicing/plan.hpp"
 
 #include "slicing/sweep/plane_loads.hpp"
 

@@ -4,7 +4,7 @@
 // reached. A contour without a new node is the continuation of one on the plane below; it is not searched
 // for.
 
-#include "lamella/slicing/slabs.hpp"
+#include "lamella/slicing/plan.hpp"
 
 #include "core/pages.hpp"
 #include "slicing/sweep/cut_graph.hpp"
