@@ -7,7 +7,7 @@ JOBS := $(shell nproc)
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
 ROOMS := core mesh parts contour container read slicing polygon raster write pipeline
 blank := $(subst ,, )
-SOURCES = $(shell find app bench examples include python src tests -name '*.[ch]pp' 2>/dev/null)
+SOURCES = $(shell find app bench examples include parts python src tests -name '*.[ch]pp' 2>/dev/null)
 
 # Where nothing was built before, the sources of a room are compiled together: in two thirds of the time.
 ifeq ($(wildcard build/CMakeCache.txt),)

@@ -38,14 +38,14 @@ class Convert(ProgramTest):
         self.assertEqual(piped.out, self.bytes_of("torus.svg"))
 
     def test_formats_that_others_read(self):
-        for name in ["dxf", "geojson", "csv"]:
+        for name in ["dxf", "geojson"]:
             self.succeed("convert", "torus.cli", "out." + name)
 
     def test_what_a_format_has_no_place_for_is_told(self):
         self.write("open.json", """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}],
             "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 4, 0, 0, 4]],
                         "chains": [[5, 5, 6, 6]], "hatches": [0, 0, 1, 1]}]}]}""")
-        for name, lost in {"cli": 0, "json": 0, "npz": 0, "dxf": 1, "svg": 1, "csv": 1, "slc": 2, "3mf": 2}.items():
+        for name, lost in {"cli": 0, "json": 0, "npz": 0, "dxf": 1, "svg": 1, "slc": 2, "3mf": 2}.items():
             with self.subTest(format=name):
                 told = self.succeed("convert", "open.json", "out." + name).err
                 self.assertEqual(told.count("left out"), lost, told)

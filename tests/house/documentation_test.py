@@ -75,6 +75,10 @@ class Documentation(unittest.TestCase):
         self.assertEqual(len(printed.splitlines()), 20)
         self.assertIn(" 0.25 mm   47.531 mm2\n", printed)
 
+    def test_the_tour_prints_what_its_page_shows(self):
+        page = (ROOT / "docs/howto/embedding.md").read_text(encoding="utf-8")
+        self.assertIn(f"```\n{self.run_here(EXAMPLES / 'lamella_example_tour')}```\n", page)
+
     def test_the_commands_of_all_pages_work(self):
         tried = 0
         has_viewer = self.has_viewer()

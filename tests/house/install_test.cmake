@@ -29,6 +29,12 @@ separate_arguments(flags UNIX_COMMAND ${flags})
 run(${COMPILER} -std=c++20 ${CONSUMER_DIR}/main.cpp -o ${WORK_DIR}/pkg_config_consumer ${flags})
 file(GLOB shared_library ${prefix}/lib*/liblamella.so ${prefix}/lib*/*/liblamella.so)
 if(shared_library)
+    # It shows what its public headers declare, and nothing of its own.
+    execute_process(COMMAND nm --dynamic --defined-only --demangle ${shared_library} OUTPUT_VARIABLE names
+                    COMMAND_ERROR_IS_FATAL ANY)
+    if(NOT names MATCHES " lamella::slice\\(" OR names MATCHES "lamella::(Executor|CutGraph|AtomicFile)::")
+        message(FATAL_ERROR "the shared library shows too little or too much:\n${names}")
+    endif()
     cmake_path(GET shared_library PARENT_PATH lib_dir)
     set(ENV{LD_LIBRARY_PATH} ${lib_dir})
 endif()

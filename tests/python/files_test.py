@@ -13,7 +13,7 @@ import lamella
 
 EXACT = ["layers.json", "layers.npz"]
 ROUNDED = ["layers.cli", "layers.svg", "layers.slc", "layers.3mf"]
-WRITTEN_ONLY = ["layers.dxf", "layers.geojson", "layers.csv"]
+WRITTEN_ONLY = ["layers.dxf", "layers.geojson"]
 
 
 @pytest.mark.parametrize("name", EXACT + ROUNDED + WRITTEN_ONLY)

@@ -58,8 +58,9 @@ def read_header(path):
             introduction.append(line[2:].strip())
         elif line or introduction:
             break
-    body = lines[next(i for i, line in enumerate(lines) if line.startswith("namespace lamella {")) + 1:]
-    return Header(path, "\n".join(introduction), list(declarations(body, path)))
+    begin = "namespace LAMELLA_API lamella {"
+    found = list(declarations(lines[lines.index(begin) + 1:], path)) if begin in lines else []
+    return Header(path, "\n".join(introduction), found)
 
 
 def declarations(lines, path):

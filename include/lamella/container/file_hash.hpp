@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A 64-bit hash of all bytes of a file (XXH3), in little memory; the same on every machine. It guards
 /// against accidents, not against forgery. Throws Error{input} when the file cannot be read,

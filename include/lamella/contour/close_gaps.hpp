@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A chain was continued from its last point `from` to the first point `to` of a chain, or of itself.
 struct GapJoin {

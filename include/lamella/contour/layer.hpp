@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A fixed array of points whose memory is shared: copies of it, and other arrays cut from the same block,
 /// keep the block alive.

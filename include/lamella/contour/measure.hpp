@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// Signed area in mm^2: positive for a counter-clockwise ring. Computed about the ring's first point, so that
 /// a ring far from the origin loses no digits. O(n).

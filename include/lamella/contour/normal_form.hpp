@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The normal form of a layer: every ring starts at its lexicographically smallest point (where that point
 /// occurs more than once, at the occurrence that makes the whole sequence smallest); closed rings come first

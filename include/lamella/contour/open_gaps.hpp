@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The gaps of a layer: from the last point of every chain to the first point of the chain that is taken to
 /// go on there.

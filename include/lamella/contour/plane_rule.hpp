@@ -2,10 +2,12 @@
 
 // What of a part a plane belongs to.
 
+#include "lamella/core/api.hpp"
+
 #include <optional>
 #include <string_view>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// Which side a vertex that lies exactly on a plane belongs to; see docs/conventions.md, "The rule of the
 /// plane". Nothing ever lies on a plane:

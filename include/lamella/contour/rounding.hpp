@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// How a format rounds coordinates and heights. By default it does not.
 struct Rounding {

@@ -2,10 +2,12 @@
 
 // One number for a whole stack of layers.
 
+#include "lamella/core/api.hpp"
+
 #include <cstdint>
 #include <span>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A 64-bit hash of a stack whose layers have these content hashes, in ascending z: XXH3 (64 bits, seed 0)
 /// over them, all little-endian. Like them it says nothing of heights. O(n).

@@ -2,10 +2,12 @@
 
 // The one exception type of the library and the short closed list of its kinds.
 
+#include "lamella/core/api.hpp"
+
 #include <stdexcept>
 #include <string>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// What went wrong, in the classes that a caller treats differently. The program's exit codes follow it.
 enum class ErrorKind {

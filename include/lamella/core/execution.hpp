@@ -2,11 +2,13 @@
 
 // How a long computation runs: on how many threads, who is told, and how it is stopped.
 
+#include "lamella/core/api.hpp"
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The stages of the way from a file to slice files, in the order in which they run.
 enum class Stage { read, weld, link, slice, polygon, write };

@@ -2,10 +2,12 @@
 
 // Points and boxes. Lengths are millimetres unless a function says otherwise.
 
+#include "lamella/core/api.hpp"
+
 #include <compare>
 #include <limits>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A point of a layer, seen looking down the build direction (x right, y up).
 /// The default order is the lexicographic one (x, then y); it defines the normal form of contours.

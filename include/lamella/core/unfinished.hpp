@@ -2,7 +2,9 @@
 
 // What is being written when a program has to end at once.
 
-namespace lamella {
+#include "lamella/core/api.hpp"
+
+namespace LAMELLA_API lamella {
 
 /// Removes every file and folder that writers of this process have under a temporary name, whichever thread
 /// they run on; from then on no writer begins a new one. For a program that is about to leave by _exit, since

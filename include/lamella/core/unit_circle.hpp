@@ -3,9 +3,11 @@
 // Cosine and sine with the same bits on every machine. Those of the C library differ in the last place
 // between versions, and parts made here must be the same everywhere. Only + - * / and exact functions.
 
+#include "lamella/core/api.hpp"
+
 #include <cstdint>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct CosSin {
     double cos = 1;

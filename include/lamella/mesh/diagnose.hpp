@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The rim of a hole: boundary edges joined end to end, in the direction in which the missing triangles would
 /// run through them. It passes no vertex twice: where holes touch, each has a loop of its own.

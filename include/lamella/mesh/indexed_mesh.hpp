@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// Vertices (#V by 3, double) and triangles (#T by 3, indices into the vertices, counter-clockwise seen from
 /// outside). Vertices may be repeated: those with equal coordinates are meant to be the same (see Mesh).

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct Inspection {
     Box3 box;              ///< of all vertices

@@ -12,7 +12,7 @@
 #include <memory>
 #include <span>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. It is what all functions take that do
 /// not care which of the two it is.

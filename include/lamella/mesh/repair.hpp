@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// How many places a report lists; its counts are complete.
 inline constexpr std::size_t repair_places = 16;

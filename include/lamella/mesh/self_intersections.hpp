@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// How two triangles meet beyond the vertices and the edge that they share.
 enum class MeetingKind {

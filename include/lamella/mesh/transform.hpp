@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// p' = linear * p + offset, in double. The default is the identity. `linear` is row-major: linear[r][c].
 struct Transform {

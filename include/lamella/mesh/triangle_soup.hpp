@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A corner as the file stores it.
 struct Point3f {

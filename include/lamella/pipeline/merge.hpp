@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct MergeResult {
     std::string format; ///< of the files that were read

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A mesh file to be put on the plate.
 struct PlateInput {

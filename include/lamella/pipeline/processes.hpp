@@ -2,6 +2,8 @@
 
 // Several processes that slice one job together, on one machine or on many.
 
+#include "lamella/core/api.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// How processes, counted from 0, talk to each other: an interface, so that the library needs no message
 /// passing of its own. All but send and receive are called by all processes, in the same order; messages may

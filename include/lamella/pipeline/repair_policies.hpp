@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct RepairPolicies {
     std::optional<double> weld_tolerance_mm; ///< weld_within

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// One of several runs that share the layers of a job, on as many machines perhaps: a run of consecutive
 /// layers, of about as much work as the others (which is not the same as height). Each computes the same

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct VerifyOptions {
     /// Compare each layer's area with the section of this mesh at the layer's z. It should be closed.
@@ -51,7 +51,8 @@ struct Verification {
     /// Largest difference between a layer's area and the mesh's section, layers with open chains left out;
     /// with VerifyOptions::mesh.
     std::optional<double> max_area_error_mm2;
-    /// Whether each area lies within its tolerance: the rounding of the format and of sums, times the perimeter.
+    /// Whether each area lies within its tolerance: the rounding of the format and of sums, times the
+    /// perimeter.
     bool areas_agree = true;
     /// One line for each kind of finding, with the first layer and place where it occurs.
     std::vector<std::string> findings;

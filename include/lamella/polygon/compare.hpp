@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct LayerDifference {
     /// The same contours, bit for bit: everything below is 0.

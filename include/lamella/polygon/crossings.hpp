@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// Segment `segment_a` of contour `contour_a` (from its point of that number to the next) crosses segment
 /// `segment_b` of `contour_b` at about `at`.

@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// Where material is, by the winding number w: how many times the layer's rings run counter-clockwise around
 /// a place.

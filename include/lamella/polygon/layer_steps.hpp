@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The steps in the order in which they are taken. By default none is.
 struct LayerSteps {

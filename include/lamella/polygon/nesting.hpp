@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// What a ring is, by its direction and by the winding number w just outside of it: the number of times that
 /// the layer's rings run counter-clockwise around a place. Material is where w is 1 or more.

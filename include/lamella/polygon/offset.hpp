@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The layer with its material grown by `distance` mm on all sides, or shrunk by a negative one: outer rings
 /// move outwards, holes get smaller, and what meets is united, as material where the winding number is above

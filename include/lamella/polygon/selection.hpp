@@ -4,7 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The layer without the rings whose area is below `mm2`, bodies and holes alike: what lies within a dropped
 /// ring is smaller and goes with it. Open chains stay. O(n).

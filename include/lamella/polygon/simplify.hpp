@@ -4,7 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The layer with some of its points left out, so that no point of a contour, old or new, is farther than
 /// `tolerance` mm from the other one (Hausdorff distance). Points that remain keep their coordinates and

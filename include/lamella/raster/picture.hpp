@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The pixels of a picture and where a layer lies among them. Pixel (c, r) is the square [c, c + 1] x [r, r +
 /// 1] of picture coordinates (u, v): columns to the right, rows downwards. The point (x, y) lies at

@@ -2,9 +2,11 @@
 
 // Mesh or layers? For whoever takes either.
 
+#include "lamella/core/api.hpp"
+
 #include <string_view>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 enum class FileKind {
     mesh,   ///< anything else

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct LayerReadOptions {
     /// More bytes than this, of what is unpacked and of the layers, are Error{limit}; 0: three

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// The extensions of mesh files, in lower case: "stl", "3mf"...
 [[nodiscard]] std::vector<std::string_view> mesh_extensions();

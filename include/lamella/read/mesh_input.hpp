@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 struct ByteSource;
 

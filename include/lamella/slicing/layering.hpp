@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// Cuts at exactly these z; see plan_listed.
 struct ListedPlanes {

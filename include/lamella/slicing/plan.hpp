@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// Where within its thickness a layer is cut.
 enum class SliceAt { bottom, middle, top };

@@ -13,7 +13,7 @@
 #include <span>
 #include <string_view>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// What the engines of the EECC paper (King, Rennie, Bennett 2021) count while they sort intersections into
 /// contours; its Tables 2, 3 and 4 and its section 4.1 are made of these. An intersection is one triangle on

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// From `from` to `to`, in mm above the bottom of the part, layers are so high.
 struct HeightRange {

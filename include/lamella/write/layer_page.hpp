@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// How something told on a page is meant; the page shows it by a sign and a colour.
 enum class Tone { plain, good, warning, bad };

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// One of the parts whose layers a file holds.
 struct PartInfo {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 class AtomicFile;
 

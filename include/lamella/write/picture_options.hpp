@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace lamella {
+namespace LAMELLA_API lamella {
 
 /// A pair of values, along x and along y of the layers.
 template <typename T>
