@@ -70,7 +70,7 @@ struct SliceArguments {
     std::optional<double> timeout;
     RunOptions run;
     BatchArguments batch;
-    Slicing slicing;
+    Communicator* team = nullptr; ///< see slice_command
 };
 
 OptionGroup output_options(SliceArguments& target) {
@@ -293,11 +293,12 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
 }
 
 FileResult slice_in_time(const SliceArguments& arguments, const FileJob& job, const Execution& execution) {
+    Communicator& processes = arguments.team != nullptr ? *arguments.team : alone();
     if (!arguments.timeout)
-        return arguments.slicing.slice(job, execution);
+        return slice_file(job, execution, processes);
     Deadline deadline(*arguments.timeout, one_line(job.inputs.front().path), execution);
     try {
-        return arguments.slicing.slice(job, deadline.execution());
+        return slice_file(job, deadline.execution(), processes);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled)
             deadline.check();
@@ -323,7 +324,7 @@ std::string_view batch_extension(const SliceArguments& arguments) {
 }
 
 int slice_batch(SliceArguments& arguments, const Context& context) {
-    if (!arguments.slicing.many_files)
+    if (arguments.team != nullptr)
         throw Error(ErrorKind::usage, "--batch is for lamella: here all processes work on one plate");
     if (!arguments.inputs.empty())
         throw Error(ErrorKind::usage,
@@ -365,7 +366,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     check_outputs(context.command);
     finish_input(arguments);
     const FileJob job = make_job(arguments);
-    if (job.shard && !arguments.slicing.many_files)
+    if (job.shard && arguments.team != nullptr)
         throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
     const Execution execution = arguments.run.execution(context);
     const bool stamped = job.shard && !job.output.empty();
@@ -382,14 +383,14 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     const FileResult result = slice_in_time(arguments, job, execution);
     if (stamped)
         stamp_shard(job, result, origin, execution);
-    if (!arguments.slicing.tells)
+    if (arguments.team != nullptr && arguments.team->process() != 0)
         return 0;
     for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
         Json stats = stats_json(context.command, result);
-        if (arguments.slicing.add_to_stats)
-            arguments.slicing.add_to_stats(stats);
+        if (arguments.team != nullptr)
+            stats["processes"] = processes_json(result.processes);
         const std::string text = json_text(stats);
         if (arguments.stats == "-")
             context.messages.result(text);
@@ -403,9 +404,9 @@ int run_slice(SliceArguments& arguments, const Context& context) {
 
 } // namespace
 
-Command slice_command(Slicing slicing) {
+Command slice_command(Communicator* team) {
     const auto arguments = std::make_shared<SliceArguments>();
-    arguments->slicing = std::move(slicing);
+    arguments->team = team;
     return {
         .name = "slice",
         .summary = "cut a mesh into layers and write a slice file",

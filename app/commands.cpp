@@ -7,19 +7,9 @@
 namespace lamella::app {
 
 std::vector<Command> all_commands() {
-    const auto slice = [](const FileJob& job, const Execution& execution) {
-        return slice_file(job, execution);
-    };
-    std::vector<Command> commands{slice_command({.slice = slice}),
-                                  info_command(),
-                                  verify_command(),
-                                  compare_command(),
-                                  convert_command(),
-                                  merge_command(),
-                                  view_command(),
-                                  make_command(),
-                                  completion_command(),
-                                  help_command()};
+    std::vector<Command> commands{slice_command(),      info_command(),  verify_command(), compare_command(),
+                                  convert_command(),    merge_command(), view_command(),   make_command(),
+                                  completion_command(), help_command()};
     commands.back().operands.front().choices = names_of(commands);
     return commands;
 }

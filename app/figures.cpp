@@ -293,6 +293,22 @@ Json open_gaps_json(const OpenGaps& gaps) {
         {"open_gaps", gaps.count}, {"longest_open_gap_mm", gaps.longest_mm}, {"open_gaps_mm", gaps.total_mm}};
 }
 
+Json processes_json(const std::vector<ProcessFigures>& figures) {
+    Json processes = Json::array();
+    for (const ProcessFigures& one : figures)
+        processes.push_back({{"triangles_read", one.triangles_read},
+                             {"triangles_sliced", one.triangles_sliced},
+                             {"bytes_sent", one.bytes_sent},
+                             {"planes", one.planes},
+                             {"points", one.points},
+                             {"seconds",
+                              {{"read", one.read_seconds},
+                               {"exchange", one.exchange_seconds},
+                               {"slice", one.slice_seconds},
+                               {"write", one.write_seconds}}}});
+    return processes;
+}
+
 Json stats_json(const Command& command, const FileResult& result) {
     const PlateFile& first = result.files.front();
     Json options = options_in_effect(command);

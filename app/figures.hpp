@@ -60,6 +60,8 @@ template <class Places, class Tell>
 [[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
 /// What `lamella slice --stats` writes; docs/program.md lists the keys.
 [[nodiscard]] Json stats_json(const Command& command, const FileResult& result);
+/// What each of several processes did.
+[[nodiscard]] Json processes_json(const std::vector<ProcessFigures>& figures);
 /// As text with a line end; names that are not UTF-8 get replacement characters.
 [[nodiscard]] std::string json_text(const Json& object);
 
