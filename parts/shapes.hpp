@@ -12,9 +12,9 @@ namespace lamella {
 /// The order in which a sheet's triangles stand in the file. It decides how long the lists of the paper's
 /// algorithms get; see SheetShape.
 enum class TriangleOrder {
-    wall,    ///< around each hole, the two triangles of each wall quad together
-    hole,    ///< the lower triangles of a hole's wall, then its upper ones, hole after hole
-    split,   ///< all lower triangles of all walls, then all upper ones: the paper's worst case
+    wall,  ///< around each hole, the two triangles of each wall quad together
+    hole,  ///< the lower triangles of a hole's wall, then its upper ones, hole after hole: the paper's sheets
+    split, ///< all lower triangles of all walls, then all upper ones: harder still
     shuffle, ///< random, from a seed
 };
 

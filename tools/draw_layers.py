@@ -71,29 +71,31 @@ def shade(part):
 def draw(tops, layers, opened_at):
     points = [point for rings in layers for ring in rings for point in ring]
     (x0, x1), (y0, y1) = ((min(c), max(c)) for c in zip(*points))
-    cx, cy, radius = (x0 + x1) / 2, (y0 + y1) / 2, math.hypot(x1 - x0, y1 - y0) / 2
+    cx, cy, wide, deep = (x0 + x1) / 2, (y0 + y1) / 2, x1 - x0, y1 - y0
     tall = tops[-1] - tops[0]
     opened = min(range(len(layers)), key=lambda i: abs(tops[i] - tops[0] - opened_at * tall))
 
     # The stack, seen from the side, fills the left half; the layer, seen from above, the right half.
-    reach = max(x1 - x0, y1 - y0) / 2 * 1.1
+    across = (wide * math.cos(TURN) + deep * math.sin(TURN)) / 2
+    reach = (wide * math.sin(TURN) + deep * math.cos(TURN)) / 2
     scale = min((HEIGHT - 2 * MARGIN) / (tall * (1 + 2 * GAP) * math.cos(TILT) + 2 * reach * math.sin(TILT)),
-                (WIDTH / 2 - 2 * MARGIN) / (2 * reach))
-    base = HEIGHT - MARGIN - reach * math.sin(TILT) * scale
+                (WIDTH / 2 - 1.5 * MARGIN) / (2 * across))
+    high = (tall * (1 + 2 * GAP) * math.cos(TILT) + 2 * reach * math.sin(TILT)) * scale
+    base = (HEIGHT + high) / 2 - reach * math.sin(TILT) * scale
 
     def in_stack(height):
         def project(point):
             x, y = point[0] - cx, point[1] - cy
             right = x * math.cos(TURN) - y * math.sin(TURN)
-            deep = x * math.sin(TURN) + y * math.cos(TURN)
+            away = x * math.sin(TURN) + y * math.cos(TURN)
             return (WIDTH / 4 + right * scale,
-                    base - (height * math.cos(TILT) + deep * math.sin(TILT)) * scale)
+                    base - (height * math.cos(TILT) + away * math.sin(TILT)) * scale)
         return project
 
-    flat = (WIDTH / 2 - 2 * MARGIN) / (2 * radius) * 1.3
+    flat = min((WIDTH / 2 - 2 * MARGIN) / wide, (HEIGHT - 4 * MARGIN) / deep)
 
     def from_above(point):
-        return WIDTH * 0.74 + (point[0] - cx) * flat, HEIGHT / 2 - (point[1] - cy) * flat
+        return WIDTH * 0.75 + (point[0] - cx) * flat, HEIGHT / 2 - (point[1] - cy) * flat
 
     step = max(1, len(layers) // SHEETS)
     shown = sorted(set(range(0, len(layers), step)) | {opened, len(layers) - 1})

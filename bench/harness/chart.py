@@ -7,6 +7,9 @@ from typing import Optional
 
 COLOURS = ["#0b6e4f", "#6fb98f", "#d1495b", "#edae49", "#30638e", "#8d6a9f", "#7a7a7a"]
 FONT = 'font-family="sans-serif" font-size="13"'
+# Light and dark, as the page around it.
+STYLE = ("<style>.paper{fill:#fff}text{fill:#222}.grid{stroke:#ddd}.mark{stroke:#fff}"
+         "@media(prefers-color-scheme:dark){.paper{fill:#1b1f22}text{fill:#ddd}.grid{stroke:#444a4f}.mark{stroke:#1b1f22}}</style>")
 
 
 @dataclass
@@ -38,9 +41,9 @@ def bars(items, title, axis, inner_label=""):
         parts.append(text(cx + 18, cy + 11, name))
     bottom = height - 46
     for decade in range(low, high + 1):
-        parts.append(line(x(10**decade), top - 4, x(10**decade), bottom, "#ddd"))
+        parts.append(line(x(10**decade), top - 4, x(10**decade), bottom))
         parts.append(text(x(10**decade), bottom + 18, power_of_ten(decade), anchor="middle"))
-    parts.append(text(left, height - 6, axis + (f"; white line: {inner_label}" if inner_label else "")))
+    parts.append(text(left, height - 6, axis + (f"; line in a bar: {inner_label}" if inner_label else "")))
     y = top
     for group in groups:
         members = [item for item in items if item.group == group]
@@ -54,7 +57,7 @@ def bars(items, title, axis, inner_label=""):
                 parts.append(f'<rect x="{left}" y="{y + 2}" width="{max(end - left, 1):.1f}" height="{row - 4}" '
                              f'{fill}/>')
                 if item.inner and x(item.inner) < end - 2:
-                    parts.append(line(x(item.inner), y + 2, x(item.inner), y + row - 2, "#fff", 2))
+                    parts.append(line(x(item.inner), y + 2, x(item.inner), y + row - 2, width=2, kind="mark"))
             else:
                 parts.append(line(left, y + 2, left, y + row - 2, colour(series.index(item.series)), 3))
             parts.append(text(end + 6, y + row - 5, item.note, size=12))
@@ -83,10 +86,10 @@ def scatter(series, title, x_axis, y_axis):
     parts = [text(0, 20, title, weight="bold")]
     for decade in range(low_x, high_x + 1):
         x, _ = place(10**decade, 10**low_y)
-        parts += [line(x, top, x, bottom, "#ddd"), text(x, bottom + 18, power_of_ten(decade), anchor="middle")]
+        parts += [line(x, top, x, bottom), text(x, bottom + 18, power_of_ten(decade), anchor="middle")]
     for decade in range(low_y, high_y + 1):
         _, y = place(10**low_x, 10**decade)
-        parts += [line(left, y, width - right, y, "#ddd"), text(left - 8, y + 4, power_of_ten(decade), anchor="end")]
+        parts += [line(left, y, width - right, y), text(left - 8, y + 4, power_of_ten(decade), anchor="end")]
     parts += [text(left, height - 8, x_axis), text(0, top - 16, y_axis)]
     for i, one in enumerate(series):
         radius = max(7 - 1.5 * i, 2)  # so that points upon one another are seen
@@ -124,8 +127,10 @@ def colour(i):
     return COLOURS[i % len(COLOURS)]
 
 
-def line(x1, y1, x2, y2, stroke, width=1.0):
-    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{stroke}" stroke-width="{width}"/>'
+def line(x1, y1, x2, y2, stroke=None, width=1.0, kind="grid"):
+    """In a colour, or without one as a line of the grid or a mark on a bar."""
+    paint = f'stroke="{stroke}"' if stroke else f'class="{kind}"'
+    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" {paint} stroke-width="{width}"/>'
 
 
 def text(x, y, words, anchor="start", weight="normal", size=13):
@@ -135,5 +140,5 @@ def text(x, y, words, anchor="start", weight="normal", size=13):
 
 def svg(width, height, title, parts):
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-            f'viewBox="0 0 {width} {height}" role="img" aria-label="{html.escape(title)}" {FONT} fill="#222">\n'
-            f'<rect width="{width}" height="{height}" fill="#fff"/>\n' + "\n".join(parts) + "\n</svg>")
+            f'viewBox="0 0 {width} {height}" role="img" aria-label="{html.escape(title)}" {FONT}>\n{STYLE}\n'
+            f'<rect class="paper" width="{width}" height="{height}"/>\n' + "\n".join(parts) + "\n</svg>")

@@ -58,8 +58,11 @@ class Page:
     def show(self, block):
         self.blocks.append(block)
 
-    def markdown(self):
-        return f"# {self.title}\n\n" + "\n\n".join(MARKDOWN[type(block)](block) for block in self.blocks) + "\n"
+    def markdown(self, charts=""):
+        """`charts`: where those are, seen from the Markdown."""
+        texts = [f"![{block.title}]({charts}{block.name}.svg)" if isinstance(block, Chart) else MARKDOWN[type(block)](block)
+                 for block in self.blocks]
+        return f"# {self.title}\n\n" + "\n\n".join(texts) + "\n"
 
     def html(self):
         body = "\n".join(HTML[type(block)](block) for block in self.blocks)
@@ -70,9 +73,19 @@ class Page:
         folder = Path(folder)
         (folder / f"{name}.md").write_text(self.markdown(), encoding="utf-8")
         (folder / f"{name}.html").write_text(self.html(), encoding="utf-8")
+        self.write_charts(folder)
+
+    def write_charts(self, folder):
         for block in self.blocks:
             if isinstance(block, Chart):
-                (folder / f"{block.name}.svg").write_text(block.svg, encoding="utf-8")
+                (folder / f"{block.name}.svg").write_text(block.svg + "\n", encoding="utf-8")
+
+    def write_to_documentation(self, docs, name):
+        """NAME.md, and its charts in images/NAME/."""
+        images = Path(docs) / "images" / name
+        images.mkdir(parents=True, exist_ok=True)
+        (Path(docs) / f"{name}.md").write_text(self.markdown(f"images/{name}/"), encoding="utf-8")
+        self.write_charts(images)
 
 
 def markdown_table(table):
@@ -106,7 +119,6 @@ MARKDOWN = {
     Heading: lambda block: "#" * block.level + " " + block.text,
     Paragraph: lambda block: block.text,
     Table: markdown_table,
-    Chart: lambda block: f"![{block.title}]({block.name}.svg)",
 }
 HTML = {
     Heading: lambda block: f"<h{block.level}>{inline(block.text)}</h{block.level}>",
@@ -122,6 +134,7 @@ HTML_PAGE = """<!DOCTYPE html>
 <title>{title}</title>
 <style>
 body {{ font: 16px/1.5 sans-serif; color: #222; background: #fff; max-width: 66rem; margin: 2rem auto; padding: 0 1rem }}
+@media (prefers-color-scheme: dark) {{ body {{ color: #ddd; background: #1b1f22 }} }}
 p {{ max-width: 48rem }}
 .wide {{ overflow-x: auto }}
 table {{ border-collapse: collapse; font-size: 0.85rem; margin: 1rem 0 }}

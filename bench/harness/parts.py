@@ -19,9 +19,9 @@ class Part:
         return Path(folder) / f"{self.name}.stl"
 
 
-def sheet(holes, order="split", segments=None):
-    """A sheet of the paper, or with other `segments` one like it."""
-    suffix = "" if order == "split" else f"-{order}"
+def sheet(holes, order="hole", segments=None):
+    """A sheet of the paper in the order of its tables (docs/paper.md), or one like it."""
+    suffix = "" if order == "hole" else f"-{order}"
     options = () if segments is None else ("--segments", str(segments))
     if segments is not None:
         suffix += f"-{segments}"

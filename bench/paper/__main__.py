@@ -12,7 +12,7 @@ from pathlib import Path
 
 from bench.harness import machine, parts
 from bench.paper import growth as growths
-from bench.paper import report
+from bench.paper import pictures, report
 from bench.paper.cell import ENGINES, Laboratory
 from bench.rivals.__main__ import tell as tell_rival
 from bench.rivals.compare import Comparison
@@ -30,8 +30,11 @@ class Measured:
     cells: list = field(default_factory=list)
     order_parts: dict = field(default_factory=dict)
     order_cells: list = field(default_factory=list)
+    split_cells: list = field(default_factory=list)  # of the sheets split as a whole, by the engines that this slows down
     rival_cells: list = field(default_factory=list)
     rival_titles: dict = field(default_factory=dict)
+    pictures: dict = field(default_factory=dict)  # part name -> SVG
+    false_match: str = ""
     growth: growths.Growth = field(default_factory=growths.Growth)
 
 
@@ -49,10 +52,16 @@ def main(arguments):
     measured = Measured(chosen)
 
     def write():
-        report.build_page(measured, figures, here, options.timeout).write(folder, "paper")
+        page = report.build_page(measured, figures, here, options.timeout)
+        page.write(folder, "paper")
+        if options.docs:
+            page.write_to_documentation(options.docs, "paper")
         text = json.dumps(report.as_json(measured, here, options.timeout), indent=1)
         (folder / "paper.json").write_text(text + "\n", encoding="utf-8")
 
+    measured.false_match = pictures.of_false_match(options.lamella, work)
+    measured.pictures = {part.name: pictures.of_part(part, options.lamella, work, parts_folder)
+                         for part in chosen if part.name in pictures.VIEWS}
     measured.growth = growths.measure(options.lamella, work, parts_folder, options.timeout, small=tiny, tell=tell_growth)
     laboratory = Laboratory(options.lamella, work, parts_folder, options.timeout)
     sheets = {order: parts.sheet(4 if tiny else 100, order, 32 if tiny else None) for order in ("wall", "hole", "split", "shuffle")}
@@ -62,10 +71,15 @@ def main(arguments):
     for part in chosen:
         measured.cells += laboratory.cells(part, ENGINES, tell)
         write()  # so that a long run that is stopped has left what it found
+    splitting = Laboratory(options.lamella, work, parts_folder, options.timeout)
+    for part in chosen:
+        if part.family == "sheet" and "edge" not in part.name and part.name in figures["table5_seconds"]:
+            measured.split_cells += splitting.cells(parts.sheet(part.make[2], "split"), ["ecc-edge-match", "eecc"], tell)
+            write()
     measure_rivals(measured, figures, folder, options)
     write()
     print(f"The report is in {folder}/paper.html")
-    wrong = [cell for cell in measured.cells + measured.order_cells if cell.ended not in ("ok", "timeout")]
+    wrong = [cell for cell in measured.cells + measured.order_cells + measured.split_cells if cell.ended not in ("ok", "timeout")]
     return 1 if wrong else 0
 
 
@@ -82,6 +96,7 @@ def parse(arguments):
     parser = argparse.ArgumentParser(prog="python3 -m bench.paper", description=__doc__.splitlines()[0])
     parser.add_argument("--lamella", type=Path, default="build/lamella", help="the program (default: %(default)s)")
     parser.add_argument("--out", default="out/paper", help="folder of the report (default: %(default)s)")
+    parser.add_argument("--docs", metavar="FOLDER", help="write paper.md and its pictures for the documentation, too")
     parser.add_argument("--timeout", type=float, default=60, help="seconds for one run (default: %(default)s)")
     parser.add_argument("--rival-timeout", type=float, default=300, help="the same for Table 6 (default: %(default)s)")
     parser.add_argument("--parts", nargs="+", metavar="PART", help="which parts (default: all)")

@@ -1,8 +1,8 @@
 """How the work grows, counted and not timed: Table 7 and section 4.1.
 
-Sheets let both sizes be set alone. In split order the first half of a plane's intersections touch none of one another,
-so the lists of a plane, k, grow to half the triangles that cross it. Every wall triangle crosses all planes, so m is
-the number of planes.
+Sheets let both sizes be set alone. In split order, which is harder than the paper's, the first half of a plane's
+intersections touch none of one another, so the lists of a plane, k, grow to half the triangles that cross it. Every wall
+triangle crosses all planes, so m is the number of planes.
 """
 
 from dataclasses import dataclass, field
@@ -51,7 +51,7 @@ def measure(program, folder, parts_folder, timeout, small=False, tell=lambda sam
                 into.append(sample)
                 tell(sample)
 
-    for order in ("split", "wall", "shuffle"):
+    for order in ("split", "hole", "wall", "shuffle"):
         for h in holes:
             samples(growth.against_k, parts.sheet(h, order, SEGMENTS), COUNTING, 5)
     for m in planes:

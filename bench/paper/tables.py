@@ -152,7 +152,7 @@ def exponents(measured, figures):
             for order in dict.fromkeys(sample.order for sample in samples):
                 chosen = [sample for sample in samples if sample.engine == engine and sample.order == order]
                 fitted = growth.exponent(chosen, x, y)
-                # The worst case of the paper is the split order; edge matching alone is not in its table.
+                # The worst case is the split order; edge matching alone is not in the paper's table.
                 paper = figures.get(engine, {}).get(key, "") if order == "split" else ""
                 said = "-" if fitted is None else f"{fitted:.2f}".replace("-0.00", "0.00")
                 table.add(title, ENGINE_TITLES[engine], order, paper, said)
@@ -170,6 +170,33 @@ def memory(measured, figures):
                         for size in (lambda s: s.bytes, lambda s: s.peak_rss_bytes))
         table.add(ENGINE_TITLES[engine], paper or "", node or "", ratio(paper, node) if paper and node else "",
                   brief(slope) if slope and node else "", brief(max(whole or 0, 0)))
+    return table
+
+
+def order_of_the_paper(cells, split_cells, titles, seconds):
+    """What speaks for the order hole by hole: ratios between engines and growth, which hardly depend on a machine."""
+    table = Table(["part", "edge matching / EECC: paper", "ours, by hole", "ours, split", "growth of EECC: paper",
+                   "ours, by hole", "ours, split", "lists per search of EECC: by hole", "split"])
+    sheets = [name for name in titles if name in seconds and name.startswith("sheet-") and "edge" not in name]
+
+    def of(found, name, engine):
+        cell = find(found, name, engine)
+        return cell and cell.best_known
+
+    def quotient(a, b):
+        return brief(a / b) if a and b else ""
+
+    for name in sheets:
+        paper, first = seconds[name], seconds[sheets[0]]
+        searched = [find(found, part, "eecc") for found, part in ((cells, name), (split_cells, f"{name}-split"))]
+        table.add(titles[name], quotient(paper["ecc-edge-match"], paper["eecc"]),
+                  quotient(of(cells, name, "ecc-edge-match"), of(cells, name, "eecc")),
+                  quotient(of(split_cells, f"{name}-split", "ecc-edge-match"), of(split_cells, f"{name}-split", "eecc")),
+                  quotient(paper["eecc"], first["eecc"]),
+                  quotient(of(cells, name, "eecc"), of(cells, sheets[0], "eecc")),
+                  quotient(of(split_cells, f"{name}-split", "eecc"), of(split_cells, f"{sheets[0]}-split", "eecc")),
+                  *[brief(cell.matching["comparisons"] / cell.matching["searches"]) if cell and cell.matching else ""
+                    for cell in searched])
     return table
 
 
