@@ -35,6 +35,8 @@ def main(arguments):
         sliced = [one for one in chosen if any(cell.part == one.name for cell in cells)]
         page = report.build_page(cells, sliced, present, absent, here, options.timeout, threads)
         page.write(folder, "rivals")
+        if options.docs:
+            page.write_to_documentation(options.docs, "benchmarks")
         (folder / "report.json").write_text(
             json.dumps(report.as_json(cells, present, absent, here, options.timeout, threads), indent=1) + "\n",
             encoding="utf-8")
@@ -47,6 +49,7 @@ def parse(arguments):
     parser.add_argument("--libraries", default="build-bench/bench/rivals",
                         help="folder of the built cgal_slicer (default: %(default)s)")
     parser.add_argument("--out", default="out/rivals", help="folder of the report (default: %(default)s)")
+    parser.add_argument("--docs", metavar="FOLDER", help="write benchmarks.md and its charts for the documentation, too")
     parser.add_argument("--timeout", type=float, default=300, help="seconds for one run (default: %(default)s)")
     parser.add_argument("--parts", nargs="+", metavar="PART", help="which parts (default: all)")
     parser.add_argument("--rivals", nargs="*", metavar="RIVAL", help="which rivals (default: all that are installed)")

@@ -6,6 +6,7 @@ from bench.harness import chart
 from bench.harness.page import Chart, Page, Table, brief
 
 OURS = ("lamella", "lamella-1")
+TELLING = ("rook", "lattice", "sheet-1225")
 
 
 def build_page(cells, parts, rivals, absent, machine, timeout, threads):
@@ -20,6 +21,11 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
         "output shows. A cell that does not count stays visible, in brackets.".replace("*", "**"),
         f"{machine['processor']}, {machine['threads']} threads, {machine['memory']}; {machine['system']}; "
         f"{machine['program']}; {machine['date']}. Limit for one run: {timeout:g} s.")
+    telling = [part for part in TELLING if part in part_titles]
+    if telling:
+        page.show(Chart("rivals-short", "Time of the whole process on an ordinary part, a lattice and the paper's worst case",
+                        time_chart([cell for cell in cells if cell.part in telling], titles, part_titles)))
+    page.heading("All parts")
     page.show(Chart("rivals", "Time of the whole process", time_chart(cells, titles, part_titles)))
     for part in parts:
         page.heading(part.title)

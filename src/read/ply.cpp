@@ -135,7 +135,7 @@ MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const Ply
         } else {
             const auto other =
                 std::upper_bound(element_rows.begin(), element_rows.end(), row,
-                                 [](auto value, const Rows& rows) { return value < rows.end; });
+                                 [](auto value, const Rows& one) { return value < one.end; });
             for (const PlyProperty& property : header.elements[other - element_rows.begin()].properties)
                 skip_value(property, words);
         }

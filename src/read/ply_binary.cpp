@@ -474,7 +474,7 @@ class BinaryReader {
         if (places_.strips)
             return place_in_strips(triangle);
         auto run = std::upper_bound(runs_.begin(), runs_.end(), triangle,
-                                    [](auto value, const FaceRun& run) { return value < run.triangles; });
+                                    [](auto value, const FaceRun& one) { return value < one.triangles; });
         --run;
         const std::byte* at = run->at;
         std::uint64_t before = run->triangles;

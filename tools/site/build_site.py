@@ -19,7 +19,7 @@ import python_reference
 
 ROOT = Path(__file__).resolve().parents[2]
 # Pages that live elsewhere in the tree, and what they are called in the site.
-ADOPTED = {"bench/README.md": "benchmarks.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+ADOPTED = {"bench/README.md": "measuring.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
 LINK = re.compile(r"(\]\()([^)#\s]+)((?:#[^)]*)?\))")
 
 
