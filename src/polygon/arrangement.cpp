@@ -2,6 +2,7 @@
 
 #include "lamella/polygon/crossings.hpp"
 
+#include "contour/distance.hpp"
 #include "polygon/grid.hpp"
 #include "polygon/orientation.hpp"
 #include "polygon/segment_sweep.hpp"
@@ -341,7 +342,7 @@ bool winds_once(std::span<const std::span<const Point2>> rings, std::int64_t aro
     };
     for (const Side& side : arrangement(rings, around, grid)) {
         const auto& [lo, hi] = side.line;
-        length += std::hypot(hi.x - lo.x, hi.y - lo.y);
+        length += distance(lo, hi);
         excess += (off(side.below) - off(side.above())) * (hi.x - lo.x) * (lo.y + hi.y) / 2;
     }
     return std::abs(excess) <= 2 * length;
