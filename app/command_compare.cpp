@@ -1,4 +1,6 @@
+#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/compare.hpp"
 #include "lamella/read/layer_file.hpp"
 
@@ -26,6 +28,7 @@ namespace {
 struct CompareArguments {
     std::vector<std::string> inputs;
     std::optional<double> tolerance;
+    bool area_difference = false;
     bool json = false;
     ReadLimits limits;
     RunOptions run;
@@ -74,6 +77,45 @@ Json plane_json(const ComparedPlane& plane) {
             {"area_mm2", {found.first.area_mm2, found.second.area_mm2}}};
 }
 
+/// What one of two layers at a plane has and the other has not.
+struct AreaDifference {
+    double z = 0;
+    double mm2 = 0;
+};
+
+/// Of all planes where it is not 0.
+std::vector<AreaDifference> area_differences(const StackComparison& found, const LayerStack& first,
+                                             const LayerStack& second) {
+    std::vector<AreaDifference> differences;
+    for (const ComparedPlane& plane : found.planes) {
+        const Layer nothing;
+        const double mm2 =
+            plane.difference.same
+                ? 0
+                : measure(combine(plane.first ? first[*plane.first] : nothing,
+                                  plane.second ? second[*plane.second] : nothing, BooleanOperation::exclude))
+                      .area_mm2;
+        if (mm2 != 0)
+            differences.push_back({plane.z, mm2});
+    }
+    return differences;
+}
+
+double sum_of(const std::vector<AreaDifference>& differences) {
+    double sum = 0;
+    for (const AreaDifference& difference : differences)
+        sum += difference.mm2;
+    return sum;
+}
+
+std::string area_text(const std::vector<AreaDifference>& differences) {
+    std::string text = fmt::format("  area in one file only: {} mm2 in all, in {}\n",
+                                   brief(sum_of(differences)), counted(differences.size(), "layer"));
+    for (const AreaDifference& difference : differences)
+        text += fmt::format("    z = {} mm: {} mm2\n", brief(difference.z), brief(difference.mm2));
+    return text;
+}
+
 /// Where no layers belong together though the lowest ones lie between the same heights: why. Else "".
 std::string cuts_apart(const LayerFile& first, const LayerFile& second, const StackComparison& found) {
     for (const ComparedPlane& plane : found.planes)
@@ -119,21 +161,31 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
         differing.begin(), differing.end(),
         [](const ComparedPlane* a, const ComparedPlane* b) { return size_of(*a) < size_of(*b); });
 
+    std::vector<AreaDifference> areas;
+    if (arguments.area_difference)
+        areas = area_differences(found, stacks[0], stacks[1]);
+
     if (arguments.json) {
         Json layers = Json::array();
         for (const ComparedPlane* plane : differing)
             layers.push_back(plane_json(*plane));
-        context.messages.result(
-            json_text({{"first", arguments.inputs[0]},
-                       {"second", arguments.inputs[1]},
-                       {"agree", differing.empty()},
-                       {"tolerance_mm", tolerance},
-                       {"layers", found.planes.size()},
-                       {"same", same},
-                       {"differing", differing.size()},
-                       {"first_difference", differing.empty() ? Json() : plane_json(*differing.front())},
-                       {"largest_difference", differing.empty() ? Json() : plane_json(**largest)},
-                       {"differences", std::move(layers)}}));
+        Json report{{"first", arguments.inputs[0]},
+                    {"second", arguments.inputs[1]},
+                    {"agree", differing.empty()},
+                    {"tolerance_mm", tolerance},
+                    {"layers", found.planes.size()},
+                    {"same", same},
+                    {"differing", differing.size()},
+                    {"first_difference", differing.empty() ? Json() : plane_json(*differing.front())},
+                    {"largest_difference", differing.empty() ? Json() : plane_json(**largest)},
+                    {"differences", std::move(layers)}};
+        if (arguments.area_difference) {
+            report["area_difference_mm2"] = sum_of(areas);
+            report["area_differences"] = Json::array();
+            for (const AreaDifference& area : areas)
+                report["area_differences"].push_back({{"z", area.z}, {"area_mm2", area.mm2}});
+        }
+        context.messages.result(json_text(report));
     } else {
         std::string text = fmt::format(
             "{} and {}: {}\n  {} compared, {} of them the same to the last bit\n",
@@ -150,6 +202,8 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
                 fmt::format("  the first difference:   {}\n", difference_text(*differing.front(), arguments));
             text += fmt::format("  the largest difference: {}\n", difference_text(**largest, arguments));
         }
+        if (arguments.area_difference)
+            text += area_text(areas);
         context.messages.result(text);
     }
     if (!differing.empty())
@@ -184,6 +238,9 @@ Command compare_command() {
                              if (*arguments->tolerance < 0)
                                  throw Error(ErrorKind::usage, "it cannot be negative");
                          }),
+                     flag("area-difference",
+                          "tell the area that one file has and the other has not, plane by plane and in all",
+                          arguments->area_difference),
                      flag("json", "print JSON", arguments->json)}},
                    run_options(arguments->run,
                                {max_memory_option(arguments->limits, "the layers of one of the files take")}),

@@ -45,6 +45,7 @@
 
 // What can be made of layers.
 #include "lamella/contour/close_gaps.hpp"
+#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/polygon/offset.hpp"

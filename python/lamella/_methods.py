@@ -40,6 +40,12 @@ class Mesh(_lamella.Mesh):
         _make_mesh(self, *arrays_of_mesh(vertices, faces))
 
 
+def _one_layer(name: str, thing: Any, expected: str = "layers") -> _lamella.Layer:
+    if not isinstance(thing, _lamella.Layer):
+        check.refuse_type(name, expected, thing)
+    return thing
+
+
 def _contours(name: str, contours: Any) -> Tuple[npt.NDArray[np.float64], ...]:
     def contour(name: str, points: Any) -> npt.NDArray[np.float64]:
         return check.shaped(name, points, (None, 2), "contours, each an array of numbers of the shape (n, 2)")
@@ -89,15 +95,26 @@ class Layer(_lamella.Layer):
         """The layer with its material grown by `distance` millimetres, or shrunk by a negative one."""
         return self._offset(check.number("distance", distance))
 
+    def union(self, other: _lamella.Layer) -> _lamella.Layer:
+        """The layer with material where it or `other` has: where contours wind counter-clockwise around. Contours
+        that meet no others keep their points. Heights and open chains are those of this layer."""
+        return self._union(_one_layer("other", other, "a layer"))
+
+    def intersection(self, other: _lamella.Layer) -> _lamella.Layer:
+        """The layer with material where it and `other` have; see `union`."""
+        return self._intersection(_one_layer("other", other, "a layer"))
+
+    def difference(self, other: _lamella.Layer) -> _lamella.Layer:
+        """The layer without the material of `other`; see `union`."""
+        return self._difference(_one_layer("other", other, "a layer"))
+
+    def symmetric_difference(self, other: _lamella.Layer) -> _lamella.Layer:
+        """The layer with material where either it or `other` has, and not both; see `union`."""
+        return self._symmetric_difference(_one_layer("other", other, "a layer"))
+
     def simplified(self, tolerance: float) -> _lamella.Layer:
         """The layer with points left out, so that no contour moves by more than `tolerance` millimetres."""
         return self._simplified(check.distance("tolerance", tolerance))
-
-
-def _one_layer(name: str, thing: Any) -> _lamella.Layer:
-    if not isinstance(thing, _lamella.Layer):
-        check.refuse_type(name, "layers", thing)
-    return thing
 
 
 @_methods_of(_lamella.Stack)

@@ -2,6 +2,7 @@
 
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/compare.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/layer_steps.hpp"
@@ -181,6 +182,13 @@ LayerPointer after(const SharedLayer& layer, const LayerSteps& steps) {
     const py::gil_scoped_release released;
     LayerChanges changes;
     return std::make_shared<SharedLayer>(take_steps(steps, layer.get(), changes));
+}
+
+/// What the operation makes of a layer and another one.
+template <BooleanOperation operation>
+LayerPointer combined(const SharedLayer& layer, const SharedLayer& other) {
+    const py::gil_scoped_release released;
+    return std::make_shared<SharedLayer>(combine(layer.get(), other.get(), operation));
 }
 
 py::tuple layer_state(const py::object& self) {
@@ -410,6 +418,10 @@ void bind_layer(py::module_& module) {
                            const std::string& rule) { return after(self, {.fill = fill_rule(rule)}); })
         .def("_offset",
              [](const SharedLayer& self, double distance) { return after(self, {.offset_mm = distance}); })
+        .def("_union", &combined<BooleanOperation::unite>)
+        .def("_intersection", &combined<BooleanOperation::intersect>)
+        .def("_difference", &combined<BooleanOperation::subtract>)
+        .def("_symmetric_difference", &combined<BooleanOperation::exclude>)
         .def("_simplified", [](const SharedLayer& self,
                                double tolerance) { return after(self, {.simplify_mm = tolerance}); })
         .def("__len__", [](const SharedLayer& self) { return self.get().contours(); })

@@ -19,47 +19,43 @@ namespace lamella {
 
 namespace {
 
-/// A piece of the boundary, on the grid. All numbers are whole.
-struct Side {
-    Segment line;
-    std::int64_t step;      ///< of the winding number, from below to above
-    std::int64_t below = 0; ///< the winding number there
-
-    [[nodiscard]] std::int64_t above() const noexcept { return below + step; }
-};
-
 /// Adds up sides that lie upon one another.
-void merge(std::vector<Side>& sides) {
+void merge(Arrangement& arrangement) {
+    std::vector<Side>& sides = arrangement.sides;
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
         return std::tie(a.line.lo, a.line.hi) < std::tie(b.line.lo, b.line.hi);
     });
     std::size_t kept = 0;
     for (const Side& side : sides)
-        if (kept > 0 && sides[kept - 1].line.lo == side.line.lo && sides[kept - 1].line.hi == side.line.hi)
+        if (kept > 0 && sides[kept - 1].line.lo == side.line.lo && sides[kept - 1].line.hi == side.line.hi) {
+            arrangement.walls = arrangement.walls || sides[kept - 1].step.left * side.step.left < 0;
             sides[kept - 1].step += side.step;
-        else
+        } else {
             sides[kept++] = side;
+        }
     sides.resize(kept);
-    std::erase_if(sides, [](const Side& side) { return side.step == 0; });
+    std::erase_if(sides, [](const Side& side) { return side.step == SideCount{}; });
 }
 
-std::vector<Side> sides_of(std::span<const std::span<const Point2>> rings, const ClippingGrid& grid) {
-    std::vector<Side> sides;
-    for (const std::span<const Point2> ring : rings) {
-        if (ring.empty())
+/// The sides of the rings, not yet cut.
+Arrangement sides_of(std::span<const WoundRing> rings, const ClippingGrid& grid) {
+    Arrangement arrangement;
+    for (const WoundRing& ring : rings) {
+        if (ring.points.empty())
             continue;
-        Point2 a = grid.place(ring.back());
-        for (const Point2& p : ring) {
+        const SideCount step{ring.turn, ring.left};
+        Point2 a = grid.place(ring.points.back());
+        for (const Point2& p : ring.points) {
             const Point2 b = grid.place(p);
             if (a < b)
-                sides.push_back({{a, b}, 1});
+                arrangement.sides.push_back({{a, b}, step});
             else if (b < a)
-                sides.push_back({{b, a}, -1});
+                arrangement.sides.push_back({{b, a}, -1 * step});
             a = b;
         }
     }
-    merge(sides);
-    return sides;
+    merge(arrangement);
+    return arrangement;
 }
 
 /// Which ends a side is cut at that passes by.
@@ -148,7 +144,8 @@ void add_crossings(const std::vector<Side>& sides, std::vector<Cut>& cuts) {
 
 /// Cuts all sides where they cross others, in the nearest place of the grid, and where others end within
 /// their reach. False when there was nothing to cut.
-bool cut(std::vector<Side>& sides, Reach reach) {
+bool cut(Arrangement& arrangement, Reach reach) {
+    std::vector<Side>& sides = arrangement.sides;
     std::vector<Cut> cuts;
     const Ends ends(sides);
     for (std::size_t i = 0; i < sides.size(); ++i)
@@ -167,11 +164,11 @@ bool cut(std::vector<Side>& sides, Reach reach) {
             return a.side < b.side;
         return std::pair(along(a), a.at) < std::pair(along(b), b.at);
     });
-    const auto add_piece = [&sides](const Point2& a, const Point2& b, std::int64_t step) {
+    const auto add_piece = [&sides](const Point2& a, const Point2& b, const SideCount& step) {
         if (a < b)
             sides.push_back({{a, b}, step});
         else if (b < a)
-            sides.push_back({{b, a}, -step}); // bent back by rounding
+            sides.push_back({{b, a}, -1 * step}); // bent back by rounding
     };
     for (std::size_t begin = 0, end = 0; begin < cuts.size(); begin = end) {
         const Side whole = sides[cuts[begin].side];
@@ -181,15 +178,14 @@ bool cut(std::vector<Side>& sides, Reach reach) {
             from = cuts[end].at;
         }
         add_piece(from, whole.line.hi, whole.step);
-        sides[cuts[begin].side].step = 0;
+        sides[cuts[begin].side].step = {};
     }
-    merge(sides);
+    merge(arrangement);
     return true;
 }
 
-/// Finds the winding number below each side, by a sweep from left to right. The sides meet in their ends
-/// only.
-void wind(std::vector<Side>& sides, std::int64_t around) {
+/// Finds what is below each side, by a sweep from left to right. The sides meet in their ends only.
+void wind(std::vector<Side>& sides, const SideCount& around) {
     std::vector<Segment> lines;
     lines.reserve(sides.size());
     for (const Side& side : sides)
@@ -213,7 +209,7 @@ void wind(std::vector<Side>& sides, std::int64_t around) {
         while (begins_here(status.below(side)))
             side = status.below(side);
         const std::uint32_t next_below = status.below(side);
-        std::int64_t below = next_below == SweepStatus::none ? around : sides[next_below].above();
+        SideCount below = next_below == SweepStatus::none ? around : sides[next_below].above();
         for (; begins_here(side); side = status.above(side)) {
             sides[side].below = below;
             below = sides[side].above();
@@ -221,20 +217,6 @@ void wind(std::vector<Side>& sides, std::int64_t around) {
         assert(side == SweepStatus::none ? below == around : below == sides[side].below);
     }
     assert(status.empty());
-}
-
-std::vector<Side> arrangement(std::span<const std::span<const Point2>> rings, std::int64_t around,
-                              const ClippingGrid& grid) {
-    std::vector<Side> sides = sides_of(rings, grid);
-    // Rounding the places where sides cross bends them, so that they may cross others: each round has far
-    // fewer. Sides that run side by side would cross again a unit further, round after round, if they were
-    // not drawn to the ends that they pass by.
-    constexpr int rounds = 30;
-    Reach reach = Reach::on_it;
-    for (int round = 0; round < rounds && !sides.empty() && cut(sides, reach); ++round)
-        reach = Reach::beside_it;
-    wind(sides, around);
-    return sides;
 }
 
 /// A side with material on its left.
@@ -290,17 +272,36 @@ std::vector<Ring> joined(std::vector<Directed> sides) {
     return rings;
 }
 
+/// Whether rings of which `winding` tells how often they wind around a place bound the material, up to areas
+/// that rounding to the grid can make.
+template <class Winding>
+bool bounds(const Arrangement& arrangement, const Material& material, const Winding& winding) {
+    double excess = 0; // the integral of by how much they do not
+    double length = 0;
+    const std::int64_t outside =
+        (material(arrangement.around) ? 1 : 0) - winding(SideCount{arrangement.around, 0});
+    const auto off = [&](const SideCount& count) {
+        return static_cast<double>(std::abs(winding(count) + outside - (material(count.windings) ? 1 : 0)));
+    };
+    for (const Side& side : arrangement.sides) {
+        const auto& [lo, hi] = side.line;
+        length += distance(lo, hi);
+        excess += (off(side.below) - off(side.above())) * (hi.x - lo.x) * (lo.y + hi.y) / 2;
+    }
+    return std::abs(excess) <= 2 * length;
+}
+
 bool crossing(const std::vector<Ring>& rings) {
     const std::vector<std::span<const Point2>> spans(rings.begin(), rings.end());
     return has_crossings(layer_of(spans));
 }
 
 /// Puts the corners of the given rings back where they were before they were rounded.
-std::vector<Ring> with_corners(std::vector<Ring> rings, std::span<const std::span<const Point2>> given,
+std::vector<Ring> with_corners(std::vector<Ring> rings, std::span<const WoundRing> given,
                                const ClippingGrid& grid) {
     std::vector<std::pair<Point2, Point2>> corners; // by their places
-    for (const std::span<const Point2> ring : given)
-        for (const Point2& p : ring)
+    for (const WoundRing& ring : given)
+        for (const Point2& p : ring.points)
             corners.emplace_back(grid.place(p), p);
     std::sort(corners.begin(), corners.end()); // of several ones in a place the smallest counts
     for (Ring& ring : rings)
@@ -314,12 +315,34 @@ std::vector<Ring> with_corners(std::vector<Ring> rings, std::span<const std::spa
 
 } // namespace
 
-std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule, std::int64_t around,
-                         const ClippingGrid& grid) {
+Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, const ClippingGrid& grid) {
+    Arrangement arrangement = sides_of(rings, grid);
+    // Rounding the places where sides cross bends them, so that they may cross others: each round has far
+    // fewer. Sides that run side by side would cross again a unit further, round after round, if they were
+    // not drawn to the ends that they pass by.
+    constexpr int rounds = 30;
+    Reach reach = Reach::on_it;
+    for (int round = 0; round < rounds && !arrangement.sides.empty() && cut(arrangement, reach); ++round)
+        reach = Reach::beside_it;
+    arrangement.around = around;
+    wind(arrangement.sides, {around, 0});
+    return arrangement;
+}
+
+bool Arrangement::bounded_by_all(const Material& material) const {
+    return bounds(*this, material, [](const SideCount& count) { return count.windings.sum(); });
+}
+
+bool Arrangement::bounded_by_rest(const Material& material) const {
+    return bounds(*this, material, [](const SideCount& count) { return count.left; });
+}
+
+std::vector<Ring> boundary(const Arrangement& arrangement, const Material& material,
+                           std::span<const WoundRing> rings, const ClippingGrid& grid) {
     std::vector<Directed> sides;
-    for (const Side& side : arrangement(rings, around, grid)) {
-        const bool above = is_material(rule, side.above());
-        if (above != is_material(rule, side.below))
+    for (const Side& side : arrangement.sides) {
+        const bool above = material(side.above().windings);
+        if (above != material(side.below.windings))
             sides.push_back(above ? Directed{side.line.lo, side.line.hi}
                                   : Directed{side.line.hi, side.line.lo});
     }
@@ -333,30 +356,13 @@ std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRul
     return result;
 }
 
-bool winds_once(std::span<const std::span<const Point2>> rings, std::int64_t around,
-                const ClippingGrid& grid) {
-    double excess = 0; // the integral of by how much w is off
-    double length = 0;
-    const auto off = [](std::int64_t w) {
-        return static_cast<double>(w > 1 ? w - 1 : w < 0 ? -w : 0);
-    };
-    for (const Side& side : arrangement(rings, around, grid)) {
-        const auto& [lo, hi] = side.line;
-        length += distance(lo, hi);
-        excess += (off(side.below) - off(side.above())) * (hi.x - lo.x) * (lo.y + hi.y) / 2;
-    }
-    return std::abs(excess) <= 2 * length;
-}
-
-bool is_material(FillRule rule, std::int64_t winding) noexcept {
-    switch (rule) {
-    case FillRule::nonzero:
-        return winding != 0;
-    case FillRule::evenodd:
-        return winding % 2 != 0;
-    default:
-        return winding > 0;
-    }
+std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule,
+                         const ClippingGrid& grid) {
+    std::vector<WoundRing> wound;
+    wound.reserve(rings.size());
+    for (const std::span<const Point2> ring : rings)
+        wound.push_back({ring});
+    return boundary(arranged(wound, {}, grid), Material(rule), wound, grid);
 }
 
 Layer layer_of(std::span<const std::span<const Point2>> rings) {

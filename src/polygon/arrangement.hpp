@@ -1,11 +1,13 @@
 #pragma once
 
-// Rings cut where they meet, and the winding number on both sides of every piece.
+// Rings cut where they meet, and the winding numbers on both sides of every piece.
 
 #include "lamella/contour/layer.hpp"
-#include "lamella/polygon/fill.hpp"
 
 #include "polygon/clipping_grid.hpp"
+#include "polygon/material.hpp"
+#include "polygon/orientation.hpp"
+#include "polygon/windings.hpp"
 
 #include <cstdint>
 #include <span>
@@ -13,21 +15,70 @@
 
 namespace lamella {
 
-/// The boundary of where w + `around` fulfils the rule, w being the winding number of the rings: bodies
-/// counter-clockwise, holes clockwise, rings that meet in a point joined so that each keeps its own wedge of
-/// material. Points that were corners of the rings keep their coordinates, others lie on the grid. Rings in
-/// any order, each starting anywhere; they do not cross.
-///
-/// O((n + k) log n) for n points with k crossings, as far as crossings are found in that.
+/// A ring, and what it adds where it runs counter-clockwise: to the windings of its inside, and to how often
+/// what is left of it winds around that: 1 for a ring that is to stay, -1 for one that is to be turned round,
+/// 0 for one that is to go.
+struct WoundRing {
+    std::span<const Point2> points;
+    Windings turn{1, 0};
+    std::int64_t left = 0;
+};
+
+/// What changes across a piece of the boundary, from below to above, or what is there.
+struct SideCount {
+    Windings windings;
+    std::int64_t left = 0;
+
+    SideCount& operator+=(const SideCount& other) noexcept {
+        windings += other.windings;
+        left += other.left;
+        return *this;
+    }
+    friend SideCount operator*(std::int64_t times, const SideCount& c) noexcept {
+        return {times * c.windings, times * c.left};
+    }
+    friend SideCount operator+(SideCount a, const SideCount& b) noexcept { return a += b; }
+    friend bool operator==(const SideCount&, const SideCount&) = default;
+};
+
+/// A piece of the boundary, on the grid. All numbers are whole.
+struct Side {
+    Segment line;
+    SideCount step;
+    SideCount below = {};
+
+    [[nodiscard]] SideCount above() const noexcept { return below + step; }
+};
+
+/// Sides that meet in their ends only.
+struct Arrangement {
+    std::vector<Side> sides;
+    Windings around; ///< outside of all
+    /// Whether rings that are left run along one another there and back, so that nothing lies between them.
+    bool walls = false;
+
+    /// Whether the rings as they are bound the material, up to areas that rounding to the grid can make. Not
+    /// known of rings of both operands.
+    [[nodiscard]] bool bounded_by_all(const Material& material) const;
+    /// Whether what is left of them does.
+    [[nodiscard]] bool bounded_by_rest(const Material& material) const;
+};
+
+/// The rings, in any order and each starting anywhere, cut on the grid where they meet. `around`: the
+/// windings outside of all of them. O((n + k) log n) for n points with k crossings, as far as crossings are
+/// found in that.
+[[nodiscard]] Arrangement arranged(std::span<const WoundRing> rings, const Windings& around,
+                                   const ClippingGrid& grid);
+
+/// The boundary of the material in an arrangement of these rings: bodies counter-clockwise, holes clockwise,
+/// rings that meet in a point joined so that each keeps its own wedge of material. Points that were corners
+/// of the rings keep their coordinates, others lie on the grid. They do not cross.
+[[nodiscard]] std::vector<Ring> boundary(const Arrangement& arrangement, const Material& material,
+                                         std::span<const WoundRing> rings, const ClippingGrid& grid);
+
+/// The boundary of where the winding number of the rings fulfils the rule; see `boundary`.
 [[nodiscard]] std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule,
-                                       std::int64_t around, const ClippingGrid& grid);
-
-/// Whether w + `around` is 0 or 1 everywhere, up to areas that rounding to the grid can make.
-[[nodiscard]] bool winds_once(std::span<const std::span<const Point2>> rings, std::int64_t around,
-                              const ClippingGrid& grid);
-
-/// Whether the rule makes material of a winding number.
-[[nodiscard]] bool is_material(FillRule rule, std::int64_t winding) noexcept;
+                                       const ClippingGrid& grid);
 
 /// A layer of rings only, not in normal form.
 [[nodiscard]] Layer layer_of(std::span<const std::span<const Point2>> rings);

@@ -69,14 +69,14 @@ void EdgeColumn::order(double x) {
     }
     assert(ordered_.size() + loose_.size() == edges.size());
     winding_.reserve(ordered_.size() + 1);
-    winding_.push_back(0);
+    winding_.emplace_back();
     for (const RingEdge& edge : ordered_)
         winding_.push_back(winding_.back() + edge.step);
 }
 
-std::int64_t EdgeColumn::winding_below(double x, const RingEdge& edge) const {
+Windings EdgeColumn::winding_below(double x, const RingEdge& edge) const {
     assert(winding_.size() == ordered_.size() + 1); // they are in order
-    std::int64_t result = winding_[first_not_below(x, edge)];
+    Windings result = winding_[first_not_below(x, edge)];
     for (const RingEdge& e : loose_)
         if (below(x, e, edge))
             result += e.step;

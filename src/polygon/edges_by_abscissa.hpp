@@ -3,6 +3,7 @@
 // Edges of rings that may touch, coincide and cross: which are below a place, and how they wind around it.
 
 #include "polygon/orientation.hpp"
+#include "polygon/windings.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +15,7 @@ namespace lamella {
 struct RingEdge {
     Segment line;
     std::uint32_t ring = 0; ///< a representative, see `RingCopies`
-    /// How the winding number changes from below to above.
-    std::int32_t step = 0;
+    Windings step;          ///< how they change from below to above
     /// Orders edges that coincide, as if they lay upon one another: rings that end at the edge first, the
     /// inner ones before those around them, then rings that begin there, the outer ones first. Not negative
     /// where the ring's inside is above.
@@ -31,8 +31,8 @@ class EdgeColumn {
 
     [[nodiscard]] bool empty() const noexcept { return ordered_.empty() && loose_.empty(); }
 
-    /// The winding number below the edge at x, as far as this column has a part in it.
-    [[nodiscard]] std::int64_t winding_below(double x, const RingEdge& edge) const;
+    /// The windings below the edge at x, as far as this column has a part in them.
+    [[nodiscard]] Windings winding_below(double x, const RingEdge& edge) const;
     /// Makes `best` the highest edge below `edge`, if that is higher than it.
     void raise(double x, const RingEdge& edge, const RingEdge*& best) const;
     /// How many edges coincide with `edge`, to the right of x, and have its place in that order.
@@ -41,9 +41,9 @@ class EdgeColumn {
   private:
     [[nodiscard]] std::size_t first_not_below(double x, const RingEdge& edge) const;
 
-    std::vector<RingEdge> ordered_;     ///< from below to above
-    std::vector<std::int64_t> winding_; ///< above the first i of them
-    std::vector<RingEdge> loose_;       ///< those that cross others, in no order
+    std::vector<RingEdge> ordered_; ///< from below to above
+    std::vector<Windings> winding_; ///< above the first i of them
+    std::vector<RingEdge> loose_;   ///< those that cross others, in no order
 };
 
 /// A segment tree over some abscissae: each edge is kept in few nodes, and those with the edges above and

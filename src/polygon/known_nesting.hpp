@@ -1,18 +1,33 @@
 #pragma once
 
-// Nesting for who has looked at the layer before.
+// Nesting for who has looked at the layer before, also where its rings are those of two operands.
 
 #include "lamella/polygon/nesting.hpp"
 
 #include "polygon/contacts.hpp"
 #include "polygon/monotone_chains.hpp"
+#include "polygon/windings.hpp"
+
+#include <span>
+#include <vector>
 
 namespace lamella {
+
+/// The nesting by both operands together, and for each ring the windings of either just outside of its left
+/// end, just inside, and below it, whatever other rings share its lowest edge there.
+struct WoundNesting {
+    Nesting nesting;
+    std::vector<Windings> outside;
+    std::vector<Windings> inside;
+    std::vector<Windings> below;
+};
 
 /// The same as `nesting(layer)`, but what that begins with is there already: the chains of the layer, their
 /// grid (null where there is none), and its contacts. Where there are none, nesting takes little time: O(c
 /// log c) for c rings, and a short way down the grid for each of them.
-[[nodiscard]] Nesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
-                              const Contacts& contacts);
+///
+/// `turns`: what each ring adds to the windings; for a layer of one operand, 1 to the first.
+[[nodiscard]] WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
+                                   const Contacts& contacts, std::span<const Windings> turns);
 
 } // namespace lamella

@@ -25,10 +25,12 @@ namespace {
 /// Takes the rings from left to right and looks at what lies below the left end of each.
 class NestingSearch {
   public:
-    /// `apart`: no two rings have a point in common, nor has one with itself.
-    NestingSearch(const Layer& layer, const MonotoneChains& chains, bool apart)
-        : layer_(layer), chains_(chains), apart_(apart), ends_(ends_of(layer, chains)),
-          copies_(layer, ends_, apart), placement_(ends_, copies_) {
+    /// `turns`: what each ring adds to the windings. `apart`: no two rings have a point in common, nor has
+    /// one with itself.
+    NestingSearch(const Layer& layer, const MonotoneChains& chains, std::span<const Windings> turns,
+                  bool apart)
+        : layer_(layer), chains_(chains), turns_(turns), apart_(apart), ends_(ends_of(layer, chains)),
+          copies_(layer, ends_, apart), below_(layer.rings), placement_(ends_, copies_, turns) {
         for (std::uint32_t i = 0; i < ends_.size(); ++i)
             if (layer.contour(i).empty())
                 placement_.place_empty(i);
@@ -37,7 +39,7 @@ class NestingSearch {
     }
 
     /// `grid`: null where there is none.
-    Nesting run(const ChainGrid* grid) && {
+    WoundNesting run(const ChainGrid* grid) && {
         order_by_area();
         order_from_left_to_right();
         if (apart_ && grid != nullptr && !grid->crowded() &&
@@ -45,15 +47,19 @@ class NestingSearch {
             place_apart(*grid);
         else if (!order_.empty())
             place_any();
-        return std::move(placement_).result();
+        WoundNesting result = std::move(placement_).result();
+        result.below = std::move(below_);
+        return result;
     }
 
   private:
     void place_any() {
-        const SurroundingsSearch surroundings(chains_, ends_, copies_, order_, by_area_);
+        const SurroundingsSearch surroundings(chains_, ends_, copies_, turns_, order_, by_area_);
         for (const std::uint32_t ring : order_) {
             const Surroundings around = surroundings.find(ring);
-            placement_.place(ring, parent_of(around), static_cast<std::int32_t>(around.winding));
+            placement_.place(ring, parent_of(around), around.winding);
+            for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
+                below_[copy] = around.below_all;
         }
     }
 
@@ -75,9 +81,10 @@ class NestingSearch {
             if (below)
                 parent = below->rightwards == ends_[below->ring].rightwards ? below->ring
                                                                             : placement_.outside(below->ring);
-            const std::int32_t winding = parent == Nesting::none ? 0 : placement_.winding_inside(parent);
+            const Windings winding = parent == Nesting::none ? Windings{} : placement_.winding_inside(parent);
             assert(!below || below->ring == parent || placement_.winding(below->ring) == winding);
             placement_.place(ring, parent, winding);
+            below_[ring] = winding;
         }
     }
 
@@ -123,11 +130,13 @@ class NestingSearch {
 
     const Layer& layer_;
     const MonotoneChains& chains_;
+    std::span<const Windings> turns_;
     bool apart_;
     std::vector<LeftEnd> ends_;
     RingCopies copies_;
     std::vector<std::uint32_t> order_;   ///< the representatives
     std::vector<std::uint32_t> by_area_; ///< of representatives: 0 for the largest
+    std::vector<Windings> below_;
     RingPlacement placement_;
 };
 
@@ -143,14 +152,16 @@ Nesting nesting(const Layer& layer) {
     check_size(layer);
     const MonotoneChains chains(layer);
     const std::optional<ChainGrid> grid = ChainGrid::of(chains);
+    const std::vector<Windings> turns(layer.rings, Windings{1, 0});
     return nesting(layer, chains, grid ? &*grid : nullptr,
-                   find_contacts(layer, chains, grid ? &*grid : nullptr));
+                   find_contacts(layer, chains, grid ? &*grid : nullptr), turns)
+        .nesting;
 }
 
-Nesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
-                const Contacts& contacts) {
+WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
+                     const Contacts& contacts, std::span<const Windings> turns) {
     check_size(layer);
-    return NestingSearch(layer, chains, contacts.groups == 0).run(grid);
+    return NestingSearch(layer, chains, turns, contacts.groups == 0).run(grid);
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {

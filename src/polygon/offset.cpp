@@ -72,7 +72,7 @@ Layer offset(const Layer& layer, double distance, std::uint64_t* vanished) {
     const ClippingGrid grid(layer.points.span().first(points), 2 * std::abs(distance));
     // The library moves every ring by itself. It has to see boundaries of material: where rings overlap, and
     // where a hole runs along its body, no wall must grow out of nothing.
-    const std::vector<Ring> united = filled(rings, FillRule::positive, 0, grid);
+    const std::vector<Ring> united = filled(rings, FillRule::positive, grid);
     if (vanished != nullptr)
         *vanished = vanished_rings(united, distance, grid);
     rings.assign(united.begin(), united.end());
@@ -80,7 +80,7 @@ Layer offset(const Layer& layer, double distance, std::uint64_t* vanished) {
     const std::vector<Ring> moved = grown(rings, distance, grid);
     rings.assign(moved.begin(), moved.end());
     LayerBuilder builder;
-    for (const Ring& ring : filled(rings, FillRule::positive, 0, grid)) {
+    for (const Ring& ring : filled(rings, FillRule::positive, grid)) {
         for (const Point2& p : ring)
             builder.add_point(p);
         builder.end_contour(true);

@@ -22,18 +22,22 @@ namespace {
 
 } // namespace
 
-RingPlacement::RingPlacement(std::span<const LeftEnd> ends, const RingCopies& copies)
-    : ends_(ends), copies_(copies), inside_(ends.size()), around_(ends.size(), Nesting::none),
+RingPlacement::RingPlacement(std::span<const LeftEnd> ends, const RingCopies& copies,
+                             std::span<const Windings> turns)
+    : ends_(ends), copies_(copies), turns_(turns), inside_(ends.size()), around_(ends.size(), Nesting::none),
       outside_(ends.size(), Nesting::none), innermost_(ends.size(), Nesting::none) {
-    result_.kind.assign(ends.size(), RingKind::flat);
-    result_.parent.assign(ends.size(), Nesting::none);
-    result_.depth.assign(ends.size(), 0);
-    result_.winding.assign(ends.size(), 0);
-    result_.winding_inside.assign(ends.size(), 0);
-    result_.body.assign(ends.size(), Nesting::none);
+    assert(turns.size() == ends.size());
+    result_.nesting.kind.assign(ends.size(), RingKind::flat);
+    result_.nesting.parent.assign(ends.size(), Nesting::none);
+    result_.nesting.depth.assign(ends.size(), 0);
+    result_.nesting.winding.assign(ends.size(), 0);
+    result_.nesting.winding_inside.assign(ends.size(), 0);
+    result_.nesting.body.assign(ends.size(), Nesting::none);
+    result_.outside.resize(ends.size());
+    result_.inside.resize(ends.size());
 }
 
-void RingPlacement::place(std::uint32_t ring, std::uint32_t parent, std::int32_t winding) {
+void RingPlacement::place(std::uint32_t ring, std::uint32_t parent, Windings winding) {
     assert(copies_.representative(ring) == ring);
     outside_[ring] = innermost_[ring] = parent;
     if (ends_[ring].flat) {
@@ -45,18 +49,18 @@ void RingPlacement::place(std::uint32_t ring, std::uint32_t parent, std::int32_t
     std::uint32_t hole = next_copy(ring, false);
     while (body != Nesting::none || hole != Nesting::none) {
         std::uint32_t& last = innermost_[ring];
-        if (body == Nesting::none || (winding >= 1 && hole != Nesting::none)) {
-            place_one(hole, last, winding, winding < 1 ? RingKind::misoriented : RingKind::hole);
+        if (body == Nesting::none || (winding.sum() >= 1 && hole != Nesting::none)) {
+            place_one(hole, last, winding, winding.sum() < 1 ? RingKind::misoriented : RingKind::hole);
             last = hole;
-            --winding;
+            winding += -turns_[hole];
             hole = next_copy(copies_.next(hole), false);
         } else {
             place_one(body, last, winding,
-                      winding < 0    ? RingKind::misoriented
-                      : winding == 0 ? RingKind::outer
-                                     : RingKind::overlapping);
+                      winding.sum() < 0    ? RingKind::misoriented
+                      : winding.sum() == 0 ? RingKind::outer
+                                           : RingKind::overlapping);
             last = body;
-            ++winding;
+            winding += turns_[body];
             body = next_copy(copies_.next(body), true);
         }
     }
@@ -69,22 +73,27 @@ std::uint32_t RingPlacement::next_copy(std::uint32_t ring, bool counter_clockwis
     return ring;
 }
 
-void RingPlacement::place_one(std::uint32_t ring, std::uint32_t parent, std::int32_t winding, RingKind kind) {
-    result_.kind[ring] = kind;
-    result_.parent[ring] = parent;
-    result_.winding[ring] = result_.winding_inside[ring] = winding;
-    result_.order.push_back(ring);
+void RingPlacement::place_one(std::uint32_t ring, std::uint32_t parent, const Windings& winding,
+                              RingKind kind) {
+    Nesting& nesting = result_.nesting;
+    nesting.kind[ring] = kind;
+    nesting.parent[ring] = parent;
+    result_.outside[ring] = result_.inside[ring] = winding;
+    if (kind != RingKind::flat)
+        result_.inside[ring] += ends_[ring].rightwards ? turns_[ring] : -turns_[ring];
+    nesting.winding[ring] = static_cast<std::int32_t>(result_.outside[ring].sum());
+    nesting.winding_inside[ring] = static_cast<std::int32_t>(result_.inside[ring].sum());
+    nesting.order.push_back(ring);
     if (parent != Nesting::none) {
-        result_.depth[ring] = result_.depth[parent] + 1;
+        nesting.depth[ring] = nesting.depth[parent] + 1;
         inside_[ring] = inside_[parent];
     }
     if (kind == RingKind::flat)
         return;
-    result_.winding_inside[ring] += ends_[ring].rightwards ? 1 : -1;
     find_body(ring, inside_[ring]);
-    assert(kind != RingKind::outer || (winding == 0 && ends_[ring].rightwards));
-    assert(kind != RingKind::hole || (winding >= 1 && !ends_[ring].rightwards));
-    assert(kind != RingKind::overlapping || (winding >= 1 && ends_[ring].rightwards));
+    assert(kind != RingKind::outer || (winding.sum() == 0 && ends_[ring].rightwards));
+    assert(kind != RingKind::hole || (winding.sum() >= 1 && !ends_[ring].rightwards));
+    assert(kind != RingKind::overlapping || (winding.sum() >= 1 && ends_[ring].rightwards));
 }
 
 /// `inside`: what is around the ring, and in the end what is inside of it.
@@ -94,21 +103,21 @@ void RingPlacement::find_body(std::uint32_t ring, Inside& inside) {
             --inside.missing;
         } else {
             around_[ring] = inside.body;
-            inside.body = result_.body[ring] = ring;
+            inside.body = result_.nesting.body[ring] = ring;
         }
     } else if (inside.body == Nesting::none) {
         ++inside.missing;
     } else {
-        result_.body[ring] = inside.body;
+        result_.nesting.body[ring] = inside.body;
         inside.body = around_[inside.body];
     }
     assert(inside.body == Nesting::none || inside.missing == 0);
-    assert(inside.body == Nesting::none || result_.body[inside.body] == inside.body);
+    assert(inside.body == Nesting::none || result_.nesting.body[inside.body] == inside.body);
 }
 
-Nesting RingPlacement::result() && {
-    assert(result_.order.size() == ends_.size());
-    assert(parents_come_first(result_));
+WoundNesting RingPlacement::result() && {
+    assert(result_.nesting.order.size() == ends_.size());
+    assert(parents_come_first(result_.nesting));
     return std::move(result_);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 namespace lamella {
@@ -26,16 +27,16 @@ RingEdge opposite(RingEdge edge) noexcept {
 } // namespace
 
 SurroundingsSearch::SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends,
-                                       const RingCopies& copies,
+                                       const RingCopies& copies, std::span<const Windings> turns,
                                        std::span<const std::uint32_t> representatives,
                                        std::span<const std::uint32_t> by_area)
-    : chains_(chains), ends_(ends), copies_(copies), by_area_(by_area),
+    : chains_(chains), ends_(ends), copies_(copies), turns_(turns), by_area_(by_area),
       edges_(abscissae_of(ends, representatives)) {
     std::size_t near = 0;
     for (const std::uint32_t ring : representatives) {
         if (ends_[ring].flat)
             continue;
-        const std::int32_t net = net_winding(ring);
+        const Windings net = net_winding(ring);
         for (const Chain& chain : chains_.of_ring(ring)) {
             const std::size_t from = edges_.leaf(chain.front.x, near);
             near = edges_.leaf(chain.back.x, from);
@@ -47,12 +48,12 @@ SurroundingsSearch::SurroundingsSearch(const MonotoneChains& chains, std::span<c
 }
 
 /// The edges of a chain that reach over left ends. `net`: of its ring; `leaf`: of its first point.
-void SurroundingsSearch::add_edges(const Chain& chain, std::int32_t net, std::size_t leaf) {
+void SurroundingsSearch::add_edges(const Chain& chain, const Windings& net, std::size_t leaf) {
     assert(!way::turns(chain.ways));
     const std::uint32_t ring = chain.ring;
     const bool rightwards = (chain.ways & way::right) != 0;
     const bool inside_above = rightwards == ends_[ring].rightwards;
-    const std::int32_t step = inside_above ? net : -net;
+    const Windings step = inside_above ? net : -net;
     const std::int64_t order = place_in_order(ring, inside_above);
     for (std::uint32_t i = 0; i < chain.segments; ++i) {
         const Point2& a = chains_.point(chain, i);
@@ -71,10 +72,10 @@ std::int64_t SurroundingsSearch::place_in_order(std::uint32_t ring, bool inside_
 }
 
 /// How often the copies of a ring wind around its inside.
-std::int32_t SurroundingsSearch::net_winding(std::uint32_t ring) const noexcept {
-    std::int32_t net = 0;
+Windings SurroundingsSearch::net_winding(std::uint32_t ring) const noexcept {
+    Windings net;
     for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
-        net += ends_[copy].rightwards ? 1 : -1;
+        net += ends_[copy].rightwards ? turns_[copy] : -turns_[copy];
     return net;
 }
 
@@ -87,14 +88,18 @@ std::int64_t SurroundingsSearch::count_equal(double x, const RingEdge& edge) con
 /// An edge that runs there and back bounds nothing on its own: it is passed over on the way down.
 Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
     assert(copies_.representative(ring) == ring);
-    const RingEdge left_edge{ends_[ring].line, ring, ends_[ring].flat ? 0 : net_winding(ring),
+    const RingEdge left_edge{ends_[ring].line, ring, ends_[ring].flat ? Windings{} : net_winding(ring),
                              place_in_order(ring, true)};
     const double x = left_edge.line.lo.x;
+    RingEdge lowest = left_edge;
+    lowest.order = std::numeric_limits<std::int64_t>::min();
     Surroundings result;
-    edges_.for_columns_at(
-        x, [&](const EdgeColumn& column) { result.winding += column.winding_below(x, left_edge); });
+    edges_.for_columns_at(x, [&](const EdgeColumn& column) {
+        result.winding += column.winding_below(x, left_edge);
+        result.below_all += column.winding_below(x, lowest);
+    });
     // Edges of the ring itself that run back on its lowest one come before it in the order.
-    result.winding += left_edge.step * count_equal(x, opposite(left_edge));
+    result.winding += count_equal(x, opposite(left_edge)) * left_edge.step;
     RingEdge from = left_edge;
     while (true) {
         const RingEdge* below = nullptr;

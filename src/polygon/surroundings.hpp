@@ -16,7 +16,8 @@ namespace lamella {
 
 /// What is found at the left end of a ring.
 struct Surroundings {
-    std::int64_t winding = 0;
+    Windings winding;
+    Windings below_all;              ///< below all edges that coincide with its lowest one there
     const RingEdge* below = nullptr; ///< the next edge below that bounds something, of another ring
 };
 
@@ -24,24 +25,25 @@ struct Surroundings {
 /// are left out, chain by chain. Exact but for `below` where edges cross.
 class SurroundingsSearch {
   public:
-    /// `by_area`: of representatives, how many of them are larger. All arguments are to outlive the search.
-    /// O(n log c) for n edges that reach over left ends of c rings.
+    /// `turns`: what each ring adds; `by_area`: of representatives, how many of them are larger. All
+    /// arguments are to outlive the search. O(n log c) for n edges that reach over left ends of c rings.
     SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends, const RingCopies& copies,
-                       std::span<const std::uint32_t> representatives,
+                       std::span<const Windings> turns, std::span<const std::uint32_t> representatives,
                        std::span<const std::uint32_t> by_area);
 
     /// The result lives as long as the search. O(log n log c), and more where edges cross or fold.
     [[nodiscard]] Surroundings find(std::uint32_t ring) const;
 
   private:
-    void add_edges(const Chain& chain, std::int32_t net, std::size_t leaf);
+    void add_edges(const Chain& chain, const Windings& net, std::size_t leaf);
     [[nodiscard]] std::int64_t place_in_order(std::uint32_t ring, bool inside_above) const noexcept;
-    [[nodiscard]] std::int32_t net_winding(std::uint32_t ring) const noexcept;
+    [[nodiscard]] Windings net_winding(std::uint32_t ring) const noexcept;
     [[nodiscard]] std::int64_t count_equal(double x, const RingEdge& edge) const;
 
     const MonotoneChains& chains_;
     std::span<const LeftEnd> ends_;
     const RingCopies& copies_;
+    std::span<const Windings> turns_;
     std::span<const std::uint32_t> by_area_;
     EdgesByAbscissa edges_;
 };

@@ -103,6 +103,18 @@ class Layers(ProgramTest):
                     self.assertAlmostEqual(polygons(found).symmetric_difference(expected).area, 0, delta=1e-6)
                     self.assertAlmostEqual(sum(map(signed_area, found)), expected.area, delta=1e-6)
 
+    def test_areas_that_one_layer_has_and_the_other_has_not(self):
+        first, second = self.blobs(7), self.blobs(8)
+        self.given(first)
+        self.succeed("convert", "given.json", "first.json")
+        self.given(second)
+        found = json.loads(self.run_program("compare", "first.json", "given.json", "--area-difference", "--json").out)
+        told = {area["z"]: area["area_mm2"] for area in found["area_differences"]}
+        for i, (a, b) in enumerate(zip(first, second)):
+            with self.subTest(layer=i):
+                expected = material(a, "positive").symmetric_difference(material(b, "positive")).area
+                self.assertAlmostEqual(told.get(i + 0.5, 0), expected, delta=1e-6)
+
     def test_offsets_lie_between_round_ones_of_once_and_twice_the_distance(self):
         _, before = self.united(2)
         for distance in (0.05, 0.4, 1.5):

@@ -40,6 +40,29 @@ class Compare(ProgramTest):
         self.succeed("compare", "torus.json", "moved.json", "--tolerance", "0.25")
         self.assertRegex(self.differ("torus.json", "moved.json").text, r"largest difference: .* mm apart at \(")
 
+    def test_areas_that_one_file_has_and_the_other_has_not(self):
+        same = self.succeed("compare", "torus.json", "torus.json", "--area-difference", "--json").json()
+        self.assertEqual((same["area_difference_mm2"], same["area_differences"]), (0, []))
+        self.slice("moved.json", "--translate", "100,0,0")
+        for other in ("moved.json", "part.json"):
+            with self.subTest(other):
+                if other == "part.json":
+                    self.slice(other, "--layers", "2:5")
+                found = self.differ("torus.json", other, "--area-difference", "--json").json()
+                areas = [sum(abs(d["area_mm2"][k]) for k in (0, 1)) for d in found["differences"]]
+                told = [d["area_mm2"] for d in found["area_differences"]]
+                if other == "moved.json":  # no longer over one another
+                    self.assertEqual([d["z"] for d in found["area_differences"]], [d["z"] for d in found["differences"]])
+                    for area, expected in zip(told, areas):
+                        self.assertAlmostEqual(area, expected, places=6)
+                else:
+                    self.assertEqual(len(told), found["layers"] - 3)
+                self.assertAlmostEqual(found["area_difference_mm2"], sum(told), places=9)
+                text = self.differ("torus.json", other, "--area-difference").text
+                self.assertEqual(text.count(" mm2\n"), len(told) + (2 if other == "moved.json" else 0))
+                self.assertIn(f"mm2 in all, in {len(told)} layers", text)
+        self.assertNotIn("area_difference_mm2", self.differ("torus.json", "part.json", "--json").json())
+
     def test_layers_that_one_file_does_not_have(self):
         self.slice("part.json", "--layers", "2:5")
         found = self.differ("torus.json", "part.json", "--json").json()

@@ -111,6 +111,15 @@ TEST(Fill, UnitesWhatOverlapsAlsoWithoutCrossingProperly) {
               (std::vector<Contour>{diamond(0, 0, 3)}));
 }
 
+TEST(Fill, UnitesRingsThatFoldAtTheirLeftEndWithTheirReverse) {
+    // In the fold of one of the two, where it bounds nothing, the other one has its left end.
+    const Contour folded{{4, 2}, {7, 2}, {4, 2}, {10, 8}, {6, 2}, {12, 2}, {6, 7}};
+    const Layer layer =
+        normal_layer({folded, reversed(folded), rectangle(5, 3, 8, 5), rectangle(7, 4, 9, 6)});
+    EXPECT_NEAR(measure(fill(layer, FillRule::positive).layer).area_mm2, 9, 1e-6);
+    EXPECT_NEAR(measure(fill(layer, FillRule::nonzero).layer).area_mm2, 9, 1e-6);
+}
+
 TEST(Fill, CountsTheMaterialAroundAGroup) {
     // Two bodies that cross, in a body, in a hole, in one turned inside out, and in two bodies.
     const Contour a = rectangle(2, 2, 4, 4);

@@ -106,8 +106,9 @@ TEST(KnownNesting, IsTheNestingOfTheLayer) {
         const Contacts contacts = find_contacts(layer, chains, grid ? &*grid : nullptr);
         EXPECT_TRUE(!apart || contacts.groups == 0);
         // Who is told of contacts looks at all edges.
-        const Nesting expected = nesting(layer, chains, nullptr, {.group = {}, .groups = 1});
-        const Nesting found = nesting(layer, chains, grid ? &*grid : nullptr, contacts);
+        const std::vector<Windings> turns(layer.rings, Windings{1, 0});
+        const Nesting expected = nesting(layer, chains, nullptr, {.group = {}, .groups = 1}, turns).nesting;
+        const Nesting found = nesting(layer, chains, grid ? &*grid : nullptr, contacts, turns).nesting;
         EXPECT_EQ(found.kind, expected.kind);
         EXPECT_EQ(found.parent, expected.parent);
         EXPECT_EQ(found.winding, expected.winding);

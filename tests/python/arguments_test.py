@@ -64,6 +64,10 @@ CALLS = {
     "Layer.filled": (stack()[0].filled, {}),
     "Layer.offset": (stack()[0].offset, {"distance": 1}),
     "Layer.simplified": (stack()[0].simplified, {"tolerance": 1}),
+    "Layer.union": (stack()[0].union, {"other": stack()[0]}),
+    "Layer.intersection": (stack()[0].intersection, {"other": stack()[0]}),
+    "Layer.difference": (stack()[0].difference, {"other": stack()[0]}),
+    "Layer.symmetric_difference": (stack()[0].symmetric_difference, {"other": stack()[0]}),
 }
 
 
@@ -194,6 +198,7 @@ TEXTS = [
      "z: 1 is not possible; a layer is cut between its bottom, 2.0, and its top, 1.0"),
     (lambda: lamella.Stack([1]), TypeError, "layers: expected layers, found 1"),
     (lambda: stack()[0].offset("far"), TypeError, "distance: expected a finite number, found 'far'"),
+    (lambda: stack()[0].union(5), TypeError, "other: expected a layer, found 5"),
     (lambda: stack()[0]["a"], TypeError, "the number of a contour: expected a whole number, found str"),
 ]  # fmt: skip
 

@@ -132,6 +132,11 @@ def test_what_can_be_made_of_a_layer():
     assert np.isclose(square.offset(1).area, 36)
     assert np.isclose(square.offset(-1).area, 4)
     assert len(square.simplified(0.01).points) == 4
+    other = lamella.Layer([[(3, 1), (9, 1), (9, 2), (3, 2)]], z=5)
+    for name, area in [("union", 21), ("intersection", 1), ("difference", 15), ("symmetric_difference", 20)]:
+        made = getattr(square, name)(other)
+        assert np.isclose(made.area, area) and made.z == 0
+    assert square.intersection(square) == square
     with pytest.raises(lamella.UsageError, match="there are nonzero, evenodd and positive"):
         square.filled("zigzag")
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from conftest import nested_boxes, open_box
-from shapely.geometry import MultiPolygon
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.ops import unary_union
 
 import lamella
 
@@ -28,3 +29,26 @@ def test_layers_without_material_are_empty():
     assert lamella.Layer([], z=0).to_shapely().is_empty
     with pytest.warns(lamella.DefectWarning):
         assert lamella.slice(open_box(), 1)[0].to_shapely().is_empty
+
+
+def random_rings(numbers):
+    """Stars and boxes that may overlap; boxes share corners and edges."""
+    for _ in range(numbers.integers(1, 9)):
+        if numbers.integers(2):
+            turns = np.linspace(0, 2 * np.pi, numbers.integers(3, 30), endpoint=False)
+            radii = numbers.uniform(0.3, 1, len(turns)) * numbers.uniform(1, 5)
+            yield np.column_stack([np.cos(turns), np.sin(turns)]) * radii[:, None] + numbers.uniform(0, 10, 2)
+        else:
+            yield numbers.integers(0, 10, 2) + np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * numbers.integers(1, 6, 2)
+
+
+def test_layers_are_combined_as_shapely_combines_polygons():
+    numbers = np.random.default_rng(5)
+    for _ in range(300):
+        rings, other_rings = list(random_rings(numbers)), list(random_rings(numbers))
+        layer, other = lamella.Layer(rings, z=1), lamella.Layer(other_rings, z=2)
+        shape, other_shape = (unary_union([Polygon(ring) for ring in each]) for each in (rings, other_rings))
+        for name in ("union", "intersection", "difference", "symmetric_difference"):
+            found = getattr(layer, name)(other)
+            expected = getattr(shape, name)(other_shape)
+            assert np.isclose(found.area, expected.area, rtol=0, atol=1e-6)

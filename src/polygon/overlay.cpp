@@ -1,0 +1,178 @@
+#include "polygon/overlay.hpp"
+
+#include "lamella/polygon/crossings.hpp"
+
+#include "polygon/arrangement.hpp"
+#include "polygon/clipping_grid.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+enum class Fate : std::uint8_t { kept, reversed, dropped, united };
+
+/// Of a ring with material on one side or on both, or on none.
+Fate fate(bool outside, bool inside, bool counter_clockwise) noexcept {
+    if (outside == inside)
+        return Fate::dropped;
+    return inside == counter_clockwise ? Fate::kept : Fate::reversed;
+}
+
+std::int64_t left_of(Fate fate) noexcept {
+    return fate == Fate::kept ? 1 : fate == Fate::reversed ? -1 : 0;
+}
+
+class Filler {
+  public:
+    Filler(const Layer& layer, std::span<const Windings> turns, const Material& material,
+           const Contacts& contacts, const WoundNesting& nest)
+        : layer_(layer), turns_(turns), material_(material), nest_(nest), groups_(contacts.groups),
+          fates_(layer.rings) {
+        assert(contacts.group.size() == layer.rings && nest.nesting.order.size() == layer.rings);
+        for (const std::uint32_t ring : nest.nesting.order) {
+            const std::uint32_t group = contacts.group[ring];
+            if (flat(ring))
+                fates_[ring] = Fate::dropped;
+            else if (group != Contacts::none)
+                groups_[group].push_back(ring);
+            else
+                fates_[ring] = fate_by_left_end(ring);
+        }
+    }
+
+    Filled run() && {
+        for (const std::vector<std::uint32_t>& group : groups_)
+            fill_group(group);
+        result_.rings_dropped = count(Fate::dropped);
+        result_.rings_reversed = count(Fate::reversed);
+        if (!result_.changed())
+            result_.layer = layer_;
+        else
+            result_.layer = put_together();
+        return std::move(result_);
+    }
+
+  private:
+    [[nodiscard]] std::uint64_t count(Fate wanted) const {
+        return static_cast<std::uint64_t>(std::count(fates_.begin(), fates_.end(), wanted));
+    }
+    [[nodiscard]] bool flat(std::uint32_t ring) const noexcept {
+        return nest_.nesting.kind[ring] == RingKind::flat;
+    }
+    [[nodiscard]] Fate fate_by_left_end(std::uint32_t ring) const noexcept {
+        return fate(material_(nest_.outside[ring]), material_(nest_.inside[ring]),
+                    nest_.inside[ring].sum() > nest_.outside[ring].sum());
+    }
+
+    /// A group in contact, none of its rings flat, from left to right.
+    void fill_group(const std::vector<std::uint32_t>& group) {
+        if (group.empty())
+            return;
+        // Of the group itself nothing lies below the left end of its first ring.
+        const Windings around = nest_.below[group.front()];
+        std::vector<WoundRing> rings;
+        std::vector<std::span<const Point2>> points;
+        Windings most;
+        for (const std::uint32_t ring : group) {
+            fates_[ring] = fate_by_left_end(ring);
+            points.push_back(layer_.contour(ring));
+            rings.push_back({points.back(), turns_[ring], left_of(fates_[ring])});
+            most += turns_[ring];
+        }
+        if (material_.alike(around, most)) {
+            for (const std::uint32_t ring : group)
+                fates_[ring] = Fate::dropped;
+            return;
+        }
+        if (!grid_)
+            grid_.emplace(layer_.points.span().first(layer_.offsets[layer_.rings]));
+        const bool crossed = has_crossings(layer_of(points));
+        const Arrangement arrangement = arranged(rings, around, *grid_);
+        if (!crossed && stay(group, arrangement, most))
+            return;
+        for (const std::uint32_t ring : group)
+            fates_[ring] = Fate::united;
+        ++result_.groups_united;
+        result_.rings_united += group.size();
+        for (Ring& ring : boundary(arrangement, material_, rings, *grid_))
+            united_.push_back(std::move(ring));
+    }
+
+    /// Whether rings that do not cross can stay or go each as a whole, and which.
+    bool stay(const std::vector<std::uint32_t>& group, const Arrangement& arrangement, const Windings& most) {
+        if (most.first > 0 && most.second > 0)
+            return !arrangement.walls && arrangement.bounded_by_rest(material_);
+        if (!arrangement.bounded_by_all(material_))
+            return arrangement.bounded_by_rest(material_);
+        // Overlaps of the size of rounding errors may be where a ring has its left end.
+        for (const std::uint32_t ring : group)
+            fates_[ring] = Fate::kept;
+        return true;
+    }
+
+    Layer put_together() const {
+        LayerBuilder builder;
+        const auto add = [&](const auto& begin, const auto& end, bool closed) {
+            for (auto p = begin; p != end; ++p)
+                builder.add_point(*p);
+            builder.end_contour(closed);
+        };
+        for (std::size_t i = 0; i < layer_.contours(); ++i) {
+            const std::span<const Point2> points = layer_.contour(i);
+            if (!layer_.closed(i) || fates_[i] == Fate::kept)
+                add(points.begin(), points.end(), layer_.closed(i));
+            else if (fates_[i] == Fate::reversed)
+                add(points.rbegin(), points.rend(), true);
+        }
+        for (const Ring& ring : united_)
+            add(ring.begin(), ring.end(), true);
+        return builder.finish(layer_.index, layer_.z, layer_.bottom, layer_.top);
+    }
+
+    const Layer& layer_;
+    std::span<const Windings> turns_;
+    const Material& material_;
+    const WoundNesting& nest_;
+    std::vector<std::vector<std::uint32_t>> groups_;
+    std::vector<Fate> fates_;
+    std::optional<ClippingGrid> grid_;
+    std::vector<Ring> united_;
+    Filled result_;
+};
+
+} // namespace
+
+Overlay::Overlay(const Layer& layer, std::vector<Windings> turns)
+    : layer_(layer), turns_(std::move(turns)), chains_(layer), grid_(ChainGrid::of(chains_)),
+      contacts_(find_contacts(layer, chains_, grid_ ? &*grid_ : nullptr)),
+      nest_(nesting(layer, chains_, grid_ ? &*grid_ : nullptr, contacts_, turns_)) {}
+
+bool Overlay::clean() const noexcept {
+    if (contacts_.groups > 0)
+        return false;
+    const Nesting& nest = nest_.nesting;
+    for (std::size_t i = 0; i < nest.rings(); ++i)
+        if (nest.kind[i] != RingKind::outer && !(nest.kind[i] == RingKind::hole && nest.winding[i] == 1))
+            return false;
+    return true;
+}
+
+Box2 Overlay::box() const noexcept {
+    Box2 box = chains_.box(0);
+    for (std::size_t i = 1; i < layer_.rings; ++i)
+        box.add(chains_.box(i));
+    return box;
+}
+
+Filled Overlay::filled(const Material& material) const {
+    return Filler(layer_, turns_, material, contacts_, nest_).run();
+}
+
+} // namespace lamella

@@ -1,0 +1,46 @@
+#pragma once
+
+// Rings of one layer or of two over one another: which of them bound the material as they are, and the others
+// made right.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/polygon/fill.hpp"
+
+#include "polygon/chain_grid.hpp"
+#include "polygon/contacts.hpp"
+#include "polygon/known_nesting.hpp"
+#include "polygon/material.hpp"
+#include "polygon/monotone_chains.hpp"
+#include "polygon/windings.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace lamella {
+
+/// What a layer's rings have to do with one another.
+class Overlay {
+  public:
+    /// The rings of one operand.
+    explicit Overlay(const Layer& layer) : Overlay(layer, std::vector<Windings>(layer.rings, {1, 0})) {}
+    /// `turns`: what each ring adds to the windings of its inside. The layer is to outlive the overlay.
+    Overlay(const Layer& layer, std::vector<Windings> turns);
+
+    /// Whether no rings are in contact and all of them bound material of one operand, with none around it.
+    [[nodiscard]] bool clean() const noexcept;
+    /// The box of all rings, of which there is at least one.
+    [[nodiscard]] Box2 box() const noexcept;
+
+    /// The boundary of the material, and the open chains of the layer; see `fill`.
+    [[nodiscard]] Filled filled(const Material& material) const;
+
+  private:
+    const Layer& layer_;
+    std::vector<Windings> turns_;
+    MonotoneChains chains_;
+    std::optional<ChainGrid> grid_;
+    Contacts contacts_;
+    WoundNesting nest_;
+};
+
+} // namespace lamella

@@ -1,0 +1,348 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/polygon/boolean.hpp"
+#include "lamella/polygon/crossings.hpp"
+#include "lamella/polygon/fill.hpp"
+
+#include "fixtures/layers.hpp"
+#include "fixtures/rounds.hpp"
+#include "polygon/winding_areas.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace lamella::boolean_cases {
+namespace {
+
+using test::Contour;
+using test::diamond;
+using test::layer_of;
+using test::Random;
+using test::rectangle;
+using test::reversed;
+
+constexpr BooleanOperation unite = BooleanOperation::unite;
+constexpr BooleanOperation intersect = BooleanOperation::intersect;
+constexpr BooleanOperation subtract = BooleanOperation::subtract;
+constexpr BooleanOperation exclude = BooleanOperation::exclude;
+constexpr std::array<BooleanOperation, 4> operations{unite, intersect, subtract, exclude};
+
+bool made(BooleanOperation operation, bool first, bool second) {
+    switch (operation) {
+    case intersect:
+        return first && second;
+    case subtract:
+        return first && !second;
+    case exclude:
+        return first != second;
+    default:
+        return first || second;
+    }
+}
+
+Layer normal_layer(const std::vector<Contour>& rings, const std::vector<Contour>& chains = {}) {
+    return normal_form(layer_of(rings, chains));
+}
+
+std::vector<Contour> contours(const Layer& layer) {
+    std::vector<Contour> result;
+    for (std::size_t i = 0; i < layer.contours(); ++i)
+        result.emplace_back(layer.contour(i).begin(), layer.contour(i).end());
+    return result;
+}
+
+using Contours = std::vector<Contour>;
+
+double area(const Layer& layer) {
+    return measure(layer).area_mm2;
+}
+
+/// Rings of a few corners, some of them turned: on integers they touch and share edges, else they lie in
+/// general position.
+Contours random_rings(Random& random, double range, double size, std::int64_t most, bool integers) {
+    Contours rings;
+    for (std::int64_t c = random.integer(0, most); c > 0; --c) {
+        const double x = random.real(0, range);
+        const double y = random.real(0, range);
+        Contour ring;
+        for (std::int64_t i = random.integer(3, 8); i > 0; --i) {
+            Point2 p{x + random.real(0, size), y + random.real(0, size)};
+            if (integers)
+                p = {std::round(p.x), std::round(p.y)};
+            ring.push_back(p);
+        }
+        if (ring_area(ring) < 0 && random.integer(0, 5) != 0)
+            ring = reversed(ring);
+        rings.push_back(ring);
+    }
+    return rings;
+}
+
+/// Two layers, which may have rings in common, the same way round or not.
+struct Two {
+    Two(Random& random, int round) {
+        const bool integers = round % 2 == 0;
+        const double range = integers ? 14 : 100;
+        const double size = integers ? 8 : round % 3 == 0 ? 60 : 25;
+        Contours a = random_rings(random, range, size, 6, integers);
+        Contours b = random_rings(random, range, size, 6, integers);
+        for (Contour ring : random_rings(random, range, size, 3, integers)) {
+            a.push_back(ring);
+            if (random.integer(0, 5) == 0)
+                std::reverse(ring.begin(), ring.end());
+            b.push_back(ring);
+        }
+        first = normal_layer(a);
+        second = normal_layer(b);
+    }
+
+    Layer first;
+    Layer second;
+};
+
+/// What rounding to the grid may make of areas.
+double slack(const Layer& a, const Layer& b, double extent) {
+    return 8 * (measure(a).perimeter_mm + measure(b).perimeter_mm) * extent * 0x1p-35 +
+           1e-12 * extent * extent;
+}
+
+void expect_combined(const Layer& a, const Layer& b, BooleanOperation operation, double extent) {
+    const Layer result = combine(a, b, operation);
+    const double expected =
+        test::winding_area(a, b, [&](int v, int w) { return made(operation, v > 0, w > 0); });
+    const double tolerance = slack(a, b, extent);
+    EXPECT_NEAR(area(result), expected, tolerance);
+    EXPECT_TRUE(in_normal_form(result));
+    EXPECT_EQ(find_crossings(result).count, 0U);
+    EXPECT_NEAR(test::winding_area(result, [](int winding) { return winding > 1 || winding < 0; }), 0,
+                tolerance);
+    EXPECT_FALSE(fill(result, FillRule::positive).changed());
+}
+
+TEST(Combine, GivesTheAreaOfItsOperationForRandomLayers) {
+    Random random(71);
+    for (int round = 0; round < test::rounds_within_reason(2000); ++round) {
+        const Two two(random, round);
+        for (const BooleanOperation operation : operations) {
+            expect_combined(two.first, two.second, operation, 200);
+            if (testing::Test::HasFailure())
+                FAIL() << "round " << round << " operation " << static_cast<int>(operation);
+        }
+    }
+}
+
+TEST(Combine, KeepsTheLawsOfSets) {
+    Random random(72);
+    for (int round = 0; round < test::rounds_within_reason(3000); ++round) {
+        SCOPED_TRACE(round);
+        const Two two(random, round);
+        const Layer& a = two.first;
+        const Layer& b = two.second;
+        const double tolerance = 4 * slack(a, b, 200);
+        const auto material = [](const Layer& layer) {
+            return area(fill(layer, FillRule::positive).layer);
+        };
+        const Layer either = combine(a, b, unite);
+        const Layer both = combine(a, b, intersect);
+        const Layer one = combine(a, b, exclude);
+        const Layer rest_of_a = combine(a, b, subtract);
+        const Layer rest_of_b = combine(b, a, subtract);
+        EXPECT_NEAR(area(either) + area(both), material(a) + material(b), tolerance);
+        EXPECT_NEAR(area(rest_of_a) + area(both), material(a), tolerance);
+        EXPECT_NEAR(area(combine(one, combine(rest_of_a, rest_of_b, unite), exclude)), 0, tolerance);
+        EXPECT_NEAR(area(combine(combine(either, both, subtract), one, exclude)), 0, tolerance);
+        // The order of the operands does not matter, nor does that of their contours.
+        EXPECT_TRUE(same_contours(either, combine(b, a, unite)));
+        EXPECT_TRUE(same_contours(both, combine(b, a, intersect)));
+        EXPECT_TRUE(same_contours(one, combine(b, a, exclude)));
+        Contours turned = contours(a);
+        std::reverse(turned.begin(), turned.end());
+        for (Contour& ring : turned)
+            std::rotate(ring.begin(), ring.begin() + 1, ring.end());
+        EXPECT_TRUE(same_contours(one, combine(layer_of(turned), b, exclude)));
+        if (testing::Test::HasFailure())
+            return;
+    }
+}
+
+TEST(Combine, OfALayerWithItselfIsItselfOrNothingBitForBit) {
+    Random random(73);
+    for (int round = 0; round < test::rounds_within_reason(1000); ++round) {
+        SCOPED_TRACE(round);
+        const Layer given = Two(random, round).first;
+        const Layer layer = fill(given, FillRule::positive).layer;
+        EXPECT_TRUE(same_contours(combine(layer, layer, unite), layer));
+        EXPECT_TRUE(same_contours(combine(layer, layer, intersect), layer));
+        EXPECT_TRUE(same_contours(combine(given, given, intersect), layer));
+        EXPECT_EQ(combine(given, given, subtract).contours(), 0U);
+        EXPECT_EQ(combine(given, given, exclude).contours(), 0U);
+        const Layer nothing;
+        EXPECT_TRUE(same_contours(combine(layer, nothing, unite), layer));
+        EXPECT_TRUE(same_contours(combine(nothing, layer, unite), layer));
+        EXPECT_TRUE(same_contours(combine(layer, nothing, subtract), layer));
+        EXPECT_TRUE(same_contours(combine(layer, nothing, exclude), layer));
+        EXPECT_EQ(combine(layer, nothing, intersect).contours(), 0U);
+        EXPECT_EQ(combine(nothing, layer, subtract).contours(), 0U);
+    }
+}
+
+TEST(Combine, KeepsDropsAndTurnsRingsThatMeetNothing) {
+    const Contour frame{{0, 0}, {9.1, 0.3}, {9, 9}, {0.2, 9}};
+    const Contour inner = diamond(4, 4, 0.3);
+    const Contour apart = diamond(20, 4, 0.7);
+    const Layer a = normal_layer({frame});
+    const Layer b = normal_layer({inner, apart});
+    EXPECT_EQ(contours(combine(a, b, unite)), contours(normal_layer({frame, apart})));
+    EXPECT_EQ(contours(combine(a, b, intersect)), contours(normal_layer({inner})));
+    EXPECT_EQ(contours(combine(a, b, subtract)), contours(normal_layer({frame, reversed(inner)})));
+    EXPECT_EQ(contours(combine(b, a, subtract)), contours(normal_layer({apart})));
+    EXPECT_EQ(contours(combine(a, b, exclude)), contours(normal_layer({frame, reversed(inner), apart})));
+    // A body in a hole, and a hole that both have.
+    const Layer ring = normal_layer({frame, reversed(inner)});
+    EXPECT_EQ(contours(combine(ring, b, unite)), contours(normal_layer({frame, apart})));
+    EXPECT_EQ(contours(combine(ring, b, intersect)), Contours{});
+    EXPECT_EQ(contours(combine(ring, normal_layer({rectangle(-1, -1, 10, 10)}), intersect)), contours(ring));
+}
+
+TEST(Combine, KeepsRingsThatOnlyTouchBitForBit) {
+    const Contour square = rectangle(0, 0, 2, 2);
+    const Layer a = normal_layer({square});
+    for (const Contour& other : {rectangle(2, 2, 4, 4), diamond(3, 1, 1)}) {
+        const Layer b = normal_layer({other});
+        const Contours both = contours(normal_layer({square, other}));
+        EXPECT_EQ(contours(combine(a, b, unite)), both);
+        EXPECT_EQ(contours(combine(a, b, exclude)), both);
+        EXPECT_EQ(contours(combine(a, b, subtract)), contours(a));
+        EXPECT_EQ(contours(combine(b, a, subtract)), contours(b));
+        EXPECT_EQ(contours(combine(a, b, intersect)), Contours{});
+    }
+}
+
+TEST(Combine, LeavesNoWallsBetweenLayersThatShareEdges) {
+    const Layer left = normal_layer({rectangle(0, 0, 2, 2)});
+    const Layer right = normal_layer({rectangle(2, 0, 4, 2)});
+    const Layer whole = combine(left, right, unite);
+    EXPECT_EQ(whole.rings, 1U);
+    EXPECT_EQ(area(whole), 8);
+    EXPECT_EQ(combine(left, right, exclude).rings, 1U);
+    EXPECT_EQ(combine(left, right, intersect).rings, 0U);
+    EXPECT_EQ(area(combine(left, right, subtract)), 4);
+    EXPECT_EQ(area(combine(whole, right, subtract)), 4);
+    // What fills a hole.
+    const Contour hole = diamond(5, 5, 3);
+    const Layer pierced = normal_layer({rectangle(0, 0, 10, 10), reversed(hole)});
+    EXPECT_EQ(contours(combine(pierced, normal_layer({hole}), unite)), Contours{rectangle(0, 0, 10, 10)});
+    EXPECT_EQ(contours(combine(normal_layer({rectangle(0, 0, 10, 10)}), pierced, subtract)), Contours{hole});
+}
+
+TEST(Combine, CutsBodiesThatCross) {
+    const Layer a = normal_layer({rectangle(0, 0, 4, 4)});
+    const Layer b = normal_layer({rectangle(2, 2, 6, 6)});
+    EXPECT_EQ(contours(combine(a, b, unite)),
+              (Contours{{{0, 0}, {4, 0}, {4, 2}, {6, 2}, {6, 6}, {2, 6}, {2, 4}, {0, 4}}}));
+    EXPECT_EQ(contours(combine(a, b, intersect)), (Contours{rectangle(2, 2, 4, 4)}));
+    EXPECT_EQ(contours(combine(a, b, subtract)),
+              (Contours{{{0, 0}, {4, 0}, {4, 2}, {2, 2}, {2, 4}, {0, 4}}}));
+    EXPECT_EQ(area(combine(a, b, exclude)), 24);
+}
+
+TEST(Combine, CountsOverlapsOnceAndBodiesTurnedInsideOutNot) {
+    const Contour square = rectangle(0, 0, 4, 4);
+    const Layer twice = normal_layer({square, rectangle(1, 1, 3, 3), square});
+    const Layer other = normal_layer({rectangle(2, -1, 6, 5)});
+    EXPECT_EQ(area(combine(twice, other, intersect)), 8);
+    EXPECT_EQ(area(combine(twice, other, subtract)), 8);
+    EXPECT_EQ(combine(normal_layer({reversed(square)}), other, intersect).rings, 0U);
+    EXPECT_EQ(area(combine(other, normal_layer({reversed(square)}), subtract)), 24);
+    // A ring that both have, once more in one of them.
+    EXPECT_EQ(combine(twice, normal_layer({square}), exclude).rings, 0U);
+}
+
+TEST(Combine, TakesHeadAndChainsOfTheFirstLayer) {
+    Layer a = normal_layer({rectangle(0, 0, 4, 4)}, {{{0, 9}, {5, 9}}});
+    a.index = 7;
+    a.z = 1.5;
+    a.bottom = 1;
+    a.top = 2;
+    a.hatches = PointArray({{0, 0}, {1, 1}});
+    const Layer b = normal_layer({rectangle(2, 0, 6, 4)}, {{{0, 8}, {5, 8}}});
+    for (const Layer& other : {a, b})
+        for (const BooleanOperation operation : operations) {
+            const Layer result = combine(a, other, operation);
+            EXPECT_EQ(result.index, 7U);
+            EXPECT_EQ(result.z, 1.5);
+            EXPECT_EQ(result.bottom, 1);
+            EXPECT_EQ(result.top, 2);
+            EXPECT_TRUE(result.hatches.empty());
+            ASSERT_EQ(result.open_chains(), 1U);
+            EXPECT_EQ(contours(result).back(), (Contour{{0, 9}, {5, 9}}));
+        }
+}
+
+TEST(Combine, OfDegenerateLayersHasNoMaterial) {
+    const Layer flat = layer_of({{}, {{1, 1}}, {{0, 0}, {3, 3}, {1, 1}}, {{2, 0}, {2, 5}}});
+    const Layer body = normal_layer({rectangle(0, 0, 4, 4)});
+    for (const BooleanOperation operation : operations) {
+        EXPECT_EQ(combine(flat, flat, operation).contours(), 0U);
+        EXPECT_EQ(combine(flat, Layer{}, operation).contours(), 0U);
+        EXPECT_EQ(combine(Layer{}, flat, operation).contours(), 0U);
+        EXPECT_EQ(combine(Layer{}, Layer{}, operation).contours(), 0U);
+    }
+    EXPECT_EQ(contours(combine(body, flat, subtract)), contours(body));
+    EXPECT_EQ(contours(combine(flat, body, unite)), contours(body));
+    EXPECT_EQ(combine(body, flat, intersect).contours(), 0U);
+}
+
+TEST(Combine, DoesNotDependOnPlaceAndScaleBeyondRounding) {
+    Random random(74);
+    const Contours a = random_rings(random, 100, 40, 30, false);
+    const Contours b = random_rings(random, 100, 40, 30, false);
+    for (const BooleanOperation operation : operations) {
+        const double expected = area(combine(normal_layer(a), normal_layer(b), operation));
+        for (const double scale : {0x1p-400, 1e-6, 1e6, 0x1p400})
+            for (const double shift : {0.0, 1000.0}) {
+                const auto moved = [&](Contours rings) {
+                    for (Contour& ring : rings)
+                        for (Point2& p : ring)
+                            p = {(p.x + shift) * scale, (p.y - shift) * scale};
+                    return normal_layer(rings);
+                };
+                EXPECT_NEAR(area(combine(moved(a), moved(b), operation)) / scale / scale, expected,
+                            1e-6 * expected + 1e-6)
+                    << scale << ' ' << shift;
+            }
+    }
+}
+
+TEST(Combine, KeepsWhatIsFarFromOtherRingsBitForBit) {
+    // Many rings of both layers, few of one: the others pass a union, and cancel in a difference.
+    Random random(75);
+    Contours common;
+    for (int i = 0; i < 20; ++i)
+        for (int j = 0; j < 20; ++j)
+            common.push_back(
+                diamond(i + random.real(0, 0.2), j + random.real(0, 0.2), random.real(0.1, 0.3)));
+    Contours more = common;
+    const Contour extra = diamond(7.5, 7.5, 0.9);
+    more.push_back(extra);
+    const Layer a = normal_layer(more);
+    const Layer b = normal_layer(common);
+    const Contours united = contours(combine(a, b, unite));
+    const std::set<Contour> found(united.begin(), united.end());
+    std::size_t kept = 0;
+    for (const Contour& ring : common)
+        kept += found.contains(ring) ? 1 : 0;
+    EXPECT_GT(kept, 380U);
+    const Layer rest = combine(a, b, subtract);
+    EXPECT_NEAR(area(rest), area(combine(normal_layer({extra}), b, subtract)), 1e-9);
+    EXPECT_TRUE(same_contours(rest, combine(a, b, exclude)));
+    EXPECT_EQ(combine(b, a, subtract).contours(), 0U);
+}
+
+} // namespace
+} // namespace lamella::boolean_cases
