@@ -4,6 +4,7 @@
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
+#include "core/memory_size.hpp"
 #include "core/pages.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
@@ -107,11 +108,14 @@ struct Records {
     NonFinite nonfinite;
 };
 
-/// Reads them, unless they are in memory already.
-Records read_records(const ByteSource& source, std::uint64_t n, Executor& executor, ProgressMeter& progress) {
+/// Reads them, unless they are in memory already, or would take more of it than they are worth: then they are
+/// viewed where the file is mapped.
+Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
+                     Executor& executor, ProgressMeter& progress) {
     const std::size_t size = n * stl_record_bytes - normal_bytes;
+    const std::uint64_t most = (options.max_memory != 0 ? options.max_memory : usual_memory()) / 4;
     std::shared_ptr<PageArray<std::byte>> memory;
-    if (source.descriptor >= 0)
+    if (source.descriptor >= 0 && size <= most)
         memory = std::make_shared<PageArray<std::byte>>(size);
     const std::byte* const corners = memory ? memory->data() : source.bytes.data() + corners_at;
     NonFinite found;
@@ -261,7 +265,7 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     const std::uint64_t stored = check_head(source, options, remarks);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
-    const auto [owner, corners, nonfinite] = read_records(source, stored, executor, progress);
+    const auto [owner, corners, nonfinite] = read_records(source, stored, options, executor, progress);
     judge_nonfinite(source, nonfinite.total, nonfinite.first, stored, remarks);
 
     MeshFile file = describe(source, stored, nonfinite.total, remarks);
