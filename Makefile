@@ -45,11 +45,11 @@ test: packages  ## build everything and run the tests: a few minutes
 	cmake --build build
 	$(CTEST) --test-dir build
 
-test-all: test-large test-asan test-tsan test-arm64 test-shared fresh  ## the long suites: large programs, sanitizers, fuzz corpora, ARM64, fresh
+test-all: test-large test-asan test-tsan test-shared fresh  ## the long suites: large programs, sanitizers, fuzz corpora, fresh
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
-	@tools/install_packages.sh tools/packages-all.txt tools/packages-arm64.txt tools/packages-dist.txt tools/packages-docs.txt
+	@tools/install_packages.sh tools/packages-all.txt tools/packages-dist.txt tools/packages-docs.txt
 
 test-large: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D LAMELLA_LARGE_TESTS=ON
@@ -66,9 +66,10 @@ test-tsan: packages-all
 	cmake --build build-tsan --target $(ROOMS:%=lamella_%_test)
 	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(ROOMS)))$$'
 
-# The rooms that compute, and the bodies that these are tried on.
+# The rooms that compute, and the bodies that these are tried on. The emulator takes nine minutes.
 ARM64_ROOMS := core mesh parts contour slicing polygon
-test-arm64: packages-all
+test-arm64: packages  ## cross-compile for ARM64 and run the suites of the rooms that compute in an emulator
+	@tools/install_packages.sh tools/packages-all.txt tools/packages-arm64.txt
 	cmake --preset arm64
 	cmake --build build-arm64 --target $(ARM64_ROOMS:%=lamella_%_test)
 	$(CTEST) --test-dir build-arm64 --label-regex '^($(subst $(blank),|,$(ARM64_ROOMS)))$$'
