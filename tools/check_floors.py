@@ -40,13 +40,12 @@ THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
     "fast_float": "src/core/parse_number.cpp",
     "libdeflate.h": "src/container/inflate.cpp",
-    "polyclipping": "src/polygon/clipping.cpp",
     "xxhash.h": "src/container/file_hash.cpp src/contour/normal_form.cpp",
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}
 # Of the programs.
-THIRD_PARTY_OF_CONSUMERS = {"mpi.h": "app/mpi_processes.cpp"}
+THIRD_PARTY_OF_CONSUMERS = {"mpi.h": "app/mpi_processes.cpp", "polyclipping/clipper.hpp": "bench/layer_steps.cpp"}
 
 # The one consumer that opens private headers: it times the kernels alone.
 KERNEL_BENCHMARK = "bench/kernels.cpp"

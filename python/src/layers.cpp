@@ -161,6 +161,14 @@ FillRule fill_rule(const std::string& name) {
     return FillRule::positive;
 }
 
+/// By its name, which is one of the three.
+OffsetCorner offset_corner(const std::string& name) {
+    for (const OffsetCorner corner : {OffsetCorner::bevel, OffsetCorner::round})
+        if (offset_corner_name(corner) == name)
+            return corner;
+    return OffsetCorner::mitre;
+}
+
 bool same(const SharedLayer& first, const SharedLayer& second) {
     const Layer& a = first.get();
     const Layer& b = second.get();
@@ -417,7 +425,10 @@ void bind_layer(py::module_& module) {
         .def("_filled", [](const SharedLayer& self,
                            const std::string& rule) { return after(self, {.fill = fill_rule(rule)}); })
         .def("_offset",
-             [](const SharedLayer& self, double distance) { return after(self, {.offset_mm = distance}); })
+             [](const SharedLayer& self, double distance, const std::string& corners) {
+                 return after(self,
+                              {.offset_mm = distance, .offset_corners = {.shape = offset_corner(corners)}});
+             })
         .def("_union", &combined<BooleanOperation::unite>)
         .def("_intersection", &combined<BooleanOperation::intersect>)
         .def("_difference", &combined<BooleanOperation::subtract>)

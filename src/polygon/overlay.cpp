@@ -16,8 +16,6 @@ namespace lamella {
 
 namespace {
 
-enum class Fate : std::uint8_t { kept, reversed, dropped, united };
-
 /// Of a ring with material on one side or on both, or on none.
 Fate fate(bool outside, bool inside, bool counter_clockwise) noexcept {
     if (outside == inside)
@@ -31,10 +29,10 @@ std::int64_t left_of(Fate fate) noexcept {
 
 class Filler {
   public:
-    Filler(const Layer& layer, std::span<const Windings> turns, const Material& material,
+    Filler(const Layer& layer, std::span<const Windings> turns, const Material& material, Walls walls,
            const Contacts& contacts, const WoundNesting& nest)
-        : layer_(layer), turns_(turns), material_(material), nest_(nest), groups_(contacts.groups),
-          fates_(layer.rings) {
+        : layer_(layer), turns_(turns), material_(material), walls_(walls), nest_(nest),
+          groups_(contacts.groups), fates_(layer.rings) {
         assert(contacts.group.size() == layer.rings && nest.nesting.order.size() == layer.rings);
         for (const std::uint32_t ring : nest.nesting.order) {
             const std::uint32_t group = contacts.group[ring];
@@ -47,7 +45,7 @@ class Filler {
         }
     }
 
-    Filled run() && {
+    Overlaid run() && {
         for (const std::vector<std::uint32_t>& group : groups_)
             fill_group(group);
         result_.rings_dropped = count(Fate::dropped);
@@ -56,7 +54,7 @@ class Filler {
             result_.layer = layer_;
         else
             result_.layer = put_together();
-        return std::move(result_);
+        return {std::move(result_), std::move(fates_)};
     }
 
   private:
@@ -107,7 +105,7 @@ class Filler {
 
     /// Whether rings that do not cross can stay or go each as a whole, and which.
     bool stay(const std::vector<std::uint32_t>& group, const Arrangement& arrangement, const Windings& most) {
-        if (most.first > 0 && most.second > 0)
+        if (walls_ == Walls::dissolved || (most.first > 0 && most.second > 0))
             return !arrangement.walls && arrangement.bounded_by_rest(material_);
         if (!arrangement.bounded_by_all(material_))
             return arrangement.bounded_by_rest(material_);
@@ -139,6 +137,7 @@ class Filler {
     const Layer& layer_;
     std::span<const Windings> turns_;
     const Material& material_;
+    Walls walls_;
     const WoundNesting& nest_;
     std::vector<std::vector<std::uint32_t>> groups_;
     std::vector<Fate> fates_;
@@ -171,8 +170,8 @@ Box2 Overlay::box() const noexcept {
     return box;
 }
 
-Filled Overlay::filled(const Material& material) const {
-    return Filler(layer_, turns_, material, contacts_, nest_).run();
+Overlaid Overlay::filled(const Material& material, Walls walls) const {
+    return Filler(layer_, turns_, material, walls, contacts_, nest_).run();
 }
 
 } // namespace lamella
