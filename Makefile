@@ -66,6 +66,14 @@ test-tsan: packages-all
 	cmake --build build-tsan --target $(ROOMS:%=lamella_%_test)
 	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(ROOMS)))$$'
 
+# The rooms that compute, and the bodies that these are tried on. The emulator takes nine minutes.
+ARM64_ROOMS := core mesh parts contour slicing polygon
+test-arm64: packages  ## cross-compile for ARM64 and run the suites of the rooms that compute in an emulator
+	@tools/install_packages.sh tools/packages-all.txt tools/packages-arm64.txt
+	cmake --preset arm64
+	cmake --build build-arm64 --target $(ARM64_ROOMS:%=lamella_%_test)
+	$(CTEST) --test-dir build-arm64 --label-regex '^($(subst $(blank),|,$(ARM64_ROOMS)))$$'
+
 # What was compiled for the static library serves the shared one.
 test-shared: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
@@ -169,5 +177,5 @@ clean:  ## remove what was built
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
-        test-shared fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core \
-        python-bench page-bench paper format format-check lint install dist clean
+        test-arm64 test-shared fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin \
+        out-of-core python-bench page-bench paper format format-check lint install dist clean

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages of the given lists, skipping those that are there. An entry PACKAGE=COMMAND is skipped
-# where the command is there, too.
+# where the command is there, too; an entry PACKAGE:ARCHITECTURE is the package for another kind of processor.
 # usage: tools/install_packages.sh LIST...
 set -eu
 
@@ -9,14 +9,30 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
     exit 0
 fi
 
+native=$(dpkg --print-architecture)
+
+# Of a package for several kinds of processors dpkg-query tells each that is there, unless one is named.
+is_installed() {
+    case $1 in
+    *:*) kind=${1#*:} ;;
+    *) kind="($native|all)" ;;
+    esac
+    dpkg-query --show --showformat '${Architecture} ${db:Status-Status}\n' "$1" 2>/dev/null |
+        grep --quiet --extended-regexp "^$kind installed$"
+}
+
 missing=
+foreign=
 for entry in $(sed 's/#.*//' "$@"); do
     package=${entry%%=*}
     case $entry in
     *=*) if command -v "${entry#*=}" >/dev/null 2>&1; then continue; fi ;;
     esac
-    status=$(dpkg-query --show --showformat '${db:Status-Status}' "$package" 2>/dev/null) || status=absent
-    [ "$status" = installed ] || missing="$missing $package"
+    if is_installed "$package"; then continue; fi
+    missing="$missing $package"
+    case $package in
+    *:*) foreign="$foreign ${package#*:}" ;;
+    esac
 done
 [ -n "$missing" ] || exit 0
 
@@ -26,11 +42,17 @@ elif command -v sudo >/dev/null 2>&1; then
     as_root=sudo
 else
     echo "install_packages: missing packages, and neither root nor sudo to install them." >&2
+    for kind in $foreign; do
+        echo "Please run as root: dpkg --add-architecture $kind" >&2
+    done
     echo "Please run as root: apt-get install --no-install-recommends$missing" >&2
     exit 1
 fi
 
 echo "Installing:$missing"
+for kind in $foreign; do
+    $as_root dpkg --add-architecture "$kind"
+done
 $as_root apt-get update --quiet=2
 # Word splitting is meant: one argument per package.
 # shellcheck disable=SC2086

@@ -23,7 +23,7 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
         f"{machine['program']}; {machine['date']}. Limit for one run: {timeout:g} s.")
     telling = [part for part in TELLING if part in part_titles]
     if telling:
-        page.show(Chart("rivals-short", "Time of the whole process on an ordinary part, a lattice and the paper's worst case",
+        page.show(Chart("rivals-short", "Time of the whole process: " + ", ".join(part_titles[part] for part in telling),
                         time_chart([cell for cell in cells if cell.part in telling], titles, part_titles)))
     page.heading("All parts")
     page.show(Chart("rivals", "Time of the whole process", time_chart(cells, titles, part_titles)))

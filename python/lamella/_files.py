@@ -73,8 +73,8 @@ def read(
     threads: 0 takes one for each processor.
     progress: called as progress(stage, done, total) now and then, from the thread that called this.
 
-    Gives a Mesh or a Stack. A binary STL file is not copied but mapped: while its Mesh lives, the file may be replaced or
-    deleted, but must not be written to or cut shorter.
+    Gives a Mesh or a Stack. A binary STL file that would take more than a quarter of `max_memory` is not copied but
+    mapped: while its Mesh lives, the file may be replaced or deleted, but must not be written to or cut shorter.
 
     Raises InputError that names the file, the place in it, what was found, and what was
     expected.

@@ -78,7 +78,7 @@ class NearestPoints {
 
         /// No point of the range is closer.
         [[nodiscard]] double distance_to(const Point2& p) const noexcept {
-            return std::hypot(std::max({low.x - p.x, 0.0, p.x - high.x}),
+            return hypotenuse(std::max({low.x - p.x, 0.0, p.x - high.x}),
                               std::max({low.y - p.y, 0.0, p.y - high.y}));
         }
     };

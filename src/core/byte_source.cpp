@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cassert>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -62,20 +63,36 @@ class Descriptor {
     bool owned_;
 };
 
-/// Memory that the system mapped.
+/// Memory that the system mapped, and the file that it comes from, if that is kept open.
 class Mapping {
   public:
-    Mapping(void* data, std::size_t bytes) : data_(data), bytes_(bytes) {}
-    ~Mapping() { munmap(data_, bytes_); }
+    Mapping(void* data, std::size_t bytes, int descriptor)
+        : data_(data), bytes_(bytes), descriptor_(descriptor) {}
+    ~Mapping() {
+        munmap(data_, bytes_);
+        if (descriptor_ >= 0)
+            close(descriptor_);
+    }
     Mapping(const Mapping&) = delete;
     Mapping& operator=(const Mapping&) = delete;
 
     [[nodiscard]] std::byte* data() const noexcept { return static_cast<std::byte*>(data_); }
+    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
 
   private:
     void* data_;
     std::size_t bytes_;
+    int descriptor_;
 };
+
+/// Another descriptor of the same file; -1 where so many are in use that others will need the rest.
+int keep_open(int descriptor) {
+    const int kept = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+    if (kept < 0 || kept < sysconf(_SC_OPEN_MAX) / 2)
+        return kept;
+    close(kept);
+    return -1;
+}
 
 std::shared_ptr<Mapping> map_file(int descriptor, std::size_t bytes) {
     void* data = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor, 0);
@@ -83,7 +100,12 @@ std::shared_ptr<Mapping> map_file(int descriptor, std::size_t bytes) {
         return nullptr;
     // Readers go through a file from front to back; on a cold disk this doubles the window of read-ahead.
     madvise(data, bytes, MADV_SEQUENTIAL);
-    return std::make_shared<Mapping>(data, bytes);
+    posix_fadvise(descriptor, 0, 0, POSIX_FADV_SEQUENTIAL);
+    return std::make_shared<Mapping>(data, bytes, keep_open(descriptor));
+}
+
+ByteSource mapped_bytes(std::string name, const std::shared_ptr<Mapping>& mapping, std::size_t bytes) {
+    return {std::move(name), {mapping->data(), bytes}, mapping, true, mapping->descriptor()};
 }
 
 /// Waits until reading does not block.
@@ -127,7 +149,7 @@ ByteSource spool(int descriptor, std::string name, std::span<const std::byte> be
     const auto mapping = map_file(file.descriptor(), size);
     if (!mapping)
         fail_with_errno(name, errno);
-    return {std::move(name), {mapping->data(), size}, mapping, true};
+    return mapped_bytes(std::move(name), mapping, size);
 }
 
 ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_memory,
@@ -161,7 +183,7 @@ ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t mo
     if (S_ISREG(status.st_mode) && status.st_size > 0 && lseek(descriptor.number(), 0, SEEK_CUR) == 0) {
         const auto size = static_cast<std::size_t>(status.st_size);
         if (const auto mapping = map_file(descriptor.number(), size))
-            return {std::move(name), {mapping->data(), size}, mapping, true};
+            return mapped_bytes(std::move(name), mapping, size);
     }
     return read_to_end(descriptor.number(), std::move(name), most_in_memory, execution);
 }
@@ -180,6 +202,27 @@ ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory, con
     if (number < 0)
         fail_with_errno(path, errno);
     return take(Descriptor(number, true), path, most_in_memory, execution);
+}
+
+void copy_out(const ByteSource& source, std::uint64_t place, std::span<std::byte> to) {
+    assert(place <= source.bytes.size() && to.size() <= source.bytes.size() - place);
+    if (source.descriptor < 0) {
+        if (!to.empty())
+            std::memcpy(to.data(), source.bytes.data() + place, to.size());
+        return;
+    }
+    while (!to.empty()) {
+        const ssize_t got = pread(source.descriptor, to.data(), to.size(), static_cast<off_t>(place));
+        if (got < 0 && errno != EINTR)
+            fail_with_errno(source.name, errno);
+        if (got == 0)
+            fail(source.name, "was cut off while it was read: it had " + std::to_string(source.bytes.size()) +
+                                  " bytes, and ends after " + std::to_string(place) + " now");
+        if (got > 0) {
+            place += static_cast<std::uint64_t>(got);
+            to = to.subspan(static_cast<std::size_t>(got));
+        }
+    }
 }
 
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {

@@ -19,6 +19,7 @@ struct ByteSource {
     std::span<const std::byte> bytes;
     std::shared_ptr<const void> owner; ///< the bytes live as long as any copy of this
     bool mapped = false;               ///< they are those of a file, and come from it when they are touched
+    int descriptor = -1;               ///< of that file, if it is kept; the owner's
 
     [[nodiscard]] std::string_view text() const noexcept {
         return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -27,7 +28,8 @@ struct ByteSource {
 
 /// Opens a file of any size. A regular file is memory-mapped: nothing is read before it is touched, and the
 /// file must keep its length as long as the bytes live (the system ends a program that touches a page that is
-/// gone with SIGBUS; renaming or deleting the file does no harm). What cannot be mapped, such as a pipe, is
+/// gone with SIGBUS; renaming or deleting the file does no harm). It stays open as long as the bytes live,
+/// unless the process has many open files already. What cannot be mapped, such as a pipe, is
 /// read into memory to its end. "-" is standard input.
 ///
 /// Throws Error{input} when the file is missing, empty, a directory, a device or may not be read, and
@@ -39,6 +41,11 @@ struct ByteSource {
 /// there is no room for it.
 [[nodiscard]] ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory,
                                     const Execution& execution = {});
+
+/// Copies the bytes from `place` on into `to`, which they fill. Bytes of a file are read from it, where that
+/// can be: a page that is mapped costs more to touch for the first time than to copy. Any number of threads
+/// at once. Throws Error{input} when the file has become shorter.
+void copy_out(const ByteSource& source, std::uint64_t place, std::span<std::byte> to);
 
 /// Lets go of the memory that a stretch of mapped bytes takes; when touched again, they come from the file
 /// again. So a file larger than memory can be gone through. Does nothing for bytes that are not mapped.

@@ -2,6 +2,7 @@
 
 #include "lamella/polygon/crossings.hpp"
 
+#include "contour/distance.hpp"
 #include "polygon/grid.hpp"
 #include "polygon/orientation.hpp"
 #include "polygon/segment_sweep.hpp"
@@ -284,7 +285,7 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
     };
     for (const Side& side : arrangement.sides) {
         const auto& [lo, hi] = side.line;
-        length += std::hypot(hi.x - lo.x, hi.y - lo.y);
+        length += distance(lo, hi);
         excess += (off(side.below) - off(side.above())) * (hi.x - lo.x) * (lo.y + hi.y) / 2;
     }
     return std::abs(excess) <= 2 * length;

@@ -4,6 +4,7 @@
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
+#include "core/memory_size.hpp"
 #include "core/pages.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
@@ -28,6 +29,9 @@ namespace {
 
 /// Bytes of the normal, which is not to be trusted, before the corners.
 constexpr std::size_t normal_bytes = 12;
+
+/// Where the corners of the first triangle begin in a file.
+constexpr std::size_t corners_at = stl_head_bytes + normal_bytes;
 
 /// Some megabyte at a time: small enough to share out, large enough not to matter.
 constexpr std::uint64_t chunk_triangles = 20'000;
@@ -97,13 +101,32 @@ struct NonFinite {
     Box3 box; ///< of all corners; meaningful when all are finite
 };
 
-NonFinite find_nonfinite(const std::byte* corners, std::uint64_t n, Executor& executor,
-                         ProgressMeter& progress) {
+/// The records of all triangles, from the corners of the first one on, in memory.
+struct Records {
+    std::shared_ptr<const void> owner;
+    const std::byte* corners;
+    NonFinite nonfinite;
+};
+
+/// Reads them, unless they are in memory already, or would take more of it than they are worth: then they are
+/// viewed where the file is mapped.
+Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
+                     Executor& executor, ProgressMeter& progress) {
+    const std::size_t size = n * stl_record_bytes - normal_bytes;
+    const std::uint64_t most = (options.max_memory != 0 ? options.max_memory : usual_memory()) / 4;
+    std::shared_ptr<PageArray<std::byte>> memory;
+    if (source.descriptor >= 0 && size <= most)
+        memory = std::make_shared<PageArray<std::byte>>(size);
+    const std::byte* const corners = memory ? memory->data() : source.bytes.data() + corners_at;
     NonFinite found;
     found.per_chunk.resize((n + chunk_triangles - 1) / chunk_triangles);
     std::vector<Box3> boxes(executor.workers());
     executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
-        const Survey surveyed = survey(corners + begin * stl_record_bytes, end - begin);
+        const std::size_t place = begin * stl_record_bytes;
+        if (memory)
+            copy_out(source, corners_at + place,
+                     memory->span().subspan(place, std::min(end * stl_record_bytes, size) - place));
+        const Survey surveyed = survey(corners + place, end - begin);
         boxes[worker].add(surveyed.box);
         if (!surveyed.finite) {
             std::uint32_t count = 0;
@@ -120,7 +143,9 @@ NonFinite find_nonfinite(const std::byte* corners, std::uint64_t n, Executor& ex
     if (found.total != 0)
         while (is_finite(corners + found.first * stl_record_bytes))
             ++found.first;
-    return found;
+    if (memory)
+        return {memory, corners, std::move(found)};
+    return {source.owner, corners, std::move(found)};
 }
 
 /// The triangles with finite corners, in order, in memory of their own.
@@ -187,10 +212,6 @@ StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared) {
 
 namespace {
 
-const std::byte* corners_of(const ByteSource& source) {
-    return source.bytes.data() + stl_head_bytes + normal_bytes;
-}
-
 /// How many triangles the head promises and the file has.
 std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& options, Remarks& remarks) {
     const std::uint32_t declared = stl_declared_count(source.bytes);
@@ -242,17 +263,15 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
                          const Execution& execution) {
     Remarks remarks(source.name, options.strict);
     const std::uint64_t stored = check_head(source, options, remarks);
-    const std::byte* corners = corners_of(source);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
-    const NonFinite nonfinite = find_nonfinite(corners, stored, executor, progress);
+    const auto [owner, corners, nonfinite] = read_records(source, stored, options, executor, progress);
     judge_nonfinite(source, nonfinite.total, nonfinite.first, stored, remarks);
 
     MeshFile file = describe(source, stored, nonfinite.total, remarks);
     file.objects.front().mesh =
-        nonfinite.total == 0
-            ? Mesh(TriangleSoup(source.owner, corners, stl_record_bytes, stored, nonfinite.box))
-            : Mesh(copy_finite(corners, stored, nonfinite, executor));
+        nonfinite.total == 0 ? Mesh(TriangleSoup(owner, corners, stl_record_bytes, stored, nonfinite.box))
+                             : Mesh(copy_finite(corners, stored, nonfinite, executor));
     progress.finish();
     return file;
 }
@@ -266,16 +285,22 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
         throw Error(ErrorKind::usage, fmt::format("{}: asked for triangles {} to {}, and there are {}",
                                                   source.name, records.begin, records.end, stored));
     const std::uint64_t count = records.end - records.begin;
-    const std::byte* const corners = corners_of(source) + records.begin * stl_record_bytes;
     std::atomic<std::uint64_t> nonfinite{0};
     std::atomic<std::uint64_t> first_nonfinite{stored};
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, stl_record_bytes * count);
-    executor.for_chunks(count, batch_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        const std::byte* const at = corners + begin * stl_record_bytes;
+    std::vector<std::shared_ptr<PageArray<std::byte>>> batches(executor.workers());
+    executor.for_chunks(count, batch_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+        std::shared_ptr<PageArray<std::byte>>& batch = batches[worker];
+        if (!batch)
+            batch =
+                std::make_shared<PageArray<std::byte>>(std::min(count, batch_triangles) * stl_record_bytes);
+        const std::byte* const at = batch->data();
+        copy_out(source, corners_at + (records.begin + begin) * stl_record_bytes,
+                 batch->span().first((end - begin) * stl_record_bytes - normal_bytes));
         const Survey surveyed = survey(at, end - begin);
         if (surveyed.finite) {
-            sink(TriangleSoup(source.owner, at, stl_record_bytes, end - begin, surveyed.box),
+            sink(TriangleSoup(batch, at, stl_record_bytes, end - begin, surveyed.box),
                  begin / batch_triangles);
         } else {
             std::vector<Triangle3f> finite;
@@ -293,7 +318,6 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
             if (!finite.empty())
                 sink(TriangleSoup(std::move(finite)), begin / batch_triangles);
         }
-        release(source, {at, (end - begin) * stl_record_bytes - normal_bytes});
         progress.add((end - begin) * stl_record_bytes);
     });
     executor.check_cancelled();

@@ -119,7 +119,7 @@ TEST(OpenGaps, AreTheClosestPairsFirst) {
         for (const double gap : expected)
             total += gap;
         ASSERT_NEAR(gaps.total_mm, total, 1e-9) << trial;
-        ASSERT_EQ(gaps.longest_mm, *std::max_element(expected.begin(), expected.end())) << trial;
+        ASSERT_DOUBLE_EQ(gaps.longest_mm, *std::max_element(expected.begin(), expected.end())) << trial;
     }
 }
 

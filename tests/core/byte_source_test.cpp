@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 #include <fstream>
 #include <functional>
 #include <future>
+#include <span>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -92,15 +95,55 @@ TEST_F(ByteSourceTest, KeepsTheBytesOfADeletedFileAsLongAsACopyLives) {
     EXPECT_TRUE(watch.expired());
 }
 
-TEST_F(ByteSourceTest, LeavesNoDescriptorOpen) {
+TEST_F(ByteSourceTest, KeepsAFileOpenAsLongAsItsBytesLive) {
     const std::string file = write("part", "x");
     const auto open_descriptors = [] {
         return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
     };
     const auto before = open_descriptors();
-    const ByteSource source = open_bytes(file);
-    error_of([&] { (void)open_bytes(path("")); });
+    {
+        const ByteSource source = open_bytes(file);
+        error_of([&] { (void)open_bytes(path("")); });
+        EXPECT_EQ(open_descriptors(), before + 1);
+    }
     EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST_F(ByteSourceTest, LeavesDescriptorsToOthersWhereManyAreOpen) {
+    const std::string text = some_text(10'000);
+    const std::string file = write("part", text);
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+    rlimit few = before;
+    few.rlim_cur = 40;
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+    std::vector<ByteSource> sources;
+    for (int i = 0; i < 100; ++i)
+        sources.push_back(open_bytes(file));
+    for (const ByteSource& source : sources) {
+        std::string copy(9'000, ' ');
+        copy_out(source, 1'000, std::as_writable_bytes(std::span(copy)));
+        EXPECT_EQ(copy, text.substr(1'000));
+    }
+    EXPECT_EQ(sources.back().descriptor, -1);
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+}
+
+TEST_F(ByteSourceTest, SaysThatAFileWasCutOffWhileItWasRead) {
+    const std::string file = write("part", some_text(10'000));
+    const ByteSource source = open_bytes(file);
+    fs::resize_file(file, 4'000);
+    std::string copy(9'000, ' ');
+    const std::string error =
+        error_of([&] { copy_out(source, 1'000, std::as_writable_bytes(std::span(copy))); });
+    EXPECT_NE(error.find("it had 10000 bytes, and ends after 4000 now"), std::string::npos) << error;
+}
+
+TEST_F(ByteSourceTest, CopiesBytesThatAreInMemoryAlready) {
+    const ByteSource source = copy_bytes(std::as_bytes(std::span("seven b", 7)), "text");
+    std::string copy(3, ' ');
+    copy_out(source, 2, std::as_writable_bytes(std::span(copy)));
+    EXPECT_EQ(copy, "ven");
 }
 
 TEST_F(ByteSourceTest, OpensFilesBeyondFourGigabytes) {

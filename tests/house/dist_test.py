@@ -100,11 +100,14 @@ class Dist(unittest.TestCase):
         database = root / "var/lib/dpkg"
         for name in ("info", "updates"):
             (database / name).mkdir(parents=True)
-        # What the package depends on is there as it is on this machine, and nothing else.
+        # What the package depends on is there as it is on this machine, where packages for other processors may be,
+        # too, and nothing else.
+        architecture = run("dpkg", "--print-architecture").strip()
         depends = run("dpkg-deb", "--field", package, "Depends").strip()
         needed = [dependency.split()[0] for dependency in depends.split(", ")]
         self.assertTrue({"libc6", "libexpat1", "libfmt9"} <= set(needed), depends)
-        (database / "status").write_text("\n".join(run("dpkg-query", "--status", name) for name in needed), encoding="utf-8")
+        there = [run("dpkg-query", "--status", f"{name}:{architecture}") for name in needed]
+        (database / "status").write_text("\n".join(there), encoding="utf-8")
         environment = dict(os.environ, PATH=f"{os.environ['PATH']}:/usr/sbin:/sbin")
         run("dpkg", f"--root={root}", "--install", package, env=environment)
         installed = {str(path.relative_to(root)) for path in (root / "usr").rglob("*") if not path.is_dir()}

@@ -255,7 +255,7 @@ TEST(Inspect, SharingIsTakenAtItsWord) {
 
 TEST(Inspect, AgreesWithTheNaiveCountOnRandomMeshesForAnyNumberOfThreads) {
     std::mt19937 random(5);
-    for (int round = 0; round < (test::sanitized ? 20 : 60); ++round) {
+    for (int round = 0; round < (test::slowed ? 20 : 60); ++round) {
         IndexedMesh mesh;
         const std::uint32_t vertices =
             4 + static_cast<std::uint32_t>(random() % (round % 3 == 0 ? 6 : 60'000));

@@ -104,7 +104,7 @@ TEST(SelfIntersections, AVertexOnAnothersEdgeTouches) {
 
 TEST(SelfIntersections, AgreeWithAllPairsOnRandomMeshesForAnyNumberOfThreads) {
     test::Random random(21);
-    for (int round = 0; round < (test::sanitized ? 12 : 60); ++round) {
+    for (int round = 0; round < (test::slowed ? 12 : 60); ++round) {
         IndexedMesh mesh;
         const int vertices = 10 + round * 2;
         const bool grid = round % 2 == 0;

@@ -27,7 +27,7 @@ namespace {
 
 /// What is sliced. With a sanitizer it is a part with fewer triangles.
 TriangleSoup part() {
-    return test::sanitized ? make_torus(20, 10, 120, 60) : make_rook();
+    return test::slowed ? make_torus(20, 10, 120, 60) : make_rook();
 }
 
 class Processes : public testing::Test {
@@ -59,7 +59,7 @@ class Processes : public testing::Test {
 TEST_F(Processes, WriteTheBytesOfOneProcessWithAnyNumberOfThem) {
     write_stl(path("part.stl"), part());
     const auto numbers_of_processes =
-        test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{1, 2, 3, 5, 50};
+        test::slowed ? std::vector<std::size_t>{3} : std::vector<std::size_t>{1, 2, 3, 5, 50};
     for (const LayerFormat& format : layer_formats()) {
         if (format.directory)
             continue;
@@ -104,7 +104,7 @@ TEST_F(Processes, TakePlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
     jobs[5].inputs = {{.path = path("part.stl"), .unit_mm = 25.4, .placement = rotation('y', 30)}};
     jobs[5].steps.offset_mm = -0.1;
     const auto numbers_of_processes =
-        test::sanitized ? std::vector<std::size_t>{3} : std::vector<std::size_t>{2, 5};
+        test::slowed ? std::vector<std::size_t>{3} : std::vector<std::size_t>{2, 5};
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const FileResult one = slice_file(jobs[i]);
         const std::string expected = content("out.cli");

@@ -20,8 +20,10 @@ namespace lamella::boolean_cases {
 namespace {
 
 using test::Contour;
+using test::contours;
 using test::diamond;
 using test::layer_of;
+using test::normal_layer;
 using test::Random;
 using test::rectangle;
 using test::reversed;
@@ -43,17 +45,6 @@ bool made(BooleanOperation operation, bool first, bool second) {
     default:
         return first || second;
     }
-}
-
-Layer normal_layer(const std::vector<Contour>& rings, const std::vector<Contour>& chains = {}) {
-    return normal_form(layer_of(rings, chains));
-}
-
-std::vector<Contour> contours(const Layer& layer) {
-    std::vector<Contour> result;
-    for (std::size_t i = 0; i < layer.contours(); ++i)
-        result.emplace_back(layer.contour(i).begin(), layer.contour(i).end());
-    return result;
 }
 
 using Contours = std::vector<Contour>;

@@ -20,8 +20,10 @@ namespace lamella {
 namespace {
 
 using test::Contour;
+using test::contours;
 using test::diamond;
 using test::layer_of;
+using test::normal_layer;
 using test::Random;
 using test::rectangle;
 using test::reversed;
@@ -32,17 +34,6 @@ bool is_material(FillRule rule, int winding) {
     return rule == FillRule::nonzero   ? winding != 0
            : rule == FillRule::evenodd ? winding % 2 != 0
                                        : winding > 0;
-}
-
-Layer normal_layer(const std::vector<Contour>& rings, const std::vector<Contour>& chains = {}) {
-    return normal_form(layer_of(rings, chains));
-}
-
-std::vector<Contour> contours(const Layer& layer) {
-    std::vector<Contour> result;
-    for (std::size_t i = 0; i < layer.contours(); ++i)
-        result.emplace_back(layer.contour(i).begin(), layer.contour(i).end());
-    return result;
 }
 
 Layer united(const std::vector<Contour>& rings, FillRule rule = FillRule::nonzero) {

@@ -88,7 +88,7 @@ void expect_agreement(const std::string& bytes) {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(MeshInput, StreamsWhatItReads) {
-    const Triangles many = some_triangles(test::sanitized ? 40'000 : 100'000); // more than one batch
+    const Triangles many = some_triangles(test::slowed ? 40'000 : 100'000); // more than one batch
     expect_agreement(binary(some_triangles(1)));
     expect_agreement(binary(many));
     expect_agreement(solid(some_triangles(1)));
@@ -226,7 +226,7 @@ class PipedInput {
 
 TEST(MeshInput, SpoolsWhatComesThroughAPipe) {
     const Triangles many =
-        some_triangles(test::sanitized ? 25'000 : 60'000); // more than the limit of 2^20 bytes
+        some_triangles(test::slowed ? 25'000 : 60'000); // more than the limit of 2^20 bytes
     for (const std::string& bytes : {binary(many), solid(many)})
         for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{1} << 20, MeshInput::unlimited}) {
             const PipedInput piped(bytes);

@@ -297,7 +297,7 @@ TEST(Ply, CountsTextOfAnyLayoutOnceOnly) {
 
 TEST(Ply, IsTheSameForAnyThreads) {
     constexpr int faces =
-        test::sanitized ? 110'000 : 200'000; // more than a megabyte, which one thread would read
+        test::slowed ? 110'000 : 200'000; // more than a megabyte, which one thread would read
     for (const bool even : {false, true})
         for (const bool swapped : {false, true}) {
             const std::string bytes = strip(faces, even, swapped);

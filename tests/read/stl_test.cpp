@@ -150,9 +150,16 @@ class StlOnDisk : public testing::Test {
     std::string path_ = testing::TempDir() + "/lamella-stl-XXXXXX";
 };
 
-TEST_F(StlOnDisk, ViewsABinaryFileWithoutCopyingIt) {
+TEST_F(StlOnDisk, NeedsABinaryFileNoLongerOnceItIsRead) {
     write(binary(many));
     const MeshFile file = read_mesh(path());
+    write("");
+    EXPECT_EQ(triangles_of(file), many);
+}
+
+TEST_F(StlOnDisk, ViewsABinaryFileWithoutCopyingItWhereMemoryIsShort) {
+    write(binary(many));
+    const MeshFile file = read_mesh(path(), {.max_memory = 100});
     EXPECT_EQ(file.path, path());
     EXPECT_EQ(soup_of(file).stride(), 50U);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(soup_of(file).data()) % 4096, 96U)

@@ -136,7 +136,7 @@ class InFlight {
 
 TEST(SliceTo, BoundsThePointsInFlight) {
     const TriangleSoup soup = body();
-    const Plan plan = even_planes(test::sanitized ? 100 : 2000);
+    const Plan plan = even_planes(test::slowed ? 100 : 2000);
     SliceReport whole;
     std::uint64_t largest = 0;
     for (const Layer& layer : slice(soup, plan, {}, &whole))

@@ -31,7 +31,7 @@ using Triangle3f = std::array<Point3f, 3>;
 using Triangle3 = std::array<Point3, 3>;
 
 /// An immutable view of n triangles with equal spacing in memory, that keeps its memory alive. It is cheap to
-/// copy. A memory-mapped binary STL file is such a view (spacing 50 bytes) without any copying.
+/// copy. The records of a binary STL file are such a view (spacing 50 bytes).
 ///
 /// A soup may carry a placement: an affine map that is applied to each corner, in double, when it is read.
 /// Corners are finite. Equal corners are meant to be the same vertex, with -0 equal to +0.

@@ -165,7 +165,7 @@ struct FileResult {
     std::vector<LayerStatistics> layers;
     double volume_mm3 = 0;
 
-    /// Wall time. `read` includes finding the bounding box, for that is when a mapped file is read;
+    /// Wall time. `read` includes finding the bounding box;
     /// `weld` includes the inspection, the repair of meshes, and the weld of engines that need one; `write`
     /// is the part of writing that must be done in order, while formatting is done in parallel and part of
     /// `slice`. So is what is made of the layers; `polygon` is its time on all threads added up.

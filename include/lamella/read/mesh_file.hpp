@@ -76,10 +76,10 @@ struct MeshFile {
 /// Reads a mesh file; its content says of which format it is. "-" reads standard input. Parallel; O(bytes);
 /// the same result for any number of threads. docs/formats.md has what is accepted of each format.
 ///
-/// Binary STL files are memory-mapped and viewed, not copied (but where triangles are dropped). While the
-/// mesh lives, the file must not be written to or cut shorter (touching what was cut off ends the program
-/// with SIGBUS); replacing it under its name, or deleting it, does no harm. An ASCII file is not needed once
-/// this has returned.
+/// The file is not needed once this has returned. But a binary STL file that would take more than a quarter
+/// of `max_memory` is memory-mapped and viewed, not copied (but where triangles are dropped): while the mesh
+/// lives, that file must not be written to or cut shorter (touching what was cut off ends the program with
+/// SIGBUS); replacing it under its name, or deleting it, does no harm.
 ///
 /// Corners are single precision in both forms: a number in an ASCII file is rounded once, to the nearest, so
 /// the ASCII and the binary form of a part give the same slices, bit for bit. Stored normals are ignored. All

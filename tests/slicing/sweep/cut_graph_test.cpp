@@ -489,7 +489,7 @@ Triangles cone_of_equal_hashes(std::size_t n) {
 }
 
 TEST(CutGraph, IsNotDeceivedByEdgesOfEqualHash) {
-    constexpr std::size_t walls = test::sanitized ? 4000 : 20000;
+    constexpr std::size_t walls = test::slowed ? 4000 : 20000;
     const TriangleSoup soup = test::soup(cone_of_equal_hashes(walls));
     const Plan plan = plan_listed({-6, 3});
     const std::vector<Link> links = links_of(soup, plan);

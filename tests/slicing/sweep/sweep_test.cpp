@@ -242,7 +242,7 @@ TEST(Sweep, StartsARingThatTouchesItselfAtItsSmallestSequence) {
 // rings
 
 TEST(Sweep, FollowsABodyThatChangesOnEveryPlane) {
-    for (const std::size_t n : {3U, 4U, 17U, test::sanitized ? 60U : 400U}) {
+    for (const std::size_t n : {3U, 4U, 17U, test::slowed ? 60U : 400U}) {
         const Triangles drum = test::rugged_drum(n, n);
         for (const SliceAt at : both_rules) {
             expect_sections(slice(test::soup(drum), even_planes(-11, 11, 60, at)), drum,
@@ -480,7 +480,7 @@ TEST(Sweep, GivesTheSameBytesForAnyThreadsOrderAndKindOfMesh) {
     for (const auto& [name, soup] : shapes) {
         SCOPED_TRACE(name);
         const Box3 box = bounding_box(soup);
-        const Plan plan = even_planes(box.min.z, box.max.z, test::sanitized ? 50 : 200);
+        const Plan plan = even_planes(box.min.z, box.max.z, test::slowed ? 50 : 200);
         const LayerStack stack = slice(soup, plan, {.threads = 1});
         for (const unsigned threads : {2U, 7U})
             expect_same(slice(soup, plan, {.threads = threads}), stack);
@@ -607,7 +607,7 @@ TEST(Sweep, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
          {make_sheet({.holes = 36, .segments = 32}), make_sphere(10, 5), make_lattice({.cells_x = 2}),
           TriangleSoup(test::box_without_a_side())}) {
         const Box3 box = bounding_box(mesh);
-        const Plan plan = even_planes(box.min.z, box.max.z, test::sanitized ? 30 : 90);
+        const Plan plan = even_planes(box.min.z, box.max.z, test::slowed ? 30 : 90);
         const LayerStack expected = slice(mesh, plan, {.threads = 1});
         for (const unsigned threads : {1U, 2U, 7U}) {
             for (const std::uint64_t points : {1U, 1000U, 30'000U, 300'000U}) {
