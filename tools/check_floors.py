@@ -16,7 +16,7 @@ FLOORS = [
     ["core"],
     ["mesh", "contour", "container"],
     ["read", "slicing", "polygon", "raster"],
-    ["write"],
+    ["scan", "write"],
     ["pipeline"],
 ]
 
@@ -30,8 +30,9 @@ ROOMS = {
     "slicing": ["core", "mesh", "contour"],  # not container: engines know no formats
     "polygon": ["core", "contour"],  # not mesh: layers, whoever made them
     "raster": ["core", "contour"],  # not container: what becomes of pixels is another matter
+    "scan": ["core", "contour", "polygon"],  # not mesh: layers, whoever made them
     "write": ["core", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
-    "pipeline": ["core", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "write"],
+    "pipeline": ["core", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
 }
 
 # Third-party headers of the library: each is visible in one source (zlib in one that packs and one that unpacks,

@@ -51,6 +51,11 @@
 #include "lamella/polygon/offset.hpp"
 #include "lamella/polygon/simplify.hpp"
 
+// What machines that expose them execute.
+#include "lamella/contour/exposure.hpp"
+#include "lamella/scan/scan.hpp"
+#include "lamella/scan/strategy.hpp"
+
 // Files of layers, meshes, pictures and pages.
 #include "lamella/raster/picture.hpp"
 #include "lamella/read/layer_file.hpp"
