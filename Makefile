@@ -98,6 +98,7 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/files
 	build-bench/bench/raster
 	build-bench/bench/layer_steps
+	build-bench/bench/scan
 	build-bench/bench/hostile_layers
 	build-bench/bench/kernels
 
