@@ -48,6 +48,11 @@ class Filler {
     Overlaid run() && {
         for (const std::vector<std::uint32_t>& group : groups_)
             fill_group(group);
+        // Rounding draws what a group becomes over rings of others that are closer to it than a unit of the
+        // grid.
+        const bool others = result_.groups_united > 1 || count(Fate::kept) + count(Fate::reversed) > 0;
+        if (!united_.empty() && others && has_crossings(put_together()))
+            unite_all();
         result_.rings_dropped = count(Fate::dropped);
         result_.rings_reversed = count(Fate::reversed);
         if (!result_.changed())
@@ -75,13 +80,11 @@ class Filler {
             return;
         // Of the group itself nothing lies below the left end of its first ring.
         const Windings around = nest_.below[group.front()];
-        std::vector<WoundRing> rings;
         std::vector<std::span<const Point2>> points;
         Windings most;
         for (const std::uint32_t ring : group) {
             fates_[ring] = fate_by_left_end(ring);
             points.push_back(layer_.contour(ring));
-            rings.push_back({points.back(), turns_[ring], left_of(fates_[ring])});
             most += turns_[ring];
         }
         if (material_.alike(around, most)) {
@@ -89,18 +92,41 @@ class Filler {
                 fates_[ring] = Fate::dropped;
             return;
         }
+        const std::vector<WoundRing> rings = wound(group);
         if (!grid_)
             grid_.emplace(layer_.points.span().first(layer_.offsets[layer_.rings]));
         const bool crossed = has_crossings(layer_of(points));
         const Arrangement arrangement = arranged(rings, around, *grid_);
         if (!crossed && stay(group, arrangement, most))
             return;
+        unite(group, rings, arrangement);
+    }
+
+    [[nodiscard]] std::vector<WoundRing> wound(std::span<const std::uint32_t> group) const {
+        std::vector<WoundRing> rings;
+        for (const std::uint32_t ring : group)
+            rings.push_back({layer_.contour(ring), turns_[ring], left_of(fates_[ring])});
+        return rings;
+    }
+
+    void unite(std::span<const std::uint32_t> group, std::span<const WoundRing> rings,
+               const Arrangement& arrangement) {
         for (const std::uint32_t ring : group)
             fates_[ring] = Fate::united;
         ++result_.groups_united;
         result_.rings_united += group.size();
         for (Ring& ring : boundary(arrangement, material_, rings, *grid_))
             united_.push_back(std::move(ring));
+    }
+
+    /// As if all rings were one group in contact.
+    void unite_all() {
+        std::vector<std::uint32_t> all = nest_.nesting.order;
+        std::erase_if(all, [this](std::uint32_t ring) { return flat(ring); });
+        united_.clear();
+        result_ = {};
+        const std::vector<WoundRing> rings = wound(all);
+        unite(all, rings, arranged(rings, {}, *grid_));
     }
 
     /// Whether rings that do not cross can stay or go each as a whole, and which.

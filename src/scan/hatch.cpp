@@ -67,9 +67,11 @@ void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, Islands& i
                 ++first;
             if (first < last && end - last * width < rule.shortest)
                 --last;
-            for (double stripe = first; stripe <= last; ++stripe)
-                islands.add({whole(stripe), 0}, lines, i, stripe == first ? begin : stripe * width - more,
-                            stripe == last ? end : (stripe + 1) * width + more);
+            for (double stripe = first; stripe <= last; ++stripe) {
+                const double from = stripe == first ? begin : std::max(begin, stripe * width - more);
+                const double to = stripe == last ? end : std::min(end, (stripe + 1) * width + more);
+                islands.add({whole(stripe), 0}, lines, i, from, to);
+            }
         }
     }
 }
@@ -88,14 +90,14 @@ void cut_into_cells(std::span<const double> ends, double pitch, double offset, d
     }
 }
 
-// Squares of one colour have lines along the frame, those of the other colour have them across: these are the
+// Of a line on the border of two rows counts the one above it. Squares of one colour have lines along the frame, those of the other colour have them across: these are the
 // squares of the first colour in the frame turned by a right angle.
 void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
     const double half = (rule.cell + rule.overlap) / 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const double v = lines.v(i) / rule.cell - 0.5;
         const double reach = half / rule.cell;
-        for (double row = std::ceil(v - reach); row <= std::floor(v + reach); ++row)
+        for (double row = std::floor(v - reach) + 1; row <= std::floor(v + reach); ++row)
             cut_into_cells(
                 lines.ends(i), rule.cell, 0.5, half, [&](std::int32_t column, double from, double to) {
                     if (((whole(row) ^ column) & 1) == 0 && is_long_enough(from, to, rule))

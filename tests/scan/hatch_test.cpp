@@ -181,8 +181,9 @@ TEST(Hatch, NeighbouringIslandsHaveOtherDirections) {
     const Layer square = layer_of({rectangle(0, 0, 30, 30)});
     const auto directions = [&](HatchPattern pattern) {
         std::set<long> found;
-        std::vector<std::array<double, 3>> middles; // x, y, direction
-        for (const Vector& vector : vectors_of(hatch(square, bare(pattern, 0.25, 5), 1))) {
+        HatchRule rule = bare(pattern, 0.25, 5);
+        rule.shortest = 1e-6;
+        for (const Vector& vector : vectors_of(hatch(square, rule, 1))) {
             const double degrees =
                 std::atan2(vector.to.y - vector.from.y, vector.to.x - vector.from.x) * 57.29577951;
             found.insert(std::lround(std::fmod(degrees + 360, 180)) % 180);
@@ -199,8 +200,9 @@ TEST(Hatch, SquaresAreHatchedOneByOneAcrossTheirNeighbours) {
     const std::vector<Vector> vectors = vectors_of(hatch(square, bare(HatchPattern::chessboard, 0.5, 5), 1));
     EXPECT_EQ(vectors.size(), 16U * 10U);
     for (std::size_t i = 0; i < vectors.size(); i += 10) {
+        // Of lines on a border counts what is above: to the left of those that run upwards.
         const auto column = [](const Vector& v) {
-            return std::floor((v.from.x + v.to.x) / 2 / 5);
+            return std::ceil((v.from.x + v.to.x) / 2 / 5);
         };
         const auto row = [](const Vector& v) {
             return std::floor((v.from.y + v.to.y) / 2 / 5);
@@ -209,7 +211,7 @@ TEST(Hatch, SquaresAreHatchedOneByOneAcrossTheirNeighbours) {
             EXPECT_EQ(column(vectors[k]), column(vectors[i]));
             EXPECT_EQ(row(vectors[k]), row(vectors[i]));
             const bool along_x = vectors[k].from.y == vectors[k].to.y;
-            EXPECT_EQ(along_x, std::fmod(column(vectors[i]) + row(vectors[i]), 2) == 0);
+            EXPECT_EQ(along_x, std::fmod(column(vectors[i]) + row(vectors[i]), 2) == 1);
         }
     }
     EXPECT_LT(jumped(vectors), 16 * 9 * 0.5 + 16 * 15);
