@@ -67,6 +67,7 @@
 // out.
 #include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"
 

@@ -35,7 +35,8 @@ std::string packed(std::span<const Layer> parts) {
             .put(layer.top)
             .put(std::uint64_t{layer.rings})
             .put_all(std::span(layer.offsets))
-            .put_all(layer.points.span());
+            .put_all(layer.points.span())
+            .put_all(layer.hatches.span());
     return packer.take();
 }
 
@@ -50,6 +51,7 @@ std::vector<Layer> unpacked(const std::string& message) {
         layer.rings = unpacker.get<std::uint64_t>();
         layer.offsets = unpacker.get_all<std::uint64_t>();
         layer.points = PointArray(unpacker.get_all<Point2>());
+        layer.hatches = PointArray(unpacker.get_all<Point2>());
     }
     return parts;
 }

@@ -56,8 +56,9 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
         shard.labels.push_back(part.label);
         Box3& box = shard.boxes.emplace_back();
         for (const Layer& layer : part.layers)
-            for (const Point2& p : layer.points)
-                box.add(Point3{p.x, p.y, layer.z});
+            for (const PointArray* points : {&layer.points, &layer.hatches})
+                for (const Point2& p : *points)
+                    box.add(Point3{p.x, p.y, layer.z});
     }
     return shard;
 }
