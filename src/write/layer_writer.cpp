@@ -8,10 +8,12 @@
 #include "write/common_layer.hpp"
 #include "write/dxf.hpp"
 #include "write/geojson.hpp"
+#include "write/ilt.hpp"
 #include "write/layered_svg.hpp"
 #include "write/layers_json.hpp"
 #include "write/limited_writer.hpp"
 #include "write/npz.hpp"
+#include "write/ovf.hpp"
 #include "write/picture_stack.hpp"
 #include "write/sl1.hpp"
 #include "write/slc.hpp"
@@ -98,6 +100,19 @@ constexpr std::array formats{
                 .summary = "NumPy arrays; exact",
                 .open = open_npz,
                 .rounding = unrounded},
+    LayerFormat{.name = "ilt",
+                .extension = ".ilt",
+                .summary =
+                    "scan vectors in binary Common Layer Interface files, with their parameters, zipped",
+                .open = open_ilt,
+                .rounding = Rounding{.step_mm = LayerWriteOptions::usual_units_mm, .single_precision = true},
+                .units = true,
+                .short_form = true},
+    LayerFormat{.name = "ovf",
+                .extension = ".ovf",
+                .summary = "scan vectors with their parameters in the Open Vector Format; single precision",
+                .open = open_ovf,
+                .rounding = Rounding{.single_precision = true}},
     LayerFormat{.name = "html",
                 .extension = ".html",
                 .summary = "a page to look at the layers with any browser; see docs/viewer.md",

@@ -55,6 +55,8 @@ const std::vector<Resolution>& readable() {
         {.format = "3mf", .coordinate = decimal_thousandths, .chains = false},
         {.format = "json", .coordinate = itself, .hatches = true, .exact = true},
         {.format = "npz", .coordinate = itself, .hatches = true, .exact = true},
+        {.format = "ilt", .coordinate = single_thousandths, .hatches = true},
+        {.format = "ovf", .coordinate = single, .hatches = true},
     };
     return formats;
 }
@@ -223,6 +225,7 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
             all += warning + '\n';
         const bool closed_only = format.name == "slc" || format.name == "3mf" || format.name == "png-zip";
         const bool no_hatches = format.name != "json" && format.name != "npz" && format.name != "html" &&
+                                format.name != "ilt" && format.name != "ovf" &&
                                 !format.name.starts_with("cli");
         EXPECT_EQ(all.find(std::to_string(chains) + " open contours") != std::string::npos, closed_only)
             << all;
