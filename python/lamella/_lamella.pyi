@@ -167,6 +167,85 @@ class LayerStream:
     def __enter__(self) -> LayerStream: ...
     def __exit__(self, *error: object) -> None: ...
 
+class ParameterSet:
+    @overload
+    def __init__(self) -> None: ...
+    @overload
+    def __init__(self, other: ParameterSet, /) -> None: ...
+    name: str
+    power_w: float
+    speed_mm_s: float
+    jump_speed_mm_s: float
+    focus_mm: float
+    spot_mm: float
+    mark_delay_us: float
+    jump_delay_us: float
+    def __eq__(self, other: object) -> bool: ...
+
+class HatchRule:
+    def __init__(self) -> None: ...
+    pattern: str
+    distance: float
+    angle_degrees: float
+    turn_degrees: float
+    border: float
+    shortest: float
+    cell: float
+    overlap: float
+    order: str
+    parameters: ParameterSet
+
+class ContourRule:
+    def __init__(self) -> None: ...
+    count: int
+    beam_offset: float
+    distance: float
+    order: str
+    before_hatch: bool
+    start: str
+    start_direction_degrees: float
+    parameters: ParameterSet
+
+class SkinRule:
+    def __init__(self) -> None: ...
+    layers: int
+    overlap: float
+    hatch: HatchRule
+
+class ScanStrategy:
+    def __init__(self) -> None: ...
+    contours: ContourRule
+    hatch: HatchRule
+    upskin: SkinRule
+    downskin: SkinRule
+    seed: int
+
+class Exposure:
+    @property
+    def part(self) -> str: ...
+    @property
+    def region(self) -> str: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def contour(self) -> int: ...
+    @property
+    def parameters(self) -> ParameterSet: ...
+    @property
+    def name(self) -> str: ...
+
+class ScanFigures:
+    @property
+    def vectors(self) -> int: ...
+    @property
+    def marked_mm(self) -> float: ...
+    @property
+    def jumped_mm(self) -> float: ...
+    @property
+    def build_seconds(self) -> float: ...
+    @property
+    def energy_j(self) -> float: ...
+
 class UniformLayers:
     def __init__(self, layer_height: float, first_layer_height: Optional[float], /) -> None: ...
 
@@ -234,3 +313,9 @@ def compare(
     first: Stack, second: Stack, tolerance: Optional[float], /
 ) -> Tuple[float, List[Tuple[Optional[int], Optional[int], bool, bool, float, Tuple[float, float]]]]: ...
 def slice_stack(mesh: Mesh, plan: Plan, engine: str, threads: int, progress: Optional[Progress], /) -> Stack: ...
+def check_strategy(strategy: ScanStrategy, /) -> None: ...
+def exposures(strategy: ScanStrategy, part: bytes, /) -> List[Exposure]: ...
+def scan(
+    layer: Layer, below: Sequence[Layer], above: Sequence[Layer], strategy: ScanStrategy, /
+) -> List[Layer]: ...
+def measure_vectors(vectors: Sequence[Layer], exposures: Sequence[Exposure], /) -> List[ScanFigures]: ...

@@ -136,7 +136,7 @@ LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const
     layer.rings = rings;
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
-    return std::make_shared<SharedLayer>(normal_form(std::move(layer)));
+    return std::make_shared<SharedLayer>(std::move(layer)); // as it was: the order of scan vectors counts
 }
 
 /// Contours in any order.
