@@ -10,8 +10,9 @@ namespace {
 Box3 box_of(const LayerStack& layers) {
     Box3 box;
     for (const Layer& layer : layers)
-        for (const Point2& p : layer.points)
-            box.add(Point3{p.x, p.y, layer.z});
+        for (const PointArray* points : {&layer.points, &layer.hatches})
+            for (const Point2& p : *points)
+                box.add(Point3{p.x, p.y, layer.z});
     return box;
 }
 

@@ -49,6 +49,7 @@ THIRD_PARTY_ANYWHERE = {"fmt"}
 THIRD_PARTY_OF_CONSUMERS = {
     "mpi.h": "app/mpi_processes.cpp",
     "polyclipping/clipper.hpp": "bench/layer_steps.cpp bench/scan.cpp",
+    "toml++/toml.h": "app/toml_file.cpp",
 }
 
 # The one consumer that opens private headers: it times the kernels alone.
