@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -137,11 +138,14 @@ JobOutput::Written JobOutput::finish_file() {
         written.bytes = shared_ ? 0 : writer_->bytes();
         written.warnings = writer_->warnings();
     });
+    // For all of them, also where one alone wrote.
+    const std::string mine = fmt::format("{}", fmt::join(std::exchange(written.warnings, {}), "\n"));
+    for (const std::string& warnings : processes_.gather(mine)) {
+        std::istringstream lines(warnings);
+        for (std::string warning; std::getline(lines, warning);)
+            written.warnings.push_back(warning);
+    }
     if (shared_) {
-        const std::string mine = fmt::format("{}", fmt::join(std::exchange(written.warnings, {}), "\n"));
-        for (std::string& warning : processes_.gather(mine))
-            if (!warning.empty())
-                written.warnings.push_back(std::move(warning));
         written.bytes = write_shared();
     } else {
         processes_.sum(std::span(&written.bytes, 1)); // those that did not write have 0
