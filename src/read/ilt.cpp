@@ -7,9 +7,9 @@
 
 #include "container/ilt_format.hpp"
 #include "container/text_place.hpp"
+#include "container/xml.hpp"
 #include "core/parse_number.hpp"
 #include "read/common_layer.hpp"
-#include "read/coordinate_text.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/read_limits.hpp"
 
@@ -41,14 +41,6 @@ struct Section {
                             .mark_delay_us = 0,
                             .jump_delay_us = 0};
 };
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front()))
-        text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back()))
-        text.remove_suffix(1);
-    return text;
-}
 
 /// Lines such as "[file.cli]" and, for that file, "LaserPower = 200.0 watt". Other lines say nothing here.
 std::vector<Section> read_parameters(std::string_view text, const std::string& name, ReadLimits& limits) {

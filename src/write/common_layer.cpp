@@ -27,17 +27,8 @@ static_assert(std::endian::native == std::endian::little, "the binary form is wr
 
 using Direction = CommonLayerDirection;
 
-constexpr double least_units = 1e-9;
-constexpr double most_units = 1e3;
 constexpr Holds holds{.open_chains = true, .hatches = true};
 constexpr int first_part = 1;
-
-void check_units(double units) {
-    if (!(units >= least_units && units <= most_units))
-        throw Error(ErrorKind::usage,
-                    fmt::format("units of {} mm are not possible; choose from {} to {} mm, such as 0.001",
-                                units, least_units, most_units));
-}
 
 // The label as the format's strings have it: readers differ on quotes, commas and letters beyond ASCII.
 std::string label_text(std::string_view label) {

@@ -19,6 +19,7 @@
 #include "write/slc.hpp"
 #include "write/slices_3mf.hpp"
 #include "write/strict_writer.hpp"
+#include "write/toolpath_3mf.hpp"
 
 #include <fmt/format.h>
 
@@ -113,6 +114,13 @@ constexpr std::array formats{
                 .summary = "scan vectors with their parameters in the Open Vector Format; single precision",
                 .open = open_ovf,
                 .rounding = Rounding{.single_precision = true}},
+    LayerFormat{.name = "3mf-toolpath",
+                .extension = "",
+                .summary = "scan vectors with their parameters, 3MF with toolpaths; whole units of 0.001 mm",
+                .open = open_toolpath_3mf,
+                .file_extension = ".build.3mf",
+                .rounding = Rounding{.step_mm = LayerWriteOptions::usual_units_mm},
+                .units = true},
     LayerFormat{.name = "html",
                 .extension = ".html",
                 .summary = "a page to look at the layers with any browser; see docs/viewer.md",

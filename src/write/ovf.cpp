@@ -11,13 +11,13 @@
 #include "container/text_place.hpp"
 #include "core/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
+#include "write/exposure_keys.hpp"
 #include "write/float_contour.hpp"
 #include "write/left_out.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -27,6 +27,7 @@ namespace lamella {
 
 namespace {
 
+constexpr std::size_t most_text = 4096; ///< bytes of a label or name
 constexpr std::size_t position_size = sizeof(std::int64_t);
 
 std::string_view position_bytes(const std::uint64_t& position) {
@@ -49,8 +50,7 @@ ProtobufMessage marking_params(const Exposure& exposure) {
     message.real(ovf::marking::jump_speed_mm_s, parameters.jump_speed_mm_s);
     message.real(ovf::marking::jump_delay_us, parameters.jump_delay_us);
     message.real(ovf::marking::mark_delay_us, parameters.mark_delay_us);
-    constexpr std::size_t most_bytes = 4096;
-    message.text(ovf::marking::name, printable(name_of_parameters(exposure), most_bytes));
+    message.text(ovf::marking::name, printable(name_of_parameters(exposure), most_text));
     return message;
 }
 
@@ -68,68 +68,39 @@ ProtobufMessage lpbf_meta_data(const Exposure& exposure) {
     return message;
 }
 
-/// What all parts of the file are in the job: parts by their labels, and parameters of exposures that are
-/// alike but for the part. Keys count from 1 in the order of execution; 0 is none.
-class Keys {
-  public:
-    explicit Keys(const std::vector<PartInfo>& parts) {
-        for (const PartInfo& part : parts) {
-            const std::string& label = part.exposure ? part.exposure->part : part.label;
-            const std::size_t part_key = key_of(
-                parts_, [&](const std::string& known) { return known == label; }, [&] { return label; });
-            std::size_t key = 0;
-            if (part.exposure)
-                key = key_of(
-                    exposures_, [&](const Exposure& known) { return is_alike(known, *part.exposure); },
-                    [&] { return *part.exposure; });
-            ProtobufMessage of_part;
-            of_part.integer(ovf::block::meta::part_key, static_cast<std::int64_t>(part_key));
-            ProtobufMessage of_block;
-            of_block.integer(ovf::block::marking_params_key, static_cast<std::int64_t>(key));
-            of_block.message(ovf::block::meta_data, of_part);
-            if (part.exposure)
-                of_block.message(ovf::block::lpbf_meta_data, lpbf_meta_data(*part.exposure));
-            of_blocks_.emplace_back(of_block.view());
-        }
+/// What stands behind the vectors in each block of a part of the file. Keys of the job count from 1; 0 is
+/// none.
+std::vector<std::string> ends_of_blocks(const ExposureKeys& keys) {
+    std::vector<std::string> ends;
+    for (const auto& [part, exposure] : keys.keys) {
+        ProtobufMessage meta_data;
+        meta_data.integer(ovf::block::meta::part_key, static_cast<std::int64_t>(part + 1));
+        ProtobufMessage block;
+        if (exposure)
+            block.integer(ovf::block::marking_params_key, static_cast<std::int64_t>(*exposure + 1));
+        block.message(ovf::block::meta_data, meta_data);
+        if (exposure)
+            block.message(ovf::block::lpbf_meta_data, lpbf_meta_data(keys.exposures[*exposure]));
+        ends.emplace_back(block.view());
     }
+    return ends;
+}
 
-    /// What stands behind the vectors in each block of a part of the file.
-    [[nodiscard]] std::string_view of_blocks(std::size_t part) const { return of_blocks_[part]; }
-
-    void put(ProtobufMessage& job, double layer_thickness) const {
-        for (std::size_t i = 0; i < exposures_.size(); ++i)
-            job.entry(ovf::job::marking_params, static_cast<std::int64_t>(i + 1),
-                      marking_params(exposures_[i]));
-        ProtobufMessage strategy;
-        strategy.real(ovf::part::strategy_of_part::layer_thickness_mm, layer_thickness);
-        for (std::size_t i = 0; i < parts_.size(); ++i) {
-            constexpr std::size_t most_bytes = 4096;
-            ProtobufMessage part;
-            part.text(ovf::part::name, printable(parts_[i], most_bytes));
-            part.message(ovf::part::strategy, strategy);
-            job.entry(ovf::job::parts, static_cast<std::int64_t>(i + 1), part);
-        }
+/// Parameters and parts of the job.
+void put_keys(const ExposureKeys& keys, double layer_thickness, ProtobufMessage& job) {
+    std::int64_t key = 1;
+    for (const Exposure& exposure : keys.exposures)
+        job.entry(ovf::job::marking_params, key++, marking_params(exposure));
+    ProtobufMessage strategy;
+    strategy.real(ovf::part::strategy_of_part::layer_thickness_mm, layer_thickness);
+    key = 1;
+    for (const std::string& label : keys.parts) {
+        ProtobufMessage part;
+        part.text(ovf::part::name, printable(label, most_text));
+        part.message(ovf::part::strategy, strategy);
+        job.entry(ovf::job::parts, key++, part);
     }
-
-  private:
-    template <class T, class Is, class Make>
-    static std::size_t key_of(std::vector<T>& known, const Is& is, const Make& make) {
-        const auto found = std::find_if(known.begin(), known.end(), is);
-        if (found != known.end())
-            return static_cast<std::size_t>(found - known.begin()) + 1;
-        known.push_back(make());
-        return known.size();
-    }
-
-    static bool is_alike(const Exposure& a, const Exposure& b) {
-        return a.region == b.region && a.kind == b.kind && a.contour == b.contour &&
-               a.parameters == b.parameters;
-    }
-
-    std::vector<std::string> parts_;
-    std::vector<Exposure> exposures_;
-    std::vector<std::string> of_blocks_;
-};
+}
 
 /// The vectors of a plane, and where each block of them begins.
 struct Blocks {
@@ -208,8 +179,9 @@ class BlockWriter {
 class OvfWriter final : public LayerWriter {
   public:
     OvfWriter(const std::string& path, const LayerFileInfo& info)
-        : box_(info.box), parts_(info.parts), keys_(info.parts), file_(path, Overwriting::yes), order_(info),
-          left_out_({.open_chains = true, .hatches = true}), floats_(1, &left_out_.rounding()) {
+        : box_(info.box), parts_(info.parts), keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)),
+          file_(path, Overwriting::yes), order_(info), left_out_({.open_chains = true, .hatches = true}),
+          floats_(1, &left_out_.rounding()) {
         file_.append(ovf::magic);
         file_.append(position_bytes(0));
     }
@@ -221,8 +193,8 @@ class OvfWriter final : public LayerWriter {
             const Layer& layer = parts[part];
             BlockWriter writer(floats_, layer.index, *blocks);
             for (std::size_t i = 0; i < layer.contours(); ++i)
-                writer.put_contour(layer.contour(i), layer.closed(i), keys_.of_blocks(part));
-            writer.put_hatches(layer.hatches.span(), keys_.of_blocks(part));
+                writer.put_contour(layer.contour(i), layer.closed(i), ends_of_blocks_[part]);
+            writer.put_hatches(layer.hatches.span(), ends_of_blocks_[part]);
         }
         const Layer& layer = parts.front();
         return [this, blocks, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
@@ -245,7 +217,7 @@ class OvfWriter final : public LayerWriter {
         meta_data.message(ovf::job::meta::bounds, bounds);
         ProtobufMessage job;
         job.message(ovf::job::meta_data, meta_data);
-        keys_.put(job, layer_thickness_);
+        put_keys(keys_, layer_thickness_, job);
         job.integer(ovf::job::work_plane_count, static_cast<std::int64_t>(planes_.size()));
 
         ProtobufMessage table;
@@ -305,7 +277,8 @@ class OvfWriter final : public LayerWriter {
 
     Box3 box_;
     std::vector<PartInfo> parts_;
-    Keys keys_;
+    ExposureKeys keys_;
+    std::vector<std::string> ends_of_blocks_; ///< of parts
     AtomicFile file_;
     LayerOrder order_;
     LeftOut left_out_;

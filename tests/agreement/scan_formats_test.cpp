@@ -60,6 +60,12 @@ const std::vector<ScanFormat>& scan_formats() {
                                      .mark_delay_us = single(set.mark_delay_us),
                                      .jump_delay_us = single(set.jump_delay_us)};
              }},
+        {.name = "3mf-toolpath",
+         .coordinate = [](double v) { return std::nearbyint(v * 1000) * 0.001 + 0.0; },
+         .parameters =
+             [](const ParameterSet& set) {
+                 return set;
+             }},
     };
     return formats;
 }

@@ -34,7 +34,8 @@ struct LayerPart {
 
 struct LayerFile {
     std::string path;
-    std::string format;  ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json", "npz", "ilt" or "ovf"
+    std::string
+        format; ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json", "npz", "ilt", "ovf" or "3mf-toolpath"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
     Rounding rounding;   ///< of coordinates and heights, by the format
     /// By which the layers were cut, where the format says it; else the usual one.
@@ -47,10 +48,11 @@ struct LayerFile {
 };
 
 /// Reads a slice file, by its content: Common Layer Interface (binary or ASCII), layered SVG, SLC, 3MF with
-/// slice stacks, JSON of layers, NumPy arrays, ILT or Open Vector Format, each also packed with gzip. "-"
-/// reads standard input. Layers come in ascending z, and in normal form but for exposures; what the format
-/// does not say is made from what it does (a Common Layer Interface layer knows its top: its cut is taken
-/// half-way up). Throws Error{input} with file, byte or line, what was found and what was expected.
+/// slice stacks, JSON of layers, NumPy arrays, ILT, Open Vector Format or 3MF with toolpaths, each also
+/// packed with gzip. "-" reads standard input. Layers come in ascending z, and in normal form but for
+/// exposures; what the format does not say is made from what it does (a Common Layer Interface layer knows
+/// its top: its cut is taken half-way up). Throws Error{input} with file, byte or line, what was found and
+/// what was expected.
 [[nodiscard]] LayerFile read_layers(const std::string& path, const LayerReadOptions& options = {},
                                     const Execution& execution = {});
 
