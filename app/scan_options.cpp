@@ -1,10 +1,10 @@
 #include "scan_options.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/scan/strategy_fields.hpp"
 
 #include "numbers.hpp"
 #include "options.hpp"
-#include "strategy_fields.hpp"
 #include "strategy_file.hpp"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "strategy_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/scan/strategy_fields.hpp"
 
 #include "numbers.hpp"
-#include "strategy_fields.hpp"
 #include "suggest.hpp"
 #include "toml_file.hpp"
 

@@ -52,9 +52,7 @@
 #include "lamella/polygon/simplify.hpp"
 
 // What machines that expose them execute.
-#include "lamella/contour/exposure.hpp"
 #include "lamella/scan/scan.hpp"
-#include "lamella/scan/strategy.hpp"
 
 // Files of layers, meshes, pictures and pages.
 #include "lamella/raster/picture.hpp"
@@ -67,7 +65,6 @@
 // out.
 #include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"
 

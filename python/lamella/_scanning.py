@@ -72,6 +72,8 @@ def scan(
 
     Raises UsageError for a strategy that is not right, LimitError for layers that would have too many vectors.
     """
+    if not isinstance(layers, Iterable):
+        check.refuse_type("layers", "layers in ascending z", layers)
     return _scan(iter(layers), as_strategy("strategy", strategy), check.label("part", part))
 
 
@@ -181,6 +183,7 @@ class Geometry:
     kind: str  #: "contour" or "hatch"
 
     def numPoints(self) -> int:  # noqa: N802, the name is PySLM's
+        """How many points it has."""
         return len(self.coords)
 
 
@@ -193,21 +196,28 @@ class PyslmLayer:
     geometry: List[Geometry]
 
     def getGeometry(self) -> List[Geometry]:  # noqa: N802
+        """All of it, in order."""
         return list(self.geometry)
 
     def getHatchGeometry(self) -> List[Geometry]:  # noqa: N802
+        """The hatches."""
         return [one for one in self.geometry if one.kind == "hatch"]
 
     def getContourGeometry(self) -> List[Geometry]:  # noqa: N802
+        """The contours."""
         return [one for one in self.geometry if one.kind == "contour"]
 
     def getPointsGeometry(self) -> List[Geometry]:  # noqa: N802
+        """None: no exposures of points."""
         return []
 
 
 def to_pyslm(layer: ScanLayer, mid: int = 1) -> PyslmLayer:
     """The layer as tools that know PySLM's layers take it; PySLM itself is not needed. `mid`: the number of the model.
     Build styles (`bid`) are numbered like the exposures, from 1."""
+    if not isinstance(layer, ScanLayer):
+        check.refuse_type("layer", "a ScanLayer", layer)
+    mid = check.whole("mid", mid)
     geometry = []
     for bid, (exposure, vectors) in enumerate(layer, 1):
         if len(vectors.hatches):

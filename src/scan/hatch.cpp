@@ -90,8 +90,9 @@ void cut_into_cells(std::span<const double> ends, double pitch, double offset, d
     }
 }
 
-// Of a line on the border of two rows counts the one above it. Squares of one colour have lines along the frame, those of the other colour have them across: these are the
-// squares of the first colour in the frame turned by a right angle.
+// Of a line on the border of two rows counts the one above it. Squares of one colour have lines along the
+// frame, those of the other colour have them across: these are the squares of the first colour in the frame
+// turned by a right angle.
 void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
     const double half = (rule.cell + rule.overlap) / 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -1,8 +1,8 @@
-#include "strategy_fields.hpp"
+#include "lamella/scan/strategy_fields.hpp"
 
 #include <array>
 
-namespace lamella::app {
+namespace lamella {
 
 // Quiet about presets: whoever prints them takes them from a strategy.
 
@@ -83,4 +83,4 @@ NamedValues<ContourOrder> named_values(ContourOrder) noexcept {
     return {values, contour_order_name};
 }
 
-} // namespace lamella::app
+} // namespace lamella

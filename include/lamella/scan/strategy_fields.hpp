@@ -1,7 +1,8 @@
 #pragma once
 
 // All that a scan strategy consists of, described once: strategy files are read and written by these tables,
-// statistics tell the strategy by them, and options that set the same take their words.
+// statistics tell the strategy by them, options that set the same take their words, and Python its
+// attributes.
 
 #include "lamella/scan/strategy.hpp"
 
@@ -12,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-namespace lamella::app {
+namespace LAMELLA_API lamella {
 
 /// One value of a struct of a strategy.
 template <class Rule>
@@ -52,4 +53,4 @@ struct NamedValues {
 [[nodiscard]] NamedValues<StartPoint> named_values(StartPoint) noexcept;
 [[nodiscard]] NamedValues<ContourOrder> named_values(ContourOrder) noexcept;
 
-} // namespace lamella::app
+} // namespace lamella
