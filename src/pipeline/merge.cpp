@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,7 @@ struct ShardFile {
     PlaneRule rule = PlaneRule::section_above;
     std::vector<std::string> labels;
     std::vector<Box3> boxes; ///< of the points of each part
+    std::vector<std::optional<Exposure>> exposures;
     std::uint64_t layers = 0;
     double bottom = 0;
     double top = 0;
@@ -47,6 +49,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .rule = file.rule,
                     .labels = {},
                     .boxes = {},
+                    .exposures = {},
                     .layers = layers.size(),
                     .bottom = layers.front().bottom,
                     .top = layers.back().top,
@@ -54,6 +57,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .highest_layer_mm = layers.back().thickness()};
     for (const LayerPart& part : file.parts) {
         shard.labels.push_back(part.label);
+        shard.exposures.push_back(part.exposure);
         Box3& box = shard.boxes.emplace_back();
         for (const Layer& layer : part.layers)
             for (const PointArray* points : {&layer.points, &layer.hatches})
@@ -218,6 +222,7 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
         PartInfo& of_part = info.parts.emplace_back();
         if (!label.empty())
             of_part.label = label;
+        of_part.exposure = shards.front().exposures[part];
         for (const ShardFile& shard : shards)
             of_part.box.add(shard.boxes[part]);
         info.box.add(of_part.box);
