@@ -54,6 +54,16 @@ OptionGroup output_options(ScanCommandArguments& target) {
     return group;
 }
 
+/// Vectors are no material: a hatch has no contours, and each contour would be hatched.
+void check_layers(const LayerFile& file) {
+    for (const LayerPart& part : file.parts)
+        if (part.exposure)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: holds scan vectors already ({}); give the layers that they are made "
+                                    "of",
+                                    file.path, one_line(part.label)));
+}
+
 /// What layers have that no vectors are made of.
 std::vector<std::string> losses(const LayerFile& file) {
     std::uint64_t hatches = 0;
@@ -112,6 +122,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     const ScanStrategy strategy = arguments.scanning.strategy();
     const Execution execution = arguments.run.execution(context);
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
+    check_layers(file);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
     for (const std::string& lost : losses(file)) {

@@ -214,6 +214,23 @@ class Scan(ProgramTest):
         self.succeed("slice", "open.stl", "-o", "open.json", "--layer-height", "1")
         self.assertRegex(self.succeed("scan", "open.json", "-o", "open.cli").err, "5 open contours left out")
 
+    def test_jobs_of_machines_keep_what_is_exposed(self):
+        for name, other in (("job.ilt", "job.ovf"), ("job.ovf", "job.ilt")):
+            options = ["--layer-height", "1", "--scan", *HATCHED, "--skin-layers", "1"]
+            self.assertEqual(self.succeed("slice", "part.stl", "-o", name, *options).err, "")
+            self.succeed("convert", name, f"from_{other}", "--strict")
+            self.succeed("convert", f"from_{other}", "again.json")
+            self.succeed("convert", name, "once.json")
+            again, once = (json.loads(self.bytes_of(f"{kind}.json")) for kind in ("again", "once"))
+            self.assertEqual(len(again["parts"]), len(once["parts"]))
+            shards = [f"{i}.{name}" for i in (1, 2)]
+            for i, shard in enumerate(shards, 1):
+                self.succeed("slice", "part.stl", "-o", shard, *options, "--shard", f"{i}/2")
+            self.succeed("merge", f"merged.{name}", *shards)
+            self.succeed("convert", f"merged.{name}", "merged.json")
+            self.assertEqual(json.loads(self.bytes_of("merged.json"))["layers"], once["layers"])
+            self.fail_with(3, "holds scan vectors already", "scan", name, "-o", "x.cli")
+
     def test_scanning_says_what_is_missing(self):
         self.fail_with(2, "needs FILE", "scan", "-o", "x.cli")
         self.succeed("slice", "part.stl", "-o", "layers.cli", "--layer-height", "1")
