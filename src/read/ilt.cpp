@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -231,6 +232,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
             result.parts.push_back({std::move(part.label), {}, std::move(part.exposure)});
             check_part_planes(result, planes.size(), bytes);
             limits.add_bytes(planes.size() * (sizeof(Layer) + of_empty_layer), file.path);
+            assert(part.layers.size() <= planes.size());
             result.parts.back().layers = on_planes(std::move(part.layers), planes, file.path);
         }
     return result;

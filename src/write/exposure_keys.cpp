@@ -1,6 +1,7 @@
 #include "write/exposure_keys.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 
 namespace lamella {
@@ -30,6 +31,7 @@ ExposureKeys::ExposureKeys(std::span<const PartInfo> all) {
         if (part.exposure)
             key.exposure = place_of(exposures, *part.exposure, is_alike);
     }
+    assert(keys.size() == all.size());
 }
 
 } // namespace lamella

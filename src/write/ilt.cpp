@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cassert>
 #include <map>
 #include <set>
 #include <utility>
@@ -115,6 +115,7 @@ class IltWriter final : public LayerWriter {
             sections.add(part, known.exposure.value_or(no_exposure(known.label)));
         }
         sections_ = sections.take();
+        assert(!sections_.empty());
         zip_.add(ilt_parameters, parameters_text(sections_));
         zip_.begin(sections_.front().name, ZipMethod::stored);
         entries_.resize(sections_.size());

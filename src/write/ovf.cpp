@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -271,7 +272,9 @@ class OvfWriter final : public LayerWriter {
 
         file_.append(position_bytes(table_place));
         file_.append(blocks.bytes->view());
+        assert(file_.bytes() == shell_place);
         file_.append(shell_bytes);
+        assert(file_.bytes() == table_place);
         file_.append(table.delimited());
     }
 
