@@ -209,6 +209,7 @@ class ContourRule:
 class SkinRule:
     def __init__(self) -> None: ...
     layers: int
+    narrowest: float
     overlap: float
     hatch: HatchRule
 

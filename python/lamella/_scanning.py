@@ -72,9 +72,11 @@ def scan(
 
     Raises UsageError for a strategy that is not right, LimitError for layers that would have too many vectors.
     """
-    if not isinstance(layers, Iterable):
+    try:
+        each = iter(layers)
+    except TypeError:
         check.refuse_type("layers", "layers in ascending z", layers)
-    return _scan(iter(layers), as_strategy("strategy", strategy), check.label("part", part))
+    return _scan(each, as_strategy("strategy", strategy), check.label("part", part))
 
 
 def _scan(layers: Iterator[Layer], strategy: ScanStrategy, part: str) -> Iterator[ScanLayer]:

@@ -69,24 +69,44 @@ Layer without(const Layer& from, const Layer& taken) {
     return taken.rings == 0 || from.rings == 0 ? from : combine(from, taken, BooleanOperation::subtract);
 }
 
-/// The material of a layer that has less than so many layers of material beside it.
-Layer uncovered(const Layer& layer, std::span<const Layer> neighbours, std::uint32_t layers) {
-    if (layers == 0)
-        return {};
-    if (neighbours.size() < layers)
-        return layer;
-    Layer covered = neighbours.front();
-    for (const Layer& next : neighbours.subspan(1, layers - 1))
-        covered = combine(covered, next, BooleanOperation::intersect);
-    return without(layer, covered);
-}
+/// Where a layer has less than `rule.layers` layers of material beside it.
+///
+/// Not what the layer has and the intersection of its neighbours has not: walls of a prism have their corners
+/// in the same places on all layers, and others where edges slant across them, so its layers are the same but
+/// for roundings. What neighbours have is grown before it is taken away, and what is left is grown by as
+/// much: so such rings do not meet at all, which takes a hundredth of the time, and no slivers are left.
+class Skin {
+  public:
+    Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule) : rule_(rule) {
+        if (rule.layers == 0)
+            return;
+        if (neighbours.size() < rule.layers) {
+            open_ = layer;
+            grown_ = 0;
+            return;
+        }
+        grown_ = rule.narrowest;
+        for (const Layer& neighbour : neighbours.first(rule.layers)) {
+            const Layer open = without(layer, offset(neighbour, grown_));
+            open_ = open_.rings == 0  ? open
+                    : open.rings == 0 ? open_
+                                      : combine(open_, open, BooleanOperation::unite);
+        }
+    }
 
-/// What of an area is within a region or closer to it than the overlap.
-Layer within(const Layer& area, const Layer& region, double overlap) {
-    if (region.rings == 0 || area.rings == 0)
-        return {};
-    return combine(area, overlap > 0 ? offset(region, overlap) : region, BooleanOperation::intersect);
-}
+    /// What of an area is within the skin or closer to it than the overlap.
+    [[nodiscard]] Layer of(const Layer& area) const {
+        if (open_.rings == 0 || area.rings == 0)
+            return {};
+        return combine(area, offset(open_, grown_ + rule_.overlap), BooleanOperation::intersect);
+    }
+    [[nodiscard]] Layer rest_of(const Layer& area) const { return without(area, offset(open_, grown_)); }
+
+  private:
+    const SkinRule& rule_;
+    Layer open_; ///< without what is grown
+    double grown_ = 0;
+};
 
 } // namespace
 
@@ -94,19 +114,19 @@ std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below, std::s
                         const ScanStrategy& strategy) {
     check_strategy(strategy);
     const Insets insets(layer, strategy);
-    const Layer downskin = uncovered(layer, below, strategy.downskin.layers);
-    const Layer upskin = uncovered(layer, above, strategy.upskin.layers);
+    const Skin downskin(layer, below, strategy.downskin);
+    const Skin upskin(layer, above, strategy.upskin);
     const auto hatched = [&](const HatchRule& rule) -> const Layer& {
         return insets.hatched(strategy.contours, rule);
     };
     const auto area = [&](ScanRegion region) {
         switch (region) {
         case ScanRegion::downskin:
-            return within(hatched(strategy.downskin.hatch), downskin, strategy.downskin.overlap);
+            return downskin.of(hatched(strategy.downskin.hatch));
         case ScanRegion::upskin:
-            return without(within(hatched(strategy.upskin.hatch), upskin, strategy.upskin.overlap), downskin);
+            return downskin.rest_of(upskin.of(hatched(strategy.upskin.hatch)));
         default:
-            return without(without(hatched(strategy.hatch), downskin), upskin);
+            return upskin.rest_of(downskin.rest_of(hatched(strategy.hatch)));
         }
     };
     const auto rule = [&](ScanRegion region) -> const HatchRule& {

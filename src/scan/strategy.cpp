@@ -58,6 +58,7 @@ void check(std::string_view rule, const HatchRule& hatch) {
 void check(std::string_view rule, const SkinRule& skin) {
     if (skin.layers > most_skin_layers)
         refuse(rule, "layers", skin.layers, fmt::format("at most {}", most_skin_layers));
+    check_not_negative(rule, "narrowest", skin.narrowest);
     check_not_negative(rule, "overlap", skin.overlap);
     check(fmt::format("{}.hatch", rule), skin.hatch);
 }

@@ -36,9 +36,11 @@ std::span<const StrategyField<HatchRule>> hatch_fields() noexcept {
 }
 
 std::span<const StrategyField<SkinRule>> skin_fields() noexcept {
-    static constexpr std::array<StrategyField<SkinRule>, 2> fields{
+    static constexpr std::array<StrategyField<SkinRule>, 3> fields{
         {{"layers", "", "skin is what has less than so many layers of material beside it; 0: nothing is",
           &SkinRule::layers},
+         {"narrowest", "mm", "narrower strips are no skin, as walls differ from layer to layer",
+          &SkinRule::narrowest},
          {"overlap", "mm", "by which skin is grown into the core", &SkinRule::overlap}}};
     return fields;
 }

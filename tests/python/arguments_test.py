@@ -179,7 +179,7 @@ TEXTS = [
      "what: there are no layers to write: the stream is closed or at its end"),
     (lambda: lamella.write("x.cli", stack(), gamma=2), ValueError,
      "gamma goes with the formats png, png-zip, sl1, sl1s, not with cli"),
-    (lambda: lamella.write("x.svg", stack(), units_mm=2), ValueError, "units_mm goes with the formats cli, cli-ascii, ilt, not with svg"),
+    (lambda: lamella.write("x.svg", stack(), units_mm=2), ValueError, "units_mm goes with the formats cli, cli-ascii, ilt, 3mf-toolpath, not with svg"),
     (lambda: lamella.write("x.zip", stack(), exposure_s=2, format="png-zip"), ValueError,
      "exposure_s goes with the formats sl1, sl1s, not with png-zip"),
     (lambda: lamella.write("x.stl", lamella.Mesh(*box_arrays()), gamma=2), ValueError,

@@ -111,6 +111,7 @@ TEST(Scan, RegionsAreDisjointAndMakeUpTheLayer) {
     strategy.contours.count = 0;
     for (SkinRule* const skin : {&strategy.upskin, &strategy.downskin}) {
         skin->overlap = 0;
+        skin->narrowest = 0;
         skin->hatch = strategy.hatch;
     }
     for (HatchRule* const rule : {&strategy.hatch, &strategy.upskin.hatch, &strategy.downskin.hatch}) {
@@ -181,6 +182,21 @@ TEST(Scan, SkinsReachIntoTheCoreByTheOverlap) {
     const std::vector<Layer> vectors = scan(layer, {}, above, strategy);
     EXPECT_NEAR(marked(vectors[0]), 40, 1e-6);
     EXPECT_NEAR(marked(vectors[1]), 65, 1e-6);
+}
+
+TEST(Scan, StripsTooNarrowAreNoSkin) {
+    ScanStrategy strategy;
+    strategy.upskin.layers = 1;
+    strategy.upskin.narrowest = 0.05;
+    const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
+    const auto skin = [&](double width) {
+        const std::vector<Layer> above{normal_layer({rectangle(0, 0, 10 - width, 10)})};
+        return scan(layer, {}, above, strategy)[1].hatches.size();
+    };
+    EXPECT_EQ(skin(0), 0U);
+    EXPECT_EQ(skin(1e-12), 0U);
+    EXPECT_EQ(skin(0.04), 0U);
+    EXPECT_GT(skin(0.3), 0U);
 }
 
 TEST(Scan, OfNothingIsNothing) {
