@@ -53,7 +53,7 @@ class Strategy(ProgramTest):
         self.box()
         self.check("[hatch]\ndistanze = 1\n", r's\.toml:2: \[hatch\] has no "distanze"; did you mean distance\?')
         self.check("[hatches]\n", r's\.toml:1: a strategy has no "hatches"; did you mean hatch\?')
-        self.check("[upskin]\nborder = 1\n", r's\.toml:2: \[upskin\] has no "border"; there are layers, overlap, hatch')
+        self.check("[upskin]\nborder = 1\n", r's\.toml:2: \[upskin\] has no "border"; there are layers, narrowest, overlap, hatch')
         self.check('[hatch]\n\ndistance = "wide"\n', r's\.toml:3: hatch\.distance is "wide", but has to be a number')
         self.check("[contours]\ncount = 1.5\n", r"s\.toml:2: contours\.count is 1\.5, but has to be a whole number")
         self.check("[contours]\ncount = -1\n", r"s\.toml:2: contours\.count is -1, but has to be a whole number")
