@@ -5,7 +5,7 @@ PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 # One more than there are processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
-ROOMS := core mesh parts contour container read slicing polygon raster write pipeline
+ROOMS := core mesh parts contour container read slicing polygon raster scan write pipeline
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include parts python src tests -name '*.[ch]pp' 2>/dev/null)
 
@@ -14,9 +14,11 @@ ifeq ($(wildcard build/CMakeCache.txt),)
 RELEASE := -D CMAKE_UNITY_BUILD=ON
 endif
 
-# A compiler cache is used where there is one.
+# A compiler cache is used where there is one, for the same sources in another folder and with messages in another language, too.
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
+export CCACHE_BASEDIR := $(CURDIR)
+export CCACHE_SLOPPINESS := locale
 endif
 
 help:  ## this list
@@ -40,12 +42,15 @@ demo:  ## make, slice and verify two parts; slice files, pictures and a page are
 	cmake --build build --target lamella_app
 	@python3 tools/demo.py build/lamella out
 
+# TESTS are options of ctest, for some of the tests.
 test: packages  ## build everything and run the tests: a few minutes
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D LAMELLA_LARGE_TESTS=OFF
 	cmake --build build
-	$(CTEST) --test-dir build
+	@rm -f build/tests/passed
+	$(CTEST) --test-dir build $(TESTS)
+	$(if $(TESTS),,@touch build/tests/passed)
 
-test-all: test-large test-asan test-tsan test-shared fresh  ## the long suites: large programs, sanitizers, fuzz corpora, fresh
+test-all: test-large test-asan test-tsan test-arm64 test-shared fresh  ## the long suites: large programs, sanitizers, ARM64, fresh
 
 # Each of these is a part of test-all.
 packages-all: packages packages-viewer
@@ -59,26 +64,25 @@ test-large: packages-all
 test-asan: packages-all
 	cmake --preset asan-ubsan
 	cmake --build build-asan
-	$(CTEST) --test-dir build-asan --label-exclude '^(bench|house)$$'
+	$(CTEST) --test-dir build-asan --label-exclude '^(bench|house|viewer)$$'
 
 test-tsan: packages-all
 	cmake --preset tsan
 	cmake --build build-tsan --target $(ROOMS:%=lamella_%_test)
 	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(ROOMS)))$$'
 
-# The rooms that compute, and the bodies that these are tried on. The emulator takes nine minutes.
-ARM64_ROOMS := core mesh parts contour slicing polygon
-test-arm64: packages  ## cross-compile for ARM64 and run the suites of the rooms that compute in an emulator
-	@tools/install_packages.sh tools/packages-all.txt tools/packages-arm64.txt
+# The rooms that compute, and the bodies that these are tried on.
+test-arm64: packages-all
+	@tools/install_packages.sh tools/packages-arm64.txt
 	cmake --preset arm64
-	cmake --build build-arm64 --target $(ARM64_ROOMS:%=lamella_%_test)
-	$(CTEST) --test-dir build-arm64 --label-regex '^($(subst $(blank),|,$(ARM64_ROOMS)))$$'
+	cmake --build build-arm64
+	$(CTEST) --test-dir build-arm64
 
-# What was compiled for the static library serves the shared one.
+# What was compiled for the static library serves the shared one, which differs by how it is installed and linked.
 test-shared: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
-	cmake --build build --target lamella_programs lamella_app_files examples/all
-	$(CTEST) --test-dir build --label-regex '^house$$'
+	cmake --build build --target lamella_programs lamella_app_files
+	$(CTEST) --test-dir build --tests-regex '^house.install$$'
 
 fresh:  ## `make demo` and `make test` on a Debian 12 with git, make and nothing else, made for it (root only)
 	@tools/fresh.sh
@@ -98,6 +102,7 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/files
 	build-bench/bench/raster
 	build-bench/bench/layer_steps
+	build-bench/bench/scan
 	build-bench/bench/hostile_layers
 	build-bench/bench/kernels
 

@@ -14,7 +14,7 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parent
-BUILD = ROOT / "build" / "pip"  # everything that is made on the way
+BUILD = ROOT / f"build-{sys.implementation.cache_tag}"  # everything that is made on the way
 
 
 def version():
@@ -26,16 +26,15 @@ class CMakeBuild(build_ext):
     """The extension and the library in it, without the program and the tests."""
 
     def build_extension(self, extension):
-        build = (Path(self.build_temp) / "cmake").resolve()
         subprocess.run(
-            ["cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release",
+            ["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release",
              "-D", "LAMELLA_PYTHON=REQUIRED", "-D", f"Python3_EXECUTABLE={sys.executable}",
              "-D", "LAMELLA_APP=OFF", "-D", "LAMELLA_TESTS=OFF", "-D", "LAMELLA_INSTALL=OFF",
              *shlex.split(os.environ.get("CMAKE_ARGS", ""))],
             check=True,
         )
-        subprocess.run(["cmake", "--build", build, "--target", "lamella_python"], check=True)
-        built = build / "python" / "lamella" / Path(self.get_ext_filename(extension.name)).name
+        subprocess.run(["cmake", "--build", BUILD, "--target", "lamella_python"], check=True)
+        built = BUILD / "python" / "lamella" / Path(self.get_ext_filename(extension.name)).name
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         self.copy_file(str(built), str(target))

@@ -16,6 +16,8 @@
 #include "options.hpp"
 #include "page_notes.hpp"
 #include "repair_options.hpp"
+#include "scan_figures.hpp"
+#include "scan_options.hpp"
 #include "shard_stamp.hpp"
 #include "standard_streams.hpp"
 #include "text_file.hpp"
@@ -65,6 +67,8 @@ struct SliceArguments {
     bool inspect = false;
     bool strict = false;
     LayerStepOptions making;
+    bool scan = false;
+    ScanArguments scanning;
     std::string stats;
     std::string report;
     std::optional<double> timeout;
@@ -176,6 +180,15 @@ OptionGroup timed_run_options(SliceArguments& target) {
     return group;
 }
 
+/// What is asked for, if anything is.
+std::optional<ScanStrategy> strategy_of(const SliceArguments& arguments) {
+    const bool scans = arguments.scan || !arguments.scanning.file.empty();
+    if (!scans && !arguments.scanning.changes.empty())
+        throw Error(ErrorKind::usage, fmt::format("--{} goes with --scan or --strategy",
+                                                  arguments.scanning.changes.front().first));
+    return scans ? std::optional(arguments.scanning.strategy()) : std::nullopt;
+}
+
 /// A shard is stamped with the content of its inputs and its output.
 void check_shard(const SliceArguments& arguments) {
     if (!arguments.shard)
@@ -213,6 +226,7 @@ FileJob make_job(const SliceArguments& arguments) {
     job.inspect = arguments.inspect;
     job.strict = arguments.strict;
     job.steps = arguments.making.steps();
+    job.scan = strategy_of(arguments);
     job.layer_statistics = !arguments.stats.empty() || (!arguments.report.empty() && job.steps.any());
     job.output = arguments.output;
     job.format = arguments.writing.format;
@@ -252,6 +266,8 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += gaps_text(result.gaps);
     if (result.changes)
         text += fmt::format("made     {}\n", changes_text(*result.changes, "than sliced"));
+    if (job.scan)
+        text += fmt::format("scan     {}\n", scan_text(result.exposures));
     const Json figures = as_json(run_figures(result));
     std::string stages;
     for (const char* stage : {"read", "weld", "link", "slice", "write"})
@@ -351,7 +367,7 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
         BatchResult result{slice_in_time(arguments, job, execution), {}};
         result.warnings = all_warnings(job, result.file);
         if (!item.stats.empty())
-            write_text_file(item.stats, json_text(stats_json(context.command, result.file)));
+            write_text_file(item.stats, json_text(stats_json(context.command, job, result.file)));
         return result;
     };
     return run_batch(items, arguments.batch, slice, arguments.run.execution(context), context.messages);
@@ -388,7 +404,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
-        Json stats = stats_json(context.command, result);
+        Json stats = stats_json(context.command, job, result);
         if (arguments.team != nullptr)
             stats["processes"] = processes_json(result.processes);
         const std::string text = json_text(stats);
@@ -431,6 +447,9 @@ Command slice_command(Communicator* team) {
         .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
                    layering_options(arguments->layering), shard_options(*arguments),
                    repair_options(arguments->repair), layer_step_options(arguments->making),
+                   scan_options(
+                       arguments->scanning,
+                       {flag("scan", "write scan vectors in the place of contours", arguments->scan)}),
                    input_options(*arguments), checking_options(*arguments), batch_options(arguments->batch),
                    timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
@@ -441,6 +460,8 @@ Command slice_command(Communicator* team) {
                       "a part drawn in inches, stood up, as SVG"},
                      {"lamella slice a.stl --copies 4 b.stl --translate 60,0,0 -o plate.cli",
                       "a plate of four and one"},
+                     {"lamella slice part.stl -o job.cli --layer-height 0.03 --strategy 316l.toml",
+                      "scan vectors for a powder-bed machine"},
                      {"lamella slice part.stl --stats - --layers 100:110", "only figures, of ten layers"},
                      {"lamella slice part.stl -o part.3.cli --shard 3/8 --resume",
                       "the third of eight shares of the layers, unless it is done already"},

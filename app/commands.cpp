@@ -7,9 +7,9 @@
 namespace lamella::app {
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands{slice_command(),      info_command(),  verify_command(), compare_command(),
-                                  convert_command(),    merge_command(), view_command(),   make_command(),
-                                  completion_command(), help_command()};
+    std::vector<Command> commands{slice_command(),   info_command(), verify_command(),     compare_command(),
+                                  convert_command(), scan_command(), strategy_command(),   merge_command(),
+                                  view_command(),    make_command(), completion_command(), help_command()};
     commands.back().operands.front().choices = names_of(commands);
     return commands;
 }

@@ -15,6 +15,8 @@ namespace lamella::app {
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command verify_command();
 [[nodiscard]] Command convert_command();
+[[nodiscard]] Command scan_command();
+[[nodiscard]] Command strategy_command();
 [[nodiscard]] Command merge_command();
 [[nodiscard]] Command view_command();
 [[nodiscard]] Command make_command();

@@ -1,21 +1,16 @@
-// The TOML library is visible in this source only.
-#define TOML_HEADER_ONLY 1
-
 #include "config_file.hpp"
 
 #include "lamella/core/error.hpp"
 
 #include "command_line.hpp"
 #include "numbers.hpp"
-#include "standard_streams.hpp"
-#include "text_file.hpp"
+#include "toml_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <toml++/toml.h>
 
 #include <algorithm>
-#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -26,26 +21,22 @@ namespace {
 constexpr std::string_view inputs_key = "input";
 constexpr std::string_view path_key = "path";
 
-[[noreturn]] void refuse_entry(const std::string& place, std::string_view text) {
-    throw Error(ErrorKind::usage, fmt::format("{}: {}", place, text));
-}
-
 /// Throws when the command has no such option or it has no place in a file.
 Option& option_of(Command& command, const std::string& place, std::string_view key) {
     Option* const option = find_option(command, key);
     if (option == nullptr || !option->configurable)
-        refuse_entry(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, key,
-                                        option_suggestion(command, key, "")));
+        refuse_toml(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, key,
+                                       option_suggestion(command, key, "")));
     return *option;
 }
 
-std::optional<std::string> as_text(const toml::node& node);
+std::optional<std::string> as_text(const TomlValue& value);
 
 /// Numbers as the command line takes a list of them; nothing when an item is no number.
-std::optional<std::string> list_as_text(const toml::array& array) {
+std::optional<std::string> list_as_text(const TomlList& items) {
     std::string list;
-    for (const auto& item : array) {
-        if (!item.is_number())
+    for (const TomlValue& item : items) {
+        if (item.as<std::int64_t>() == nullptr && item.as<double>() == nullptr)
             return std::nullopt;
         list.append(list.empty() ? "" : ",").append(as_text(item).value());
     }
@@ -53,32 +44,32 @@ std::optional<std::string> list_as_text(const toml::array& array) {
 }
 
 /// A value of the file as it would stand on the command line; nothing for one that no option can have.
-std::optional<std::string> as_text(const toml::node& node) {
-    if (const auto* text = node.as_string())
-        return text->get();
-    if (const auto* flag = node.as_boolean())
-        return flag->get() ? "true" : "false";
-    if (const auto* whole = node.as_integer())
-        return std::to_string(whole->get());
-    if (const auto* number = node.as_floating_point())
-        return exact(number->get());
-    if (const auto* array = node.as_array())
-        return list_as_text(*array);
+std::optional<std::string> as_text(const TomlValue& value) {
+    if (const auto* text = value.as<std::string>())
+        return *text;
+    if (const auto* flag = value.as<bool>())
+        return *flag ? "true" : "false";
+    if (const auto* whole = value.as<std::int64_t>())
+        return std::to_string(*whole);
+    if (const auto* number = value.as<double>())
+        return exact(*number);
+    if (const auto* list = value.as<TomlList>())
+        return list_as_text(*list);
     return std::nullopt;
 }
 
 /// Goes through a table of the file.
 class Reading {
   public:
-    Reading(const std::string& name, Command& command) : name_(name), command_(command) {}
+    explicit Reading(Command& command) : command_(command) {}
 
-    Configuration all(const toml::table& table) const {
+    Configuration all(const TomlTable& table) const {
         Configuration found;
-        for (const auto& [key, node] : table) {
-            if (key.str() == inputs_key && has_own_options())
-                found.inputs = inputs(place_of(key), node);
+        for (const auto& [key, value] : table.entries) {
+            if (key == inputs_key && has_own_options())
+                found.inputs = inputs(value);
             else
-                found.options.push_back(entry(key, node));
+                found.options.push_back(entry(key, value));
         }
         return found;
     }
@@ -89,69 +80,51 @@ class Reading {
                            std::mem_fn(&Operand::own_options));
     }
 
-    [[nodiscard]] std::string place_of(const toml::key& key) const {
-        return fmt::format("{}:{}", name_, key.source().begin.line);
-    }
-
-    ConfigEntry entry(const toml::key& key, const toml::node& node) const {
-        const std::string place = place_of(key);
-        Option& option = option_of(command_, place, key.str());
-        const auto text = as_text(node);
+    ConfigEntry entry(const std::string& key, const TomlValue& value) const {
+        Option& option = option_of(command_, value.place, key);
+        const auto text = as_text(value);
         if (!text)
-            refuse_entry(place, fmt::format("{}: this is no value for an option: expected a number, a text, "
-                                            "true, false or a list of numbers",
-                                            key.str()));
-        return {place, &option, *text};
+            refuse_toml(value.place,
+                        fmt::format("{}: this is no value for an option: expected a number, a text, "
+                                    "true, false or a list of numbers",
+                                    key));
+        return {value.place, &option, *text};
     }
 
-    std::vector<ConfiguredInput> inputs(const std::string& place, const toml::node& node) const {
-        const toml::array* const list = node.as_array();
-        if (list == nullptr ||
-            !std::all_of(list->begin(), list->end(), [](const toml::node& one) { return one.is_table(); }))
-            refuse_entry(place, "expected [[input]], with the path of a file and options of that one");
+    std::vector<ConfiguredInput> inputs(const TomlValue& value) const {
+        const auto* const list = value.as<TomlList>();
+        if (list == nullptr || !std::all_of(list->begin(), list->end(), [](const TomlValue& one) {
+                return one.as<TomlTable>() != nullptr;
+            }))
+            refuse_toml(value.place, "expected [[input]], with the path of a file and options of that one");
         std::vector<ConfiguredInput> found;
-        for (const toml::node& one : *list)
-            found.push_back(input(*one.as_table()));
+        for (const TomlValue& one : *list)
+            found.push_back(input(one));
         return found;
     }
 
-    ConfiguredInput input(const toml::table& table) const {
+    ConfiguredInput input(const TomlValue& table) const {
         ConfiguredInput found;
-        for (const auto& [key, node] : table) {
-            if (key.str() == path_key) {
-                found.path = node.value<std::string>().value_or("");
+        for (const auto& [key, value] : table.as<TomlTable>()->entries) {
+            if (key == path_key) {
+                const auto* const path = value.as<std::string>();
+                found.path = path != nullptr ? *path : "";
                 continue;
             }
-            found.options.push_back(entry(key, node));
+            found.options.push_back(entry(key, value));
             if (!found.options.back().option->of_each_file)
-                refuse_entry(
-                    place_of(key),
-                    fmt::format("{} is no option of one file; it has to stand above the first [[input]]",
-                                key.str()));
+                refuse_toml(value.place,
+                            fmt::format("{} is no option of one file; it has to stand above the first "
+                                        "[[input]]",
+                                        key));
         }
         if (found.path.empty())
-            refuse_entry(fmt::format("{}:{}", name_, table.source().begin.line),
-                         "this [[input]] has no path = \"...\" of a file");
+            refuse_toml(table.place, "this [[input]] has no path = \"...\" of a file");
         return found;
     }
 
-    const std::string& name_;
     Command& command_;
 };
-
-/// TOML's basic strings escape as JSON's do, but for one character more.
-std::string quoted(const std::string& text) {
-    std::string quoted;
-    try {
-        quoted = nlohmann::json(text).dump();
-    } catch (const nlohmann::json::type_error&) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("\"{}\" is not UTF-8, as text in a configuration file has to be", text));
-    }
-    for (std::size_t at = 0; (at = quoted.find('\x7f', at)) != std::string::npos;)
-        quoted.replace(at, 1, "\\u007f");
-    return quoted;
-}
 
 std::string toml_value(const Option& option, const std::string& text) {
     switch (option.kind) {
@@ -168,7 +141,7 @@ std::string toml_value(const Option& option, const std::string& text) {
         return fmt::format("[{}]", list);
     }
     default:
-        return quoted(text);
+        return toml_quoted(text);
     }
 }
 
@@ -189,7 +162,7 @@ std::string text_for_all(const Command& command, const Option& option) {
 
 /// Of several values the last one counts.
 std::string input_text(const Command& command, const GivenOperand& input) {
-    std::string text = fmt::format("\n[[{}]]\n{} = {}\n", inputs_key, path_key, quoted(input.text));
+    std::string text = fmt::format("\n[[{}]]\n{} = {}\n", inputs_key, path_key, toml_quoted(input.text));
     for (const OptionGroup& group : command.groups)
         for (const Option& option : group.options) {
             const auto last = std::find_if(input.settings.rbegin(), input.settings.rend(),
@@ -203,14 +176,7 @@ std::string input_text(const Command& command, const GivenOperand& input) {
 } // namespace
 
 Configuration read_config(const std::string& path, Command& command) {
-    const std::string content = read_text_file(path);
-    const std::string name = input_name(path);
-    try {
-        return Reading(name, command).all(toml::parse(content));
-    } catch (const toml::parse_error& error) {
-        refuse_entry(fmt::format("{}:{}", name, error.source().begin.line),
-                     fmt::format("expected TOML: {}", error.description()));
-    }
+    return Reading(command).all(read_toml(path));
 }
 
 std::string config_text(const Command& command) {

@@ -6,6 +6,8 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "repair_options.hpp"
+#include "scan_figures.hpp"
+#include "strategy_file.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -113,6 +115,9 @@ Json layers_json(const FileResult& result) {
             layers.back()["gaps"] = joins_json(layer.joins);
         if (result.changes)
             layers.back().update(changes_json(layer.changes));
+        if (!layer.scan.empty())
+            layers.back()["scan"] = with_density(scan_json(result.exposures, layer.scan),
+                                                 layer.measure.area_mm2 * layer.thickness);
     }
     return layers;
 }
@@ -225,6 +230,7 @@ Figures run_figures(const FileResult& result) {
         stage(Stage::link, seconds.link),
         stage(Stage::slice, seconds.slice),
         stage(Stage::polygon, seconds.polygon),
+        {"scan", seconds.scan, "scanned", seconds.scan > 0 ? fmt::format("{:.3f} s", seconds.scan) : ""},
         stage(Stage::write, seconds.write),
         {"total", seconds.total},
         {"bytes", result.bytes, "written",
@@ -309,7 +315,7 @@ Json processes_json(const std::vector<ProcessFigures>& figures) {
     return processes;
 }
 
-Json stats_json(const Command& command, const FileResult& result) {
+Json stats_json(const Command& command, const FileJob& job, const FileResult& result) {
     const PlateFile& first = result.files.front();
     Json options = options_in_effect(command);
     options["matrix"] = matrix_json(first.matrix);
@@ -326,7 +332,8 @@ Json stats_json(const Command& command, const FileResult& result) {
                     {"volume_mm3", result.mesh_volume_mm3},
                     {"defects", inspected ? as_json(defect_figures(*result.inspection)) : Json()}}}};
     stats.update(as_json(picked(run, {"engine", "threads"})));
-    stats["seconds"] = as_json(picked(run, {"read", "weld", "link", "slice", "polygon", "write", "total"}));
+    stats["seconds"] =
+        as_json(picked(run, {"read", "weld", "link", "slice", "polygon", "scan", "write", "total"}));
     stats["peak_rss_bytes"] = peak_rss_bytes();
     stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3"})));
     if (result.slabs != 0)
@@ -335,6 +342,10 @@ Json stats_json(const Command& command, const FileResult& result) {
         Json changes = {{"changed_layers", result.changes->changed_layers}};
         changes.update(changes_json(*result.changes));
         stats["changes"] = std::move(changes);
+    }
+    if (job.scan) {
+        stats["scan"] = with_density(scan_json(result.exposures), result.volume_mm3);
+        stats["scan"]["strategy"] = strategy_json(*job.scan);
     }
     if (result.report.matching)
         stats["matching"] = matching_json(*result.report.matching);

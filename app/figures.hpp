@@ -59,7 +59,7 @@ template <class Places, class Tell>
 /// What is missing where contours stay open.
 [[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
 /// What `lamella slice --stats` writes; docs/program.md lists the keys.
-[[nodiscard]] Json stats_json(const Command& command, const FileResult& result);
+[[nodiscard]] Json stats_json(const Command& command, const FileJob& job, const FileResult& result);
 /// What each of several processes did.
 [[nodiscard]] Json processes_json(const std::vector<ProcessFigures>& figures);
 /// As text with a line end; names that are not UTF-8 get replacement characters.

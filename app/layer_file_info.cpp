@@ -10,8 +10,9 @@ namespace {
 Box3 box_of(const LayerStack& layers) {
     Box3 box;
     for (const Layer& layer : layers)
-        for (const Point2& p : layer.points)
-            box.add(Point3{p.x, p.y, layer.z});
+        for (const PointArray* points : {&layer.points, &layer.hatches})
+            for (const Point2& p : *points)
+                box.add(Point3{p.x, p.y, layer.z});
     return box;
 }
 
@@ -36,7 +37,8 @@ LayerFileInfo info_of(const LayerFile& file) {
     LayerFileInfo info{
         .box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}, .rule = file.rule};
     for (const LayerPart& part : file.parts)
-        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label, box_of(part.layers)});
+        info.parts.push_back(
+            {part.label.empty() ? PartInfo{}.label : part.label, box_of(part.layers), part.exposure});
     info.box = box_of(info, layers);
     return info;
 }

@@ -289,6 +289,11 @@ LayerSteps LayerStepOptions::steps() const {
         if (fill == fill_rule_name(rule))
             steps.fill = rule;
     steps.offset_mm = offset.value_or(0);
+    for (const OffsetCorner corner : {OffsetCorner::bevel, OffsetCorner::round})
+        if (offset_corners == offset_corner_name(corner))
+            steps.offset_corners.shape = corner;
+    if (steps.offset_corners.shape != OffsetCorner::mitre && !offset)
+        throw Error(ErrorKind::usage, "--offset-corners goes with --offset");
     steps.largest_only = largest_only;
     steps.min_area_mm2 = min_area.value_or(0);
     steps.simplify_mm = simplify.value_or(0);
@@ -299,10 +304,15 @@ OptionGroup layer_step_options(LayerStepOptions& target) {
     std::vector<std::string> rules;
     for (const FillRule rule : {FillRule::none, FillRule::nonzero, FillRule::evenodd, FillRule::positive})
         rules.emplace_back(fill_rule_name(rule));
+    std::vector<std::string> corners;
+    for (const OffsetCorner corner : {OffsetCorner::mitre, OffsetCorner::bevel, OffsetCorner::round})
+        corners.emplace_back(offset_corner_name(corner));
     return {"What is made of the layers, in this order",
             {choice("fill", "RULE", "unite contours that overlap: where material is, by the winding number",
                     std::move(rules), target.fill),
              number("offset", "MM", "move contours outwards, or inwards by a negative number", target.offset),
+             choice("offset-corners", "SHAPE", "what joins sides that part at a corner when they are moved",
+                    std::move(corners), target.offset_corners),
              flag("largest-only", "keep the largest body of each layer, with its holes", target.largest_only),
              row("min-area", ValueKind::number, "MM2", "drop bodies and holes of a smaller area",
                  [&target](const std::string& text) { target.min_area = parse_positive(text); }),

@@ -109,6 +109,7 @@ struct LayerOutputOptions {
 struct LayerStepOptions {
     std::string fill = "none";
     std::optional<double> offset;
+    std::string offset_corners = "mitre";
     bool largest_only = false;
     std::optional<double> min_area;
     std::optional<double> simplify;

@@ -3,6 +3,7 @@
 #include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "scan_figures.hpp"
 #include "standard_streams.hpp"
 #include "viewer_page.hpp"
 
@@ -55,7 +56,9 @@ PageNotes run_notes(const FileResult& result) {
     notes.sections.push_back(input_section(result));
     notes.sections.push_back(
         {"The run", as_facts(picked(run_figures(result), {"engine", "threads", "read", "weld", "link",
-                                                          "slice", "polygon", "write", "bytes"}))});
+                                                          "slice", "polygon", "scan", "write", "bytes"}))});
+    if (!result.exposures.empty())
+        notes.sections.push_back({"Scan vectors", as_facts(scan_figures(result.exposures))});
     for (const LayerStatistics& layer : result.layers)
         if (layer.changes.changed_layers > 0)
             notes.changes.push_back({layer.index, layer.changes});

@@ -5,6 +5,7 @@
 #include "lamella/core/version.hpp"
 
 #include "config_file.hpp"
+#include "strategy_file.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -91,6 +92,8 @@ Json shard_origin(const Command& command, const FileJob& job, const Execution& e
         options.erase(std::string(name));
     if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
         options["z-list"] = listed->z;
+    if (job.scan)
+        options["strategy"] = strategy_json(*job.scan);
     Json inputs = Json::array();
     for (const PlateInput& input : job.inputs)
         inputs.push_back(input_json(input, execution));

@@ -1,14 +1,17 @@
 // What does looking after layers and meshes cost? Filling layers that are clean, and layers of a part and its
-// copy half a body further, against slicing; finding self-intersections against welding. Clean layers must
-// come back bit for bit, united ones must have no crossings left and, filled again, stay as they are.
+// copy half a body further, against slicing; offsets against slicing, and against Clipper's; finding
+// self-intersections against welding. Clean layers must come back bit for bit, united ones must have no
+// crossings left and, filled again, stay as they are; areas of offsets must be Clipper's.
 
 #include "experiment.hpp"
 #include "parts.hpp"
 #include "parts/shapes.hpp"
 
 #include <fmt/format.h>
+#include <polyclipping/clipper.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 namespace lamella::bench {
@@ -78,6 +81,84 @@ Timed fill_doubled(const Part& part, const Execution& execution) {
     return result;
 }
 
+/// Clipper's offset with mitred corners, on its grid of integers: its area. Of layers with nothing to unite.
+double area_by_clipper(const Layer& layer, double distance) {
+    constexpr double unit = 0x1p-30;
+    ClipperLib::ClipperOffset offset(OffsetCorners{}.mitre_limit);
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        ClipperLib::Path path;
+        path.reserve(layer.contour(i).size());
+        for (const Point2& p : layer.contour(i))
+            path.emplace_back(std::llround(p.x / unit), std::llround(p.y / unit));
+        offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
+    }
+    ClipperLib::Paths moved;
+    offset.Execute(moved, distance / unit);
+    double area = 0;
+    for (const ClipperLib::Path& path : moved)
+        area += ClipperLib::Area(path);
+    return area * unit * unit;
+}
+
+/// Seconds on one thread, for the same layers.
+struct Moved {
+    double slice = 0;
+    double ours = 0;
+    double clipper = 0;
+    std::uint64_t points = 0;
+    bool right = true;
+};
+
+Moved move_layers(const Part& part, double distance) {
+    const OpenedPart opened = open_part(part, {.threads = 1});
+    Moved result;
+    const auto slicing = Clock::now();
+    const LayerStack layers = slice(opened.mesh, opened.plan, {.threads = 1});
+    result.slice = seconds_since(slicing);
+    LayerChanges changes;
+    const auto moving = Clock::now();
+    const LayerStack moved = take_steps({.offset_mm = distance}, layers, changes, {.threads = 1});
+    result.ours = seconds_since(moving);
+    // Clipper takes its time: a few layers stand for all.
+    const std::size_t step = std::max<std::size_t>(1, layers.size() / 10);
+    std::size_t compared = 0;
+    for (std::size_t i = step / 2; i < layers.size(); i += step, ++compared) {
+        const auto clipping = Clock::now();
+        const double area = area_by_clipper(layers[i], distance);
+        result.clipper += seconds_since(clipping);
+        const LayerMeasure measured = measure(moved[i]);
+        result.right = result.right && !has_crossings(moved[i]) &&
+                       std::abs(measured.area_mm2 - area) <= 1e-6 * (1 + measured.perimeter_mm);
+    }
+    result.clipper *=
+        static_cast<double>(layers.size()) / static_cast<double>(std::max<std::size_t>(1, compared));
+    for (const Layer& layer : layers)
+        result.points += layer.points.size();
+    return result;
+}
+
+bool add_offset(Table& table, const Part& part, double distance, int rounds) {
+    std::vector<double> slice;
+    std::vector<double> ours;
+    std::vector<double> clipper;
+    Moved last;
+    bool right = true;
+    for (int round = 0; round < rounds; ++round) {
+        last = measure_in_child<Moved>([&] { return move_layers(part, distance); }).result;
+        slice.push_back(last.slice);
+        ours.push_back(last.ours);
+        clipper.push_back(last.clipper);
+        right = right && last.right;
+    }
+    table.add({part.name, fmt::format("{}", distance),
+               fmt::format("{:.2f}", static_cast<double>(last.points) / 1e6),
+               fmt::format("{:.4f}", median(slice)), fmt::format("{:.4f}", median(ours)),
+               fmt::format("{:.2f}", median(ours) / median(slice)),
+               fmt::format("{:.0f}", 1e9 * median(ours) / static_cast<double>(last.points)),
+               fmt::format("{:.1f}", median(clipper) / median(ours)), right ? "yes" : "WRONG"});
+    return right;
+}
+
 struct Meetings {
     double weld = 0;
     double find = 0;
@@ -140,6 +221,13 @@ int report(int argc, char** argv) {
             all_right;
     }
     std::cout << fills.text() << '\n';
+
+    Table moved({"part", "offset mm", "Mpoints", "slice s", "offset s", "offset / slice", "ns/point",
+                 "Clipper / ours", "checked"});
+    for (const Part& part : parts)
+        for (const double distance : {-0.05, 0.05})
+            all_right = add_offset(moved, part, distance, rounds) && all_right;
+    std::cout << moved.text() << '\n';
 
     Table meetings({"part", "weld s", "self-intersections s", "to weld", "pairs"});
     for (const Part& part : parts) {

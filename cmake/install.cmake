@@ -12,9 +12,6 @@ install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(pc_packages "expat fmt libdeflate zlib")
-if(LAMELLA_CLIPPER)
-    string(APPEND pc_packages " polyclipping")
-endif()
 # A static library leaves it to its user to link what it needs; a shared one has done so itself.
 get_target_property(library_type lamella TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")

@@ -38,5 +38,6 @@ cpack --config "$build/CPackConfig.cmake" -B "$work/debian" >"$work/log" || {
 }
 mv "$work"/debian/*.deb "$dist/"
 
-# Debian's packages belong to Debian's interpreter, whichever comes first in the path.
-/usr/bin/python3 -m pip --quiet wheel "$work/$name" --no-build-isolation --no-deps --no-index --wheel-dir "$dist"
+# Debian's packages belong to Debian's interpreter, whichever comes first in the path. A compiler cache may have the objects of
+# these sources in another folder.
+CCACHE_BASEDIR=$work/$name /usr/bin/python3 -m pip --quiet wheel "$work/$name" --no-build-isolation --no-deps --no-index --wheel-dir "$dist"

@@ -63,15 +63,19 @@ def main(arguments):
     measured.pictures = {part.name: pictures.of_part(part, options.lamella, work, parts_folder)
                          for part in chosen if part.name in pictures.VIEWS}
     measured.growth = growths.measure(options.lamella, work, parts_folder, options.timeout, small=tiny, tell=tell_growth)
-    laboratory = Laboratory(options.lamella, work, parts_folder, options.timeout)
+
+    def new_laboratory():
+        return Laboratory(options.lamella, work, parts_folder, options.timeout, most_runs=2 if tiny else 5)
+
+    laboratory = new_laboratory()
     sheets = {order: parts.sheet(4 if tiny else 100, order, 32 if tiny else None) for order in ("wall", "hole", "split", "shuffle")}
     measured.order_parts = {order: part.name for order, part in sheets.items()}
     for part in sheets.values():
-        measured.order_cells += Laboratory(options.lamella, work, parts_folder, options.timeout).cells(part, ENGINES, tell)
+        measured.order_cells += new_laboratory().cells(part, ENGINES, tell)
     for part in chosen:
         measured.cells += laboratory.cells(part, ENGINES, tell)
         write()  # so that a long run that is stopped has left what it found
-    splitting = Laboratory(options.lamella, work, parts_folder, options.timeout)
+    splitting = new_laboratory()
     for part in chosen:
         if part.family == "sheet" and "edge" not in part.name and part.name in figures["table5_seconds"]:
             measured.split_cells += splitting.cells(parts.sheet(part.make[2], "split"), ["ecc-edge-match", "eecc"], tell)

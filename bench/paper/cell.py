@@ -54,8 +54,8 @@ class Laboratory:
     folder: Path  # for what is left over: listings, statistics
     parts_folder: Path
     timeout: float
+    most_runs: int
     repeat_below: float = 1.0
-    most_runs: int = 5
     latest: dict = field(default_factory=dict)  # (engine, family) -> the cell of the next smaller part
 
     def cells(self, part, engines, tell=lambda cell: None):

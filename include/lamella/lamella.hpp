@@ -51,6 +51,9 @@
 #include "lamella/polygon/offset.hpp"
 #include "lamella/polygon/simplify.hpp"
 
+// What machines that expose them execute.
+#include "lamella/scan/scan.hpp"
+
 // Files of layers, meshes, pictures and pages.
 #include "lamella/raster/picture.hpp"
 #include "lamella/read/layer_file.hpp"

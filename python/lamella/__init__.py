@@ -28,17 +28,34 @@ from ._errors import (
     UsageError,
 )
 from ._files import convert, layer_formats, mesh_formats, read, write
-from ._lamella import Layer, LayerStream, Mesh, Stack, __version__
+from ._lamella import (
+    ContourRule,
+    Exposure,
+    HatchRule,
+    Layer,
+    LayerStream,
+    Mesh,
+    ParameterSet,
+    ScanFigures,
+    ScanStrategy,
+    SkinRule,
+    Stack,
+    __version__,
+)
 from ._meshes import Inspection, inspect
+from ._scanning import PyslmLayer, ScanLayer, scan, to_pyslm
 from ._slicing import Engine, engines, iter_layers, slice
 
 __all__ = [
     "CancelledError",
     "Comparison",
+    "ContourRule",
     "DefectError",
     "DefectWarning",
     "Engine",
     "Error",
+    "Exposure",
+    "HatchRule",
     "InputError",
     "Inspection",
     "InternalError",
@@ -48,6 +65,12 @@ __all__ = [
     "LimitError",
     "Mesh",
     "OutputError",
+    "ParameterSet",
+    "PyslmLayer",
+    "ScanFigures",
+    "ScanLayer",
+    "ScanStrategy",
+    "SkinRule",
     "Stack",
     "UsageError",
     "Verification",
@@ -60,7 +83,9 @@ __all__ = [
     "layer_formats",
     "mesh_formats",
     "read",
+    "scan",
     "slice",
+    "to_pyslm",
     "verify",
     "write",
 ]

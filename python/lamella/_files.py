@@ -63,7 +63,7 @@ def read(
     """Reads a mesh file or a slice file, whichever it is by its content.
 
     path: str or os.PathLike. Meshes: see `mesh_formats`. Layers: Common Layer Interface, layered SVG, SLC,
-        3MF with slices, JSON, NumPy arrays. Each may be packed with gzip.
+        3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be packed with gzip.
     unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given.
     strict: makes a DefectError of what is otherwise a DefectWarning.
     supports: takes what 3MF and AMF files mark as support, too, as solids; without it a DefectWarning says that it was

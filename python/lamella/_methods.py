@@ -91,9 +91,12 @@ class Layer(_lamella.Layer):
             raise UsageError(f'rule: "{rule}" is no fill rule; there are nonzero, evenodd and positive')
         return self._filled(rule)
 
-    def offset(self, distance: float) -> _lamella.Layer:
-        """The layer with its material grown by `distance` millimetres, or shrunk by a negative one."""
-        return self._offset(check.number("distance", distance))
+    def offset(self, distance: float, corners: str = "mitre") -> _lamella.Layer:
+        """The layer with its material grown by `distance` millimetres, or shrunk by a negative one. `corners` says what
+        joins sides that part at a corner when they are moved: "mitre", "bevel" or "round"."""
+        if check.text("corners", corners) not in ("mitre", "bevel", "round"):
+            raise UsageError(f'corners: "{corners}" are no corners; there are mitre, bevel and round')
+        return self._offset(check.number("distance", distance), corners)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:
         """The layer with material where it or `other` has: where contours wind counter-clockwise around. Contours

@@ -136,7 +136,7 @@ LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const
     layer.rings = rings;
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
-    return std::make_shared<SharedLayer>(normal_form(std::move(layer)));
+    return std::make_shared<SharedLayer>(std::move(layer)); // as it was: the order of scan vectors counts
 }
 
 /// Contours in any order.
@@ -159,6 +159,14 @@ FillRule fill_rule(const std::string& name) {
         if (fill_rule_name(rule) == name)
             return rule;
     return FillRule::positive;
+}
+
+/// By its name, which is one of the three.
+OffsetCorner offset_corner(const std::string& name) {
+    for (const OffsetCorner corner : {OffsetCorner::bevel, OffsetCorner::round})
+        if (offset_corner_name(corner) == name)
+            return corner;
+    return OffsetCorner::mitre;
 }
 
 bool same(const SharedLayer& first, const SharedLayer& second) {
@@ -417,7 +425,10 @@ void bind_layer(py::module_& module) {
         .def("_filled", [](const SharedLayer& self,
                            const std::string& rule) { return after(self, {.fill = fill_rule(rule)}); })
         .def("_offset",
-             [](const SharedLayer& self, double distance) { return after(self, {.offset_mm = distance}); })
+             [](const SharedLayer& self, double distance, const std::string& corners) {
+                 return after(self,
+                              {.offset_mm = distance, .offset_corners = {.shape = offset_corner(corners)}});
+             })
         .def("_union", &combined<BooleanOperation::unite>)
         .def("_intersection", &combined<BooleanOperation::intersect>)
         .def("_difference", &combined<BooleanOperation::subtract>)

@@ -5,6 +5,7 @@
 #include "errors.hpp"
 #include "files.hpp"
 #include "layers.hpp"
+#include "scanning.hpp"
 #include "slicing.hpp"
 #include "source_mesh.hpp"
 
@@ -22,5 +23,6 @@ PYBIND11_MODULE(_lamella, module) {
     lamella::python::bind_meshes(module);
     lamella::python::bind_layers(module);
     lamella::python::bind_slicing(module);
+    lamella::python::bind_scanning(module);
     lamella::python::bind_files(module);
 }

@@ -21,6 +21,10 @@ void LayerBuilder::end_contour(bool closed) {
 }
 
 Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double top) {
+    return normal_form(finish_as_added(index, z, bottom, top));
+}
+
+Layer LayerBuilder::finish_as_added(std::uint64_t index, double z, double bottom, double top) {
     const std::vector<End> ends = std::exchange(ends_, {});
     std::vector<Point2> points = std::exchange(points_, {});
     points.resize(ends.empty() ? 0 : ends.back().offset); // a contour that was never ended is none
@@ -52,7 +56,7 @@ Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double 
     }
     assert(layer.contours() == ends.size() && layer.offsets.back() == points.size());
     layer.points = PointArray(std::move(points));
-    return normal_form(std::move(layer));
+    return layer;
 }
 
 Layer merged(std::span<const Layer> layers) {

@@ -58,6 +58,25 @@ RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes)
     return {bound(process), bound(process + 1)};
 }
 
+std::optional<std::uint32_t> neighbours_of(const FileJob& job) {
+    if (!job.scan)
+        return std::nullopt;
+    return job.scan->downskin.layers + job.scan->upskin.layers;
+}
+
+/// The most points on so many planes one above the other.
+std::uint64_t most_points(const SlabSurvey& survey, std::uint32_t planes) {
+    std::uint64_t most = 0;
+    std::uint64_t points = 0;
+    for (std::uint32_t p = 0; p < survey.planes(); ++p) {
+        points += survey.points(p);
+        if (p >= planes)
+            points -= survey.points(p - planes);
+        most = std::max(most, points);
+    }
+    return most;
+}
+
 /// What a process saw of a file.
 struct Seen {
     Box3 box;
@@ -87,7 +106,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                                                                       .supports = job.supports,
                                                                       .max_triangles = job.max_triangles,
                                                                       .max_memory = job.max_memory},
-      measure_volume_(job.layer_statistics) {
+      measure_volume_(job.layer_statistics), neighbours_(neighbours_of(job)) {
     if (processes.size() > 1 && std::any_of(job.inputs.begin(), job.inputs.end(),
                                             [](const PlateInput& input) { return input.path == "-"; }))
         throw Error(ErrorKind::usage,
@@ -137,7 +156,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
 
 Feed::Feed(const FileJob& job, Plate plate, Communicator& processes)
     : memory_(job), processes_(processes), among_(&alone()), measure_volume_(job.layer_statistics),
-      plate_(std::move(plate)) {}
+      neighbours_(neighbours_of(job)), plate_(std::move(plate)) {}
 
 void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
     const unsigned threads = thread_count(execution);
@@ -327,10 +346,11 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
         .placed = std::any_of(plate_.shapes.begin(), plate_.shapes.end(),
                               [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
         .points_in_flight = memory_.points_in_flight(threads)};
-    if (plate_.parts.size() > 1) // then all layers of a share are held
+    if (plate_.parts.size() > 1 || neighbours_) // then all layers of a share are held
         slab.points_in_flight = ~std::uint64_t{0};
-    const std::uint64_t overhead =
-        JobMemory::overhead(threads, plan.layers.size()) + memory_.of_messages(processes_.size());
+    const std::uint64_t overhead = JobMemory::overhead(threads, plan.layers.size()) +
+                                   memory_.of_messages(processes_.size()) +
+                                   most_points(survey, neighbours_.value_or(0)) * sizeof(Point2);
     std::uint64_t largest = 0;
     std::uint32_t where = 0;
     for (std::uint32_t p = 0; p < survey.planes(); ++p)

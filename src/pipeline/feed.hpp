@@ -103,6 +103,7 @@ class Feed {
     Communicator* among_; ///< those that divide the files: this process alone, where each reads all of them
     MeshReadOptions reading_;
     bool measure_volume_;
+    std::optional<std::uint32_t> neighbours_; ///< of each plane that is scanned; unset: none is
     bool in_pieces_ = false;
     Plate plate_;
     std::vector<File> files_; ///< where triangles stay in them

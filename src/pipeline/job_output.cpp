@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -35,7 +36,8 @@ std::string packed(std::span<const Layer> parts) {
             .put(layer.top)
             .put(std::uint64_t{layer.rings})
             .put_all(std::span(layer.offsets))
-            .put_all(layer.points.span());
+            .put_all(layer.points.span())
+            .put_all(layer.hatches.span());
     return packer.take();
 }
 
@@ -50,6 +52,7 @@ std::vector<Layer> unpacked(const std::string& message) {
         layer.rings = unpacker.get<std::uint64_t>();
         layer.offsets = unpacker.get_all<std::uint64_t>();
         layer.points = PointArray(unpacker.get_all<Point2>());
+        layer.hatches = PointArray(unpacker.get_all<Point2>());
     }
     return parts;
 }
@@ -135,11 +138,14 @@ JobOutput::Written JobOutput::finish_file() {
         written.bytes = shared_ ? 0 : writer_->bytes();
         written.warnings = writer_->warnings();
     });
+    // For all of them, also where one alone wrote.
+    const std::string mine = fmt::format("{}", fmt::join(std::exchange(written.warnings, {}), "\n"));
+    for (const std::string& warnings : processes_.gather(mine)) {
+        std::istringstream lines(warnings);
+        for (std::string warning; std::getline(lines, warning);)
+            written.warnings.push_back(warning);
+    }
     if (shared_) {
-        const std::string mine = fmt::format("{}", fmt::join(std::exchange(written.warnings, {}), "\n"));
-        for (std::string& warning : processes_.gather(mine))
-            if (!warning.empty())
-                written.warnings.push_back(std::move(warning));
         written.bytes = write_shared();
     } else {
         processes_.sum(std::span(&written.bytes, 1)); // those that did not write have 0

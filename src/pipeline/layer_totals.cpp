@@ -19,6 +19,10 @@ LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> plane
     rows_.reserve(planes.size());
     for (const PlannedLayer& plane : planes)
         rows_.push_back({.index = plane.index, .z = plane.z, .open_gaps = {}});
+    if (job.scan)
+        for (Exposure& exposure : exposures(*job.scan, {}))
+            exposures_.push_back({std::move(exposure), {}});
+    vectors_.resize(planes.size() * exposures_.size());
 }
 
 void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes) {
@@ -56,7 +60,16 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
                               .open_gaps = row.open_gaps,
                               .joins = std::move(joins),
                               .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
-                              .changes = changes};
+                              .changes = changes,
+                              .scan = {}};
+}
+
+void LayerTotals::add(std::uint64_t index, std::span<const ScanFigures> vectors) {
+    assert(vectors.size() == exposures_.size());
+    const auto place = static_cast<std::size_t>(index - rows_.front().index);
+    assert(rows_.at(place).index == index);
+    std::copy(vectors.begin(), vectors.end(),
+              vectors_.begin() + static_cast<std::ptrdiff_t>(place * exposures_.size()));
 }
 
 std::uint64_t LayerTotals::points() const noexcept {
@@ -83,7 +96,8 @@ void LayerTotals::gather(Communicator& processes) {
         mine.put(part.contours.load()).put(part.open_chains.load()).put(part.points.load());
     mine.put_all(std::span<const Row>(rows_))
         .put_all(std::span<const FileResult::Gaps>(closed_))
-        .put_all(std::span<const LayerChanges>(changes_));
+        .put_all(std::span<const LayerChanges>(changes_))
+        .put_all(std::span<const ScanFigures>(vectors_));
     for (const LayerStatistics& layer : statistics_)
         mine.put(Figures{layer.index, layer.z, layer.thickness, layer.measure, layer.open_gaps, layer.hash,
                          layer.changes})
@@ -91,6 +105,7 @@ void LayerTotals::gather(Communicator& processes) {
     rows_.clear();
     closed_.clear();
     changes_.clear();
+    vectors_.clear();
     statistics_.clear();
     parts_ = std::vector<Counts>(parts_.size());
     const auto append = [](auto& to, const auto& more) {
@@ -106,6 +121,7 @@ void LayerTotals::gather(Communicator& processes) {
         append(rows_, from.get_all<Row>());
         append(closed_, from.get_all<FileResult::Gaps>());
         append(changes_, from.get_all<LayerChanges>());
+        append(vectors_, from.get_all<ScanFigures>());
         while (!from.empty()) {
             const Figures layer = from.get<Figures>();
             statistics_.push_back({.index = layer.index,
@@ -115,7 +131,8 @@ void LayerTotals::gather(Communicator& processes) {
                                    .open_gaps = layer.open_gaps,
                                    .joins = from.get_all<GapJoin>(),
                                    .hash = layer.hash,
-                                   .changes = layer.changes});
+                                   .changes = layer.changes,
+                                   .scan = {}});
         }
     }
 }
@@ -143,6 +160,14 @@ void LayerTotals::tell(FileResult& result) const {
     for (const LayerStatistics& layer : statistics_)
         result.volume_mm3 += layer.measure.area_mm2 * layer.thickness;
     result.layers = statistics_;
+    result.exposures = exposures_;
+    const std::size_t each = exposures_.size();
+    for (std::size_t i = 0; i < vectors_.size(); ++i)
+        result.exposures[i % each].figures += vectors_[i];
+    for (std::size_t i = 0; i < result.layers.size() && each > 0; ++i) {
+        const std::span<const ScanFigures> row = std::span(vectors_).subspan(i * each, each);
+        result.layers[i].scan.assign(row.begin(), row.end());
+    }
     SliceReport& report = result.report;
     report.contours = report.open_chains = report.points = 0;
     report.layers = rows_.size();

@@ -25,6 +25,8 @@ class LayerTotals {
     /// The layers of all parts on one plane, as they are written, and what was done to them. From any thread,
     /// once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes);
+    /// Of the scan vectors of a plane, by exposure. From any thread, once for each plane.
+    void add(std::uint64_t index, std::span<const ScanFigures> vectors);
 
     /// Points of the layers that were added.
     [[nodiscard]] std::uint64_t points() const noexcept;
@@ -53,6 +55,8 @@ class LayerTotals {
     std::vector<FileResult::Gaps> closed_;    ///< where gaps are closed
     std::vector<LayerChanges> changes_;       ///< where there are steps
     std::vector<LayerStatistics> statistics_; ///< where layers have statistics
+    std::vector<ExposureResult> exposures_;   ///< where there are scan vectors; without figures
+    std::vector<ScanFigures> vectors_;        ///< then of each plane: of each exposure
     std::vector<Counts> parts_;
     bool has_changes_;
 };

@@ -10,8 +10,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cstddef>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -19,14 +22,19 @@
 namespace lamella {
 namespace {
 
+struct ShardPart {
+    std::string label;
+    std::optional<Exposure> exposure;
+    Box3 box; ///< of its points
+};
+
 /// What is known of a file after it has been read, and let go of, once.
 struct ShardFile {
     std::string path;
     std::string format;
     double units_mm = 0;
     PlaneRule rule = PlaneRule::section_above;
-    std::vector<std::string> labels;
-    std::vector<Box3> boxes; ///< of the points of each part
+    std::vector<ShardPart> parts;
     std::uint64_t layers = 0;
     double bottom = 0;
     double top = 0;
@@ -45,21 +53,32 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .format = file.format,
                     .units_mm = file.units_mm,
                     .rule = file.rule,
-                    .labels = {},
-                    .boxes = {},
+                    .parts = {},
                     .layers = layers.size(),
                     .bottom = layers.front().bottom,
                     .top = layers.back().top,
                     .lowest_layer_mm = layers.front().thickness(),
                     .highest_layer_mm = layers.back().thickness()};
     for (const LayerPart& part : file.parts) {
-        shard.labels.push_back(part.label);
-        Box3& box = shard.boxes.emplace_back();
+        Box3& box = shard.parts.emplace_back(ShardPart{part.label, part.exposure, {}}).box;
         for (const Layer& layer : part.layers)
-            for (const Point2& p : layer.points)
-                box.add(Point3{p.x, p.y, layer.z});
+            for (const PointArray* points : {&layer.points, &layer.hatches})
+                for (const Point2& p : *points)
+                    box.add(Point3{p.x, p.y, layer.z});
     }
     return shard;
+}
+
+std::vector<std::string> labels_of(const ShardFile& shard) {
+    std::vector<std::string> labels;
+    for (const ShardPart& part : shard.parts)
+        labels.push_back(part.label);
+    return labels;
+}
+
+bool holds_vectors(const ShardFile& shard) {
+    return std::all_of(shard.parts.begin(), shard.parts.end(),
+                       [](const ShardPart& part) { return part.exposure.has_value(); });
 }
 
 void check_neighbours(const ShardFile& below, const ShardFile& above) {
@@ -73,9 +92,10 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
     if (below.rule != above.rule)
         refuse(fmt::format("one is cut by {}, the other by {}", plane_rule_name(below.rule),
                            plane_rule_name(above.rule)));
-    if (below.labels != above.labels)
-        refuse(fmt::format("hold different parts ({} and {})", fmt::join(below.labels, ", "),
-                           fmt::join(above.labels, ", ")));
+    // Formats of scan vectors know what has some only: a shard may have no skin.
+    if (const auto one = labels_of(below), other = labels_of(above);
+        one != other && !(holds_vectors(below) && holds_vectors(above)))
+        refuse(fmt::format("hold different parts ({} and {})", fmt::join(one, ", "), fmt::join(other, ", ")));
     // Formats round heights, but never by half a layer.
     const double slack = std::min(below.highest_layer_mm, above.lowest_layer_mm) / 2;
     if (above.bottom > below.top + slack)
@@ -204,6 +224,41 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
 
 // ------------------------------------------------------------------------------------------ any format
 
+/// Those of all files, each in its order; boxes of all.
+std::vector<ShardPart> parts_of(const std::vector<ShardFile>& shards) {
+    std::vector<ShardPart> all;
+    for (const ShardFile& shard : shards) {
+        auto next = all.begin();
+        for (const ShardPart& part : shard.parts) {
+            const auto known =
+                std::find_if(next, all.end(), [&](const ShardPart& one) { return one.label == part.label; });
+            if (known == all.end()) {
+                next = all.insert(next, part);
+            } else {
+                known->box.add(part.box);
+                next = known;
+            }
+            ++next;
+        }
+    }
+    return all;
+}
+
+/// What a file has of a plane of each part; an empty layer where it does not know the part.
+std::vector<Layer> plane_of(const LayerFile& file, std::size_t plane, const std::vector<ShardPart>& parts) {
+    const Layer& any = file.parts.front().layers[plane];
+    std::vector<Layer> layers;
+    auto next = file.parts.begin();
+    for (const ShardPart& part : parts) {
+        if (next != file.parts.end() && next->label == part.label)
+            layers.push_back((next++)->layers[plane]);
+        else
+            layers.push_back({.index = any.index, .z = any.z, .bottom = any.bottom, .top = any.top});
+    }
+    assert(next == file.parts.end()); // as parts_of puts them together, each file is among them in its order
+    return layers;
+}
+
 void write_anew(const std::vector<ShardFile>& shards, const std::string& output, const LayerFormat& format,
                 const LayerWriteOptions& options, const LayerReadOptions& reading, MergeResult& result,
                 const Execution& execution) {
@@ -212,13 +267,13 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
                        .bottom = result.bottom,
                        .parts = {},
                        .rule = shards.front().rule};
-    for (std::size_t part = 0; part < shards.front().labels.size(); ++part) {
-        const std::string& label = shards.front().labels[part];
+    const std::vector<ShardPart> parts = parts_of(shards);
+    for (const ShardPart& part : parts) {
         PartInfo& of_part = info.parts.emplace_back();
-        if (!label.empty())
-            of_part.label = label;
-        for (const ShardFile& shard : shards)
-            of_part.box.add(shard.boxes[part]);
+        if (!part.label.empty())
+            of_part.label = part.label;
+        of_part.exposure = part.exposure;
+        of_part.box = part.box;
         info.box.add(of_part.box);
     }
     if (info.box.empty())
@@ -228,12 +283,8 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(output, format, info, options);
     for (const ShardFile& shard : shards) {
         const LayerFile file = read_layers(shard.path, reading, execution);
-        std::vector<Layer> parts(file.parts.size());
-        for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
-            for (std::size_t part = 0; part < parts.size(); ++part)
-                parts[part] = file.parts[part].layers[i];
-            writer->prepare(parts)();
-        }
+        for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i)
+            writer->prepare(plane_of(file, i, parts))();
     }
     writer->finish();
     result.bytes = writer->bytes();

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -88,8 +89,20 @@ std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint6
     return result;
 }
 
+/// Without the progress of slicing.
+Execution without_slicing(const Execution& execution) {
+    Execution run = execution;
+    if (execution.progress)
+        run.progress = [&execution](const Progress& progress) {
+            if (progress.stage != Stage::slice)
+                execution.progress(progress);
+        };
+    return run;
+}
+
 /// The layers of all parts on a run of planes, formatted in parallel, written in order. Empties the stacks.
-void emit(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>& stacks, Executor& executor) {
+void emit(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>& stacks, Executor& executor,
+          ProgressMeter* progress) {
     const std::size_t planes = stacks.front().size();
     const std::size_t at_once = std::size_t{4} * executor.workers(); // so that all workers have some
     std::vector<std::function<void()>> actions(at_once);
@@ -108,11 +121,14 @@ void emit(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>& st
         for (LayerStack& stack : stacks) // what is written is not needed any more
             for (std::size_t i = first; i < first + count; ++i)
                 stack[i] = {};
+        if (progress != nullptr)
+            progress->add(count);
     }
 }
 
 SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan,
-                        const Execution& execution, const Engine& engine, std::uint64_t points_in_flight) {
+                        const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
+                        SinkYield yield) {
     SliceReport report;
     // Each window takes a look at all triangles: they are few, and large. Engines that weld would do so anew.
     constexpr std::uint64_t share = 2;
@@ -121,25 +137,34 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
                                              ? std::vector<PlaneRange>{{0, all}}
                                              : windows(plate, plan, share * points_in_flight, execution);
     JointProgress progress(plate, plan, runs.size());
+    // Where the sink makes much of layers, that is what takes long.
+    const bool sink_counts = yield == SinkYield::much_more;
+    const Execution slicing = sink_counts ? without_slicing(execution) : execution;
+    std::optional<ProgressMeter> emitted;
     Executor executor(execution);
     for (const PlaneRange& run : runs) {
         std::vector<LayerStack> stacks;
         for (const PlateShape& shape : plate.shapes) {
             SliceReport ours;
-            stacks.push_back(slice(shape.mesh, part_of(plan, run), progress.next(execution), &ours, engine));
+            stacks.push_back(slice(shape.mesh, part_of(plan, run), progress.next(slicing), &ours, engine));
             report += ours;
         }
-        emit(sink, plate, stacks, executor);
+        if (sink_counts && !emitted)
+            emitted.emplace(execution, Stage::slice, all);
+        emit(sink, plate, stacks, executor, emitted ? &*emitted : nullptr);
     }
+    if (emitted)
+        emitted->finish();
     return report;
 }
 
 } // namespace
 
 SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
-                           const Execution& execution, const Engine& engine, std::uint64_t points_in_flight) {
-    if (plate.parts.size() > 1)
-        return slice_parts(sink, plate, plan, execution, engine, points_in_flight);
+                           const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
+                           SinkYield yield) {
+    if (plate.parts.size() > 1 || yield == SinkYield::much_more)
+        return slice_parts(sink, plate, plan, execution, engine, points_in_flight, yield);
     const LayerSink single = [&](Layer&& layer) {
         return sink(std::span<const Layer>(&layer, 1));
     };

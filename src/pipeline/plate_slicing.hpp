@@ -18,12 +18,18 @@ namespace lamella {
 /// As LayerSink, but for what one plane yields: a layer of each part, in the order of Plate::parts.
 using PlateSink = std::function<std::function<void()>(std::span<const Layer> parts)>;
 
+/// What a sink makes of layers: about as much as they are, or so much more that only a few planes may be on
+/// their way through it, whatever `points_in_flight` says.
+enum class SinkYield { like_layers, much_more };
+
 /// A plate with one part is sliced while its layers go to the sink. Others are sliced window by window: a run
 /// of planes on which all shapes together have twice `points_in_flight` (as slice_to takes it; 0: all
-/// planes at once). Of the report, only times and MatchingCounts say something: what the layers hold is for
-/// the sink to count, as parts may share a shape.
+/// planes at once); a few of them at a time go to the sink. So is whatever yields much more. Of the report,
+/// only times and MatchingCounts say something: what the layers hold is for the sink to count, as parts may
+/// share a shape.
 [[nodiscard]] SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
                                          const Execution& execution, const Engine& engine,
-                                         std::uint64_t points_in_flight);
+                                         std::uint64_t points_in_flight,
+                                         SinkYield yield = SinkYield::like_layers);
 
 } // namespace lamella

@@ -11,7 +11,9 @@
 #include "pipeline/job_memory.hpp"
 #include "pipeline/job_output.hpp"
 #include "pipeline/layer_totals.hpp"
+#include "pipeline/layer_window.hpp"
 #include "pipeline/packed.hpp"
+#include "pipeline/plane_scan.hpp"
 #include "pipeline/plate_slicing.hpp"
 
 #include <fmt/format.h>
@@ -19,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -111,14 +114,49 @@ std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, 
     return closed;
 }
 
+/// What is sliced, and which planes of it are written: all, but where others beside them tell what is skin.
+struct Planes {
+    Plan plan;
+    PlaneRange written;
+};
+
+Planes planes_of(const FileJob& job, const Plate& plate, const Execution& execution) {
+    Planes planes{plan_of(job, plate, execution), {}};
+    planes.written = {0, static_cast<std::uint32_t>(planes.plan.layers.size())};
+    const PlaneSelection& only = job.layering.only;
+    if (!job.scan || (!only.z_range && !only.index_range))
+        return planes;
+    const std::uint64_t first = planes.plan.layers.front().index;
+    const std::uint64_t begin = first - std::min<std::uint64_t>(first, job.scan->downskin.layers);
+    FileJob wider = job;
+    wider.layering.only = {
+        .index_range = {{begin, planes.plan.layers.back().index + 1 + job.scan->upskin.layers}}};
+    planes.plan = plan_of(wider, plate, execution);
+    const auto before = static_cast<std::uint32_t>(first - begin);
+    planes.written = {before, before + planes.written.end};
+    assert(planes.plan.layers[before].index == first && planes.written.end <= planes.plan.layers.size());
+    return planes;
+}
+
+/// Planes with those beside them that tell what is skin, of a plan with so many.
+PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t planned) {
+    const auto last = static_cast<std::uint32_t>(planned);
+    if (planes.size() == 0)
+        return {last, last};
+    if (!job.scan)
+        return planes;
+    return {planes.begin - std::min(planes.begin, job.scan->downskin.layers),
+            planes.end + std::min(job.scan->upskin.layers, last - planes.end)};
+}
+
 /// What the head of the slice file says.
-LayerFileInfo file_info(const Plate& plate, const Plan& plan, PlaneRange written) {
+LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange written) {
     LayerFileInfo info{
         .box = plate.box, .layers = written.size(), .bottom = plan.layers[written.begin].bottom, .parts = {}};
     for (const PlatePart& part : plate.parts)
         info.parts.push_back({part.label, part.box});
     info.rule = plan.rule;
-    return info;
+    return job.scan ? with_exposures(info, *job.scan) : info;
 }
 
 /// "2 boundary edges, 1 inverted shell".
@@ -221,30 +259,40 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     return done;
 }
 
-/// Of equal work: the planes of each process, empty ones at the end where there are fewer planes; or those of
-/// a shard.
-std::vector<PlaneRange> divide(const FileJob& job, const Plan& plan, Feed& feed, Communicator& processes,
+/// Those that are written, in parts of equal work: the planes of each process, empty ones at the end where
+/// there are fewer planes; or those of a shard.
+std::vector<PlaneRange> divide(const FileJob& job, const Planes& planes, Feed& feed, Communicator& processes,
                                const Execution& execution) {
-    const auto planes = static_cast<std::uint32_t>(plan.layers.size());
+    const PlaneRange written = planes.written;
     if (job.shard && (job.shard->number < 1 || job.shard->number > job.shard->count))
         throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
                                                   job.shard->number, job.shard->count));
     if (!job.shard && processes.size() == 1 && feed.meshes() != nullptr)
-        return {{0, planes}};
-    const SlabSurvey survey(feed.count(plan, execution));
+        return {written};
+    const SlabSurvey survey(part_of(feed.count(planes.plan, execution), written));
+    std::vector<PlaneRange> division;
     if (job.shard)
-        return {divide_evenly(survey, job.shard->count)[job.shard->number - 1]};
-    std::vector<PlaneRange> division =
-        divide_evenly(survey, static_cast<std::uint32_t>(std::min<std::size_t>(processes.size(), planes)));
-    division.resize(processes.size(), {planes, planes});
+        division = {divide_evenly(survey, job.shard->count)[job.shard->number - 1]};
+    else
+        division = divide_evenly(
+            survey, static_cast<std::uint32_t>(std::min<std::size_t>(processes.size(), written.size())));
+    for (PlaneRange& part : division)
+        part = {written.begin + part.begin, written.begin + part.end};
+    if (!job.shard)
+        division.resize(processes.size(), {written.end, written.end});
     return division;
 }
 
 /// What is made of the layers of one plane on their way from the engine to the output.
 class LayerWay {
   public:
-    LayerWay(const FileJob& job, LayerTotals& totals, JobOutput& output)
-        : job_(job), totals_(totals), output_(output) {}
+    /// `sliced`: the planes of the plan that come, of which those of `mine` are written.
+    LayerWay(const FileJob& job, const Plan& plan, PlaneRange sliced, PlaneRange mine, LayerTotals& totals,
+             JobOutput& output)
+        : job_(job), first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
+          window_(sliced, mine, job.scan ? job.scan->downskin.layers : 0,
+                  job.scan ? job.scan->upskin.layers : 0,
+                  [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {}
 
     /// As PlateSink.
     [[nodiscard]] std::function<void()> operator()(std::span<const Layer> parts) {
@@ -264,12 +312,13 @@ class LayerWay {
                 made.push_back(take_steps(job_.steps, layer, one));
                 changes += one;
             }
-            step_nanoseconds_.fetch_add(static_cast<std::uint64_t>(1e9 * stepping.seconds()),
-                                        std::memory_order_relaxed);
+            count(stepping, step_nanoseconds_);
             parts = made;
         }
-        totals_.add(parts, std::move(joins), changes);
-        std::function<void()> write = output_.prepare(parts);
+        const auto plane = static_cast<std::uint32_t>(parts.front().index - first_index_);
+        if (mine_.begin <= plane && plane < mine_.end)
+            totals_.add(parts, std::move(joins), changes);
+        std::function<void()> write = job_.scan ? window_(plane, parts) : output_.prepare(parts);
         if (!write)
             return {};
         return [this, write = std::move(write)] {
@@ -283,13 +332,32 @@ class LayerWay {
     [[nodiscard]] double step_seconds() const noexcept {
         return 1e-9 * static_cast<double>(step_nanoseconds_);
     }
+    [[nodiscard]] double scan_seconds() const noexcept {
+        return 1e-9 * static_cast<double>(scan_nanoseconds_);
+    }
     [[nodiscard]] double write_seconds() const noexcept { return write_seconds_; } ///< in order
 
   private:
+    static void count(const Stopwatch& watch, std::atomic<std::uint64_t>& nanoseconds) {
+        nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * watch.seconds()), std::memory_order_relaxed);
+    }
+
+    std::vector<Layer> vectors_of(const PlaneLayers& plane) {
+        const Stopwatch scanning;
+        PlaneVectors vectors = scan_plane(plane, *job_.scan);
+        count(scanning, scan_nanoseconds_);
+        totals_.add(plane.parts.front().index, vectors.figures);
+        return std::move(vectors.layers);
+    }
+
     const FileJob& job_;
+    std::uint64_t first_index_;
+    PlaneRange mine_;
     LayerTotals& totals_;
     JobOutput& output_;
+    LayerWindow window_;
     std::atomic<std::uint64_t> step_nanoseconds_{0};
+    std::atomic<std::uint64_t> scan_nanoseconds_{0};
     double write_seconds_ = 0;
 };
 
@@ -324,7 +392,7 @@ void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& 
         const auto other = from.get<FileResult::Seconds>();
         for (double FileResult::Seconds::*stage :
              {&FileResult::Seconds::read, &FileResult::Seconds::weld, &FileResult::Seconds::polygon,
-              &FileResult::Seconds::write})
+              &FileResult::Seconds::scan, &FileResult::Seconds::write})
             seconds.*stage = std::max(seconds.*stage, other.*stage);
         for (double SliceReport::*time :
              {&SliceReport::weld_seconds, &SliceReport::link_seconds, &SliceReport::slice_seconds})
@@ -353,6 +421,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         static_cast<void>(layer_format(job.format, job.output));
     if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
         check_list(listed->z);
+    if (job.scan)
+        check_strategy(*job.scan);
     result.engine = engine.name;
     result.threads = thread_count(execution);
 
@@ -361,36 +431,44 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     result.seconds.read = reading.seconds();
     const Plate& plate = feed.plate();
 
-    Plan plan;
+    Planes planes;
     Prepared prepared;
     in_agreement(processes, [&] {
         check_heights(plate);
         if (job.build_volume)
             check_build_volume(plate, *job.build_volume);
-        plan = plan_of(job, plate, execution);
+        planes = planes_of(job, plate, execution);
         if (Plate* const meshes = feed.meshes())
             prepared = prepare(*meshes, job, engine, execution);
     });
-    const std::vector<PlaneRange> division = divide(job, plan, feed, processes, execution);
+    const Plan& plan = planes.plan;
+    const std::vector<PlaneRange> division = divide(job, planes, feed, processes, execution);
     const PlaneRange mine = division[processes.process()];
     const PlaneRange all{division.front().begin, division.back().end};
+    std::vector<PlaneRange> sliced;
+    for (const PlaneRange& part : division)
+        sliced.push_back(with_neighbours(job, part, plan.layers.size()));
+    const PlaneRange sliced_here = sliced[processes.process()];
 
-    JobOutput output(job, file_info(plate, plan, all), mine, processes, feed.memory().of_output());
+    JobOutput output(job, file_info(job, plate, plan, all), {mine.begin - all.begin, mine.end - all.begin},
+                     processes, feed.memory().of_output());
     LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), plate.parts.size());
-    LayerWay way(job, totals, output);
+    LayerWay way(job, plan, sliced_here, mine, totals, output);
     double slice_seconds = 0; // without waiting for others
     std::uint64_t shares_of_all = 0;
     {
-        const std::vector<PlaneRange> shares = feed.bring(plan, division, execution);
+        const std::vector<PlaneRange> shares = feed.bring(plan, sliced, execution);
         shares_of_all = shares.size();
         in_agreement(processes, [&] {
             const Stopwatch slicing;
             for (std::size_t s = 0; s < shares.size(); ++s)
-                result.report += slice_plate_to(
-                    std::ref(way), feed.take(s, execution), part_of(plan, shares[s]),
-                    shares.size() > 1 || feed.meshes() == nullptr ? in_share(shares[s], mine, execution)
-                                                                  : execution,
-                    engine, feed.memory().points_in_flight(result.threads));
+                result.report +=
+                    slice_plate_to(std::ref(way), feed.take(s, execution), part_of(plan, shares[s]),
+                                   shares.size() > 1 || feed.meshes() == nullptr
+                                       ? in_share(shares[s], sliced_here, execution)
+                                       : execution,
+                                   engine, feed.memory().points_in_flight(result.threads),
+                                   job.scan ? SinkYield::much_more : SinkYield::like_layers);
             slice_seconds = slicing.seconds();
         });
     }
@@ -405,8 +483,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     result.mesh_volume_mm3 = feed.meshes() != nullptr ? prepared.volume_mm3 : feed.volume_mm3();
     result.inspection = prepared.inspection;
     result.repairs = std::move(prepared.repairs);
-    result.planned_layers = plan.layers.size();
-    result.shard = all;
+    result.planned_layers = planes.written.size();
+    result.shard = {all.begin - planes.written.begin, all.end - planes.written.begin};
     result.bottom = plan.layers[all.begin].bottom;
     result.top = plan.layers[all.end - 1].top;
     processes.sum(std::span(&shares_of_all, 1));
@@ -415,6 +493,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         result.seconds.read = feed.figures().read_seconds;
     result.seconds.weld = prepared.seconds;
     result.seconds.polygon = way.step_seconds();
+    result.seconds.scan = way.scan_seconds();
     result.seconds.write = way.write_seconds();
 
     ProcessFigures figures = feed.figures();

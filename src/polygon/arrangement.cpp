@@ -58,72 +58,113 @@ Arrangement sides_of(std::span<const WoundRing> rings, const ClippingGrid& grid)
     return arrangement;
 }
 
-/// Which ends a side is cut at that passes by.
-enum class Reach : std::uint8_t {
-    on_it,     ///< those that lie on it
-    beside_it, ///< also those in whose squares of the grid it comes: then nothing crosses so close to an end
-};
+// Snap rounding (Hobby 1999; Guibas and Marimont 1998). The plane is tiled by unit squares around the places
+// of the grid, each with its lower and its left border. Squares in which sides end or cross are hot, and each
+// side is drawn to the places of all hot squares that it comes into. Sides may come to lie upon one another
+// then, but never cross: outside of hot squares they did not, and each square shrinks to its place. That is
+// so for the sides as they are given, all at once, and decided exactly: sides that are bent first and looked
+// at again may drift from place to place.
 
-/// Whether the side comes into the unit square around p, up to rounding, between its own ends.
-bool passes_by(const Segment& s, const Point2& p) noexcept {
-    const double dx = s.hi.x - s.lo.x;
-    const double dy = s.hi.y - s.lo.y;
-    const double along = (p.x - s.lo.x) * dx + (p.y - s.lo.y) * dy;
-    const double across = (p.y - s.lo.y) * dx - (p.x - s.lo.x) * dy;
-    return 2 * std::abs(across) < std::abs(dx) + std::abs(dy) && along > 0 && along < dx * dx + dy * dy;
+__extension__ using Wide = __int128;
+
+/// A difference of places, at most 2^38.
+std::int64_t whole(double number) noexcept {
+    return static_cast<std::int64_t>(number);
 }
 
-/// The ends of sides, sorted into cells.
-class Ends {
+struct Vector {
+    std::int64_t x;
+    std::int64_t y;
+};
+
+Vector from_to(const Point2& a, const Point2& b) noexcept {
+    return {whole(b.x - a.x), whole(b.y - a.y)};
+}
+
+Wide cross(const Vector& a, const Vector& b) noexcept {
+    return Wide{a.x} * b.y - Wide{a.y} * b.x;
+}
+
+/// The place in whose square two sides cross properly.
+Point2 crossing_place(const Segment& a, const Segment& b) noexcept {
+    const Vector u = from_to(a.lo, a.hi);
+    const Vector v = from_to(b.lo, b.hi);
+    Wide of = cross(u, v);
+    Wide share = cross(from_to(a.lo, b.lo), v); // of u, up to the crossing
+    if (of < 0) {
+        of = -of;
+        share = -share;
+    }
+    assert(of > 0 && share > 0 && share < of);
+    const auto nearest = [&](std::int64_t way) { // halves upwards
+        const Wide twice = 2 * share * way + of;
+        const Wide floor = twice / (2 * of) - (twice % (2 * of) < 0 ? 1 : 0);
+        return static_cast<double>(static_cast<std::int64_t>(floor));
+    };
+    return {a.lo.x + nearest(u.x), a.lo.y + nearest(u.y)};
+}
+
+/// Whether a side comes into the square of a place that is not one of its ends.
+bool comes_into(const Segment& s, const Point2& place) noexcept {
+    const auto [low, high] = std::minmax(s.lo.y, s.hi.y);
+    if (place.x < s.lo.x || place.x > s.hi.x || place.y < low || place.y > high)
+        return false;
+    const Vector way = from_to(s.lo, s.hi);
+    const Wide twice = 2 * cross(way, from_to(s.lo, place));
+    const Wide reach = Wide{way.x} + (way.y < 0 ? -way.y : way.y);
+    // The corners at either end of the borders that belong to the square do not, but for the one between
+    // them.
+    return -reach < twice && (twice < reach || (twice == reach && way.y < 0));
+}
+
+/// Places, sorted into cells.
+class Places {
   public:
-    explicit Ends(std::span<const Side> sides) : ends_(ends_of(sides)), cells_(cells_for(ends_)) {
-        const NumbersBelow numbers{static_cast<std::uint32_t>(ends_.size())};
+    explicit Places(std::vector<Point2> places)
+        : places_(distinct(std::move(places))), cells_(cells_for(places_)) {
+        const NumbersBelow numbers{static_cast<std::uint32_t>(places_.size())};
         [[maybe_unused]] const bool sorted =
-            cells_.sort(numbers, ends_.size(),
-                        [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(ends_[i])); });
-        assert(sorted); // each end is in one cell
+            cells_.sort(numbers, places_.size(),
+                        [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(places_[i])); });
+        assert(sorted); // each place is in one cell
     }
 
-    /// Calls visit(end) for the ends within the reach of the segment, but for its own.
-    template <class Visit>
-    void for_ends_on(const Segment& s, Reach reach, const Visit& visit) const {
+    /// Calls visit(place) for those, but for the ends of the segment, for which `on(segment, place)`; they
+    /// lie within a unit of it.
+    template <class On, class Visit>
+    void for_places_on(const Segment& s, const On& on, const Visit& visit) const {
         cells_.for_cells_along(s, [&](std::size_t cell) {
             for (const std::uint32_t i : cells_.in_cell(cell)) {
-                const Point2& p = ends_[i];
-                if (s.lo < p && p < s.hi && (reach == Reach::on_it ? side(s, p) == 0 : passes_by(s, p)))
-                    visit(p);
+                const Point2& place = places_[i];
+                if (place != s.lo && place != s.hi && on(s, place))
+                    visit(place);
             }
         });
     }
 
   private:
-    static std::vector<Point2> ends_of(std::span<const Side> sides) {
-        std::vector<Point2> ends;
-        ends.reserve(2 * sides.size());
-        for (const Side& side : sides)
-            ends.insert(ends.end(), {side.line.lo, side.line.hi});
-        std::sort(ends.begin(), ends.end());
-        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-        return ends;
+    static std::vector<Point2> distinct(std::vector<Point2> places) {
+        std::sort(places.begin(), places.end());
+        places.erase(std::unique(places.begin(), places.end()), places.end());
+        return places;
     }
 
     /// Cells so large that a segment's margin covers the unit squares into which it comes.
-    static Grid cells_for(std::span<const Point2> ends) {
-        const Box2 box = box_of(ends);
-        return {box, std::max(1 / Grid::margin, Grid::cell_size(box, static_cast<double>(ends.size()), 0))};
+    static Grid cells_for(std::span<const Point2> places) {
+        const Box2 box = box_of(places);
+        return {box, std::max(1 / Grid::margin, Grid::cell_size(box, static_cast<double>(places.size()), 0))};
     }
 
-    std::vector<Point2> ends_;
+    std::vector<Point2> places_;
     Grid cells_;
 };
 
-struct Cut {
-    std::size_t side;
-    Point2 at;
-};
+void add_ends(std::span<const Side> sides, std::vector<Point2>& places) {
+    for (const Side& side : sides)
+        places.insert(places.end(), {side.line.lo, side.line.hi});
+}
 
-/// Where sides cross, in the nearest place of the grid.
-void add_crossings(const std::vector<Side>& sides, std::vector<Cut>& cuts) {
+void add_crossings(std::span<const Side> sides, std::vector<Point2>& places) {
     Layer layer; // every side an open chain
     std::vector<Point2> points;
     for (const Side& side : sides) {
@@ -131,55 +172,44 @@ void add_crossings(const std::vector<Side>& sides, std::vector<Cut>& cuts) {
         layer.offsets.push_back(points.size());
     }
     layer.points = PointArray(std::move(points));
-    const auto add = [&](std::size_t i, const Point2& at) {
-        if (at != sides[i].line.lo && at != sides[i].line.hi)
-            cuts.push_back({i, at});
-    };
-    for (const Crossing& crossing : find_crossings(layer, std::numeric_limits<std::size_t>::max()).first) {
-        const Point2 at{std::nearbyint(crossing.at.x) + 0.0, std::nearbyint(crossing.at.y) + 0.0};
-        add(crossing.contour_a, at);
-        add(crossing.contour_b, at);
-    }
+    for (const Crossing& crossing : find_crossings(layer, std::numeric_limits<std::size_t>::max()).first)
+        places.push_back(crossing_place(sides[crossing.contour_a].line, sides[crossing.contour_b].line));
 }
 
-/// Cuts all sides where they cross others, in the nearest place of the grid, and where others end within
-/// their reach. False when there was nothing to cut.
-bool cut(Arrangement& arrangement, Reach reach) {
+/// Cuts the sides at those of the places for which `on(segment, place)`. Whether there was anything to cut.
+template <class On>
+bool cut(Arrangement& arrangement, const Places& places, const On& on) {
     std::vector<Side>& sides = arrangement.sides;
-    std::vector<Cut> cuts;
-    const Ends ends(sides);
-    for (std::size_t i = 0; i < sides.size(); ++i)
-        ends.for_ends_on(sides[i].line, reach, [&](const Point2& p) { cuts.push_back({i, p}); });
-    // Sides that are drawn to an end cross elsewhere then, if at all.
-    if (reach == Reach::on_it || cuts.empty())
-        add_crossings(sides, cuts);
-    if (cuts.empty())
-        return false;
-    const auto along = [&](const Cut& c) {
-        const Segment& s = sides[c.side].line;
-        return (c.at.x - s.lo.x) * (s.hi.x - s.lo.x) + (c.at.y - s.lo.y) * (s.hi.y - s.lo.y);
-    };
-    std::sort(cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
-        if (a.side != b.side)
-            return a.side < b.side;
-        return std::pair(along(a), a.at) < std::pair(along(b), b.at);
-    });
-    const auto add_piece = [&sides](const Point2& a, const Point2& b, const SideCount& step) {
+    std::vector<Side> pieces;
+    std::vector<Point2> cuts;
+    const auto add_piece = [&](const Point2& a, const Point2& b, const SideCount& step) {
+        assert(a != b);
         if (a < b)
-            sides.push_back({{a, b}, step});
-        else if (b < a)
-            sides.push_back({{b, a}, -1 * step}); // bent back by rounding
+            pieces.push_back({{a, b}, step});
+        else
+            pieces.push_back({{b, a}, -1 * step}); // turned upright
     };
-    for (std::size_t begin = 0, end = 0; begin < cuts.size(); begin = end) {
-        const Side whole = sides[cuts[begin].side];
-        Point2 from = whole.line.lo;
-        for (end = begin; end < cuts.size() && cuts[end].side == cuts[begin].side; ++end) {
-            add_piece(from, cuts[end].at, whole.step);
-            from = cuts[end].at;
+    for (Side& side : sides) {
+        cuts.clear();
+        places.for_places_on(side.line, on, [&](const Point2& place) { cuts.push_back(place); });
+        if (cuts.empty())
+            continue;
+        // In the order in which it comes into their squares.
+        const bool falls = side.line.hi.y < side.line.lo.y;
+        std::sort(cuts.begin(), cuts.end(), [&](const Point2& a, const Point2& b) {
+            return a.x != b.x ? a.x < b.x : falls ? a.y > b.y : a.y < b.y;
+        });
+        Point2 from = side.line.lo;
+        for (const Point2& place : cuts) {
+            add_piece(from, place, side.step);
+            from = place;
         }
-        add_piece(from, whole.line.hi, whole.step);
-        sides[cuts[begin].side].step = {};
+        add_piece(from, side.line.hi, side.step);
+        side.step = {};
     }
+    if (pieces.empty())
+        return false;
+    sides.insert(sides.end(), pieces.begin(), pieces.end());
     merge(arrangement);
     return true;
 }
@@ -317,13 +347,19 @@ std::vector<Ring> with_corners(std::vector<Ring> rings, std::span<const WoundRin
 
 Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, const ClippingGrid& grid) {
     Arrangement arrangement = sides_of(rings, grid);
-    // Rounding the places where sides cross bends them, so that they may cross others: each round has far
-    // fewer. Sides that run side by side would cross again a unit further, round after round, if they were
-    // not drawn to the ends that they pass by.
-    constexpr int rounds = 30;
-    Reach reach = Reach::on_it;
-    for (int round = 0; round < rounds && !arrangement.sides.empty() && cut(arrangement, reach); ++round)
-        reach = Reach::beside_it;
+    if (!arrangement.sides.empty()) {
+        std::vector<Point2> hot;
+        add_ends(arrangement.sides, hot);
+        add_crossings(arrangement.sides, hot);
+        if (cut(arrangement, Places(std::move(hot)), comes_into) && !arrangement.sides.empty()) {
+            // What was bent may run through ends that it did not come near to.
+            std::vector<Point2> ends;
+            add_ends(arrangement.sides, ends);
+            cut(arrangement, Places(std::move(ends)), [](const Segment& s, const Point2& place) {
+                return s.lo < place && place < s.hi && side(s, place) == 0;
+            });
+        }
+    }
     arrangement.around = around;
     wind(arrangement.sides, {around, 0});
     return arrangement;

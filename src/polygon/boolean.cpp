@@ -98,7 +98,7 @@ Layer combine(const Layer& first, const Layer& second, BooleanOperation operatio
     rings.insert(rings.end(), shares.second.begin(), shares.second.end());
     turns.resize(rings.size(), {0, 1});
     const Layer layer = with_head_and_chains_of(a, rings);
-    return normal_form(Overlay(layer, std::move(turns)).filled(Material(operation)).layer);
+    return normal_form(Overlay(layer, std::move(turns)).filled(Material(operation)).filled.layer);
 }
 
 } // namespace lamella

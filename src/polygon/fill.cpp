@@ -28,7 +28,7 @@ Filled fill(const Layer& layer, FillRule rule) {
     const Overlay overlay(layer);
     if (overlay.clean())
         return {.layer = layer};
-    return overlay.filled(Material(rule));
+    return overlay.filled(Material(rule)).filled;
 }
 
 bool winds_once(std::span<const Layer> parts) {

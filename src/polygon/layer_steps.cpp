@@ -1,7 +1,6 @@
 #include "lamella/polygon/layer_steps.hpp"
 
 #include "lamella/contour/measure.hpp"
-#include "lamella/polygon/offset.hpp"
 #include "lamella/polygon/selection.hpp"
 #include "lamella/polygon/simplify.hpp"
 
@@ -56,7 +55,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
             layer = std::move(filled.layer);
     }
     if (steps.offset_mm != 0 && layer.rings > 0) {
-        layer = offset(layer, steps.offset_mm, &changes.rings_vanished);
+        layer = offset(layer, steps.offset_mm, steps.offset_corners, &changes.rings_vanished);
         changed = true;
     }
     const auto select = [&](Layer selected) {

@@ -1,96 +1,183 @@
 #include "lamella/polygon/offset.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/nesting.hpp"
 
 #include "polygon/arrangement.hpp"
-#include "polygon/clipping.hpp"
+#include "polygon/box2.hpp"
+#include "polygon/moved_rings.hpp"
+#include "polygon/overlay.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lamella {
 
 namespace {
 
-using Rings = std::vector<std::span<const Point2>>;
-
-/// Whether nothing is left of these rings of one body when it is shrunk by so much.
-bool vanishes(const Rings& body, double by, const ClippingGrid& grid) {
-    // All of it lies within `by` of its sides then: that is a strip along each side and a sector at each
-    // corner.
-    double area = 0;
-    double reach = 0;
-    for (const std::span<const Point2> ring : body) {
-        area += ring_area(ring);
-        reach += contour_length(ring, true) * by + static_cast<double>(ring.size()) * 4 * by * by;
-    }
-    return area <= reach && grown(body, -by, grid).empty();
+void check(std::span<const double> distances, const OffsetCorners& corners) {
+    for (const double distance : distances)
+        if (!std::isfinite(distance))
+            throw Error(ErrorKind::usage, "contours can be moved by a finite distance only");
+    if (!(corners.mitre_limit >= 1))
+        throw Error(ErrorKind::usage, "the limit of mitres is at least 1");
+    if (!(corners.arc_tolerance_mm > 0))
+        throw Error(ErrorKind::usage, "arcs are made of chords within a tolerance above 0");
 }
 
-/// How many of these boundaries of material are gone when their bodies are moved by `distance`.
-std::uint64_t vanished_rings(const std::vector<Ring>& boundaries, double distance, const ClippingGrid& grid) {
-    LayerBuilder builder;
-    for (const Ring& ring : boundaries) {
-        for (const Point2& p : ring)
-            builder.add_point(p);
-        builder.end_contour(true);
-    }
-    const Layer layer = builder.finish(0, 0, 0, 0);
-    std::uint64_t count = 0;
-    for (const Polygon& body : polygons(nesting(layer))) {
-        Rings rings{layer.contour(body.outer)};
-        for (const std::uint32_t hole : body.holes) {
-            rings.push_back(layer.contour(hole));
-            Ring inside(rings.back().rbegin(), rings.back().rend());
-            if (distance > 0 && vanishes({inside}, distance, grid))
-                ++count;
+/// The boundaries of a layer's material, without walls, and what they bound.
+class Boundaries {
+  public:
+    explicit Boundaries(const Layer& layer) : layer_(layer) {
+        const Overlay overlay(layer);
+        if (overlay.clean()) {
+            polygons_ = polygons(overlay.nest());
+            return;
         }
-        if (distance < 0 && vanishes(rings, -distance, grid))
-            count += rings.size();
+        layer_ = overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
+        polygons_ = polygons(nesting(layer_));
     }
-    return count;
-}
+
+    [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
+    [[nodiscard]] Layer moved(double distance, const OffsetCorners& corners, std::uint64_t* vanished) const {
+        const std::vector<bool> gone = surely_gone(distance, corners);
+        const Layer rings = moved_rings(layer_, distance, corners, gone);
+        Overlaid overlaid = Overlay(rings).filled(Material(FillRule::positive), Walls::dissolved);
+        if (vanished != nullptr)
+            *vanished = vanished_rings(rings, overlaid.fates, gone, distance);
+        return with_chains(std::move(overlaid.filled.layer));
+    }
+
+  private:
+    /// Rings of bodies, or holes, so narrow that their sides sweep all of them.
+    [[nodiscard]] std::vector<bool> surely_gone(double distance, const OffsetCorners& corners) const {
+        std::vector<bool> gone(layer_.rings, false);
+        const double swept = 2 * surely_swept(distance, corners);
+        const auto narrow = [&](std::uint32_t ring) {
+            const Box2 box = box_of(layer_.contour(ring));
+            return std::min(box.width(), box.height()) <= swept;
+        };
+        for (const Polygon& body : polygons_) {
+            if (distance < 0 && narrow(body.outer)) {
+                gone[body.outer] = true;
+                for (const std::uint32_t hole : body.holes)
+                    gone[hole] = true;
+            }
+            for (const std::uint32_t hole : body.holes)
+                if (distance > 0 && narrow(hole))
+                    gone[hole] = true;
+        }
+        return gone;
+    }
+
+    /// How many of the boundaries are gone.
+    [[nodiscard]] std::uint64_t vanished_rings(const Layer& moved, std::span<const Fate> fates,
+                                               const std::vector<bool>& gone, double distance) const {
+        std::uint64_t count = 0;
+        for (const Polygon& body : polygons_) {
+            std::vector<std::uint32_t> rings{body.outer};
+            rings.insert(rings.end(), body.holes.begin(), body.holes.end());
+            if (distance < 0 && (gone[body.outer] || vanishes(rings, false, moved, fates, -distance)))
+                count += rings.size();
+            for (const std::uint32_t hole : body.holes)
+                if (distance > 0 && (gone[hole] || vanishes({&hole, 1}, true, moved, fates, distance)))
+                    ++count;
+        }
+        return count;
+    }
+
+    /// Whether nothing is left of these rings of one body, or of a hole, which is the inside of one, when it
+    /// is shrunk by so much.
+    [[nodiscard]] bool vanishes(std::span<const std::uint32_t> body, bool hole, const Layer& moved,
+                                std::span<const Fate> fates, double by) const {
+        if (fates[body.front()] == Fate::kept)
+            return false;
+        // All of it lies within `by` of its sides then: that is a strip along each side and a sector at each
+        // corner.
+        double area = 0;
+        double reach = 0;
+        std::vector<Ring> left;
+        for (const std::uint32_t i : body) {
+            const std::span<const Point2> ring = layer_.contour(i);
+            area += hole ? -ring_area(ring) : ring_area(ring);
+            reach += contour_length(ring, true) * by + static_cast<double>(ring.size()) * 4 * by * by;
+            left.emplace_back(moved.contour(i).begin(), moved.contour(i).end());
+            if (hole)
+                std::reverse(left.back().begin(), left.back().end());
+        }
+        if (area > reach)
+            return false;
+        const std::vector<std::span<const Point2>> rings(left.begin(), left.end());
+        return filled(rings, FillRule::positive, ClippingGrid(moved.points.span())).empty();
+    }
+
+    /// In normal form.
+    [[nodiscard]] Layer with_chains(Layer layer) const {
+        if (layer_.open_chains() == 0)
+            return normal_form(std::move(layer));
+        LayerBuilder builder;
+        const auto add = [&](const Layer& from, std::size_t first, std::size_t last, bool closed) {
+            for (std::size_t i = first; i < last; ++i) {
+                for (const Point2& p : from.contour(i))
+                    builder.add_point(p);
+                builder.end_contour(closed);
+            }
+        };
+        add(layer, 0, layer.rings, true);
+        add(layer_, layer_.rings, layer_.contours(), false);
+        return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+    }
+
+    Layer layer_;
+    std::vector<Polygon> polygons_;
+};
 
 } // namespace
 
-Layer offset(const Layer& layer, double distance, std::uint64_t* vanished) {
-    if (!std::isfinite(distance))
-        throw Error(ErrorKind::usage, "contours can be moved by a finite distance only");
+std::string_view offset_corner_name(OffsetCorner corner) noexcept {
+    switch (corner) {
+    case OffsetCorner::bevel:
+        return "bevel";
+    case OffsetCorner::round:
+        return "round";
+    default:
+        return "mitre";
+    }
+}
+
+Layer offset(const Layer& layer, double distance, const OffsetCorners& corners, std::uint64_t* vanished) {
+    check({&distance, 1}, corners);
     if (vanished != nullptr)
         *vanished = 0;
     if (distance == 0 || layer.rings == 0)
         return layer;
-    Rings rings;
-    for (std::size_t i = 0; i < layer.rings; ++i)
-        rings.push_back(layer.contour(i));
-    const std::size_t points = layer.offsets[layer.rings];
-    const ClippingGrid grid(layer.points.span().first(points), 2 * std::abs(distance));
-    // The library moves every ring by itself. It has to see boundaries of material: where rings overlap, and
-    // where a hole runs along its body, no wall must grow out of nothing.
-    const std::vector<Ring> united = filled(rings, FillRule::positive, grid);
-    if (vanished != nullptr)
-        *vanished = vanished_rings(united, distance, grid);
-    rings.assign(united.begin(), united.end());
-    // What the library gives is right as an area, but its rings may lie upon one another along sides.
-    const std::vector<Ring> moved = grown(rings, distance, grid);
-    rings.assign(moved.begin(), moved.end());
-    LayerBuilder builder;
-    for (const Ring& ring : filled(rings, FillRule::positive, grid)) {
-        for (const Point2& p : ring)
-            builder.add_point(p);
-        builder.end_contour(true);
+    return Boundaries(layer).moved(distance, corners, vanished);
+}
+
+std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
+                           const OffsetCorners& corners) {
+    check(distances, corners);
+    std::vector<Layer> result;
+    std::optional<Boundaries> boundaries;
+    for (const double distance : distances) {
+        if (distance == 0 || layer.rings == 0) {
+            result.push_back(layer);
+            continue;
+        }
+        if (!boundaries)
+            boundaries.emplace(layer);
+        result.push_back(boundaries->moved(distance, corners, nullptr));
     }
-    for (std::size_t i = layer.rings; i < layer.contours(); ++i) {
-        for (const Point2& p : layer.contour(i))
-            builder.add_point(p);
-        builder.end_contour(false);
-    }
-    return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+    return result;
 }
 
 } // namespace lamella

@@ -16,8 +16,6 @@ namespace lamella {
 
 namespace {
 
-enum class Fate : std::uint8_t { kept, reversed, dropped, united };
-
 /// Of a ring with material on one side or on both, or on none.
 Fate fate(bool outside, bool inside, bool counter_clockwise) noexcept {
     if (outside == inside)
@@ -31,10 +29,10 @@ std::int64_t left_of(Fate fate) noexcept {
 
 class Filler {
   public:
-    Filler(const Layer& layer, std::span<const Windings> turns, const Material& material,
+    Filler(const Layer& layer, std::span<const Windings> turns, const Material& material, Walls walls,
            const Contacts& contacts, const WoundNesting& nest)
-        : layer_(layer), turns_(turns), material_(material), nest_(nest), groups_(contacts.groups),
-          fates_(layer.rings) {
+        : layer_(layer), turns_(turns), material_(material), walls_(walls), nest_(nest),
+          groups_(contacts.groups), fates_(layer.rings) {
         assert(contacts.group.size() == layer.rings && nest.nesting.order.size() == layer.rings);
         for (const std::uint32_t ring : nest.nesting.order) {
             const std::uint32_t group = contacts.group[ring];
@@ -47,16 +45,21 @@ class Filler {
         }
     }
 
-    Filled run() && {
+    Overlaid run() && {
         for (const std::vector<std::uint32_t>& group : groups_)
             fill_group(group);
+        // Rounding draws what a group becomes over rings of others that are closer to it than a unit of the
+        // grid.
+        const bool others = result_.groups_united > 1 || count(Fate::kept) + count(Fate::reversed) > 0;
+        if (!united_.empty() && others && has_crossings(put_together()))
+            unite_all();
         result_.rings_dropped = count(Fate::dropped);
         result_.rings_reversed = count(Fate::reversed);
         if (!result_.changed())
             result_.layer = layer_;
         else
             result_.layer = put_together();
-        return std::move(result_);
+        return {std::move(result_), std::move(fates_)};
     }
 
   private:
@@ -77,13 +80,11 @@ class Filler {
             return;
         // Of the group itself nothing lies below the left end of its first ring.
         const Windings around = nest_.below[group.front()];
-        std::vector<WoundRing> rings;
         std::vector<std::span<const Point2>> points;
         Windings most;
         for (const std::uint32_t ring : group) {
             fates_[ring] = fate_by_left_end(ring);
             points.push_back(layer_.contour(ring));
-            rings.push_back({points.back(), turns_[ring], left_of(fates_[ring])});
             most += turns_[ring];
         }
         if (material_.alike(around, most)) {
@@ -91,12 +92,25 @@ class Filler {
                 fates_[ring] = Fate::dropped;
             return;
         }
+        const std::vector<WoundRing> rings = wound(group);
         if (!grid_)
             grid_.emplace(layer_.points.span().first(layer_.offsets[layer_.rings]));
         const bool crossed = has_crossings(layer_of(points));
         const Arrangement arrangement = arranged(rings, around, *grid_);
         if (!crossed && stay(group, arrangement, most))
             return;
+        unite(group, rings, arrangement);
+    }
+
+    [[nodiscard]] std::vector<WoundRing> wound(std::span<const std::uint32_t> group) const {
+        std::vector<WoundRing> rings;
+        for (const std::uint32_t ring : group)
+            rings.push_back({layer_.contour(ring), turns_[ring], left_of(fates_[ring])});
+        return rings;
+    }
+
+    void unite(std::span<const std::uint32_t> group, std::span<const WoundRing> rings,
+               const Arrangement& arrangement) {
         for (const std::uint32_t ring : group)
             fates_[ring] = Fate::united;
         ++result_.groups_united;
@@ -105,9 +119,19 @@ class Filler {
             united_.push_back(std::move(ring));
     }
 
+    /// As if all rings were one group in contact.
+    void unite_all() {
+        std::vector<std::uint32_t> all = nest_.nesting.order;
+        std::erase_if(all, [this](std::uint32_t ring) { return flat(ring); });
+        united_.clear();
+        result_ = {};
+        const std::vector<WoundRing> rings = wound(all);
+        unite(all, rings, arranged(rings, {}, *grid_));
+    }
+
     /// Whether rings that do not cross can stay or go each as a whole, and which.
     bool stay(const std::vector<std::uint32_t>& group, const Arrangement& arrangement, const Windings& most) {
-        if (most.first > 0 && most.second > 0)
+        if (walls_ == Walls::dissolved || (most.first > 0 && most.second > 0))
             return !arrangement.walls && arrangement.bounded_by_rest(material_);
         if (!arrangement.bounded_by_all(material_))
             return arrangement.bounded_by_rest(material_);
@@ -139,6 +163,7 @@ class Filler {
     const Layer& layer_;
     std::span<const Windings> turns_;
     const Material& material_;
+    Walls walls_;
     const WoundNesting& nest_;
     std::vector<std::vector<std::uint32_t>> groups_;
     std::vector<Fate> fates_;
@@ -171,8 +196,8 @@ Box2 Overlay::box() const noexcept {
     return box;
 }
 
-Filled Overlay::filled(const Material& material) const {
-    return Filler(layer_, turns_, material, contacts_, nest_).run();
+Overlaid Overlay::filled(const Material& material, Walls walls) const {
+    return Filler(layer_, turns_, material, walls, contacts_, nest_).run();
 }
 
 } // namespace lamella

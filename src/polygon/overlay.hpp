@@ -18,6 +18,22 @@
 
 namespace lamella {
 
+/// What becomes of a ring: it stays, is turned round, goes, or other rings take its place and that of those
+/// in contact with it.
+enum class Fate : std::uint8_t { kept, reversed, dropped, united };
+
+/// Whether boundaries of material that run along one another, with nothing between them, can stay.
+enum class Walls : std::uint8_t {
+    left,      ///< those of rings of one operand
+    dissolved, ///< none
+};
+
+/// The boundary of the material, and the fates of the rings that were there.
+struct Overlaid {
+    Filled filled;
+    std::vector<Fate> fates;
+};
+
 /// What a layer's rings have to do with one another.
 class Overlay {
   public:
@@ -32,7 +48,9 @@ class Overlay {
     [[nodiscard]] Box2 box() const noexcept;
 
     /// The boundary of the material, and the open chains of the layer; see `fill`.
-    [[nodiscard]] Filled filled(const Material& material) const;
+    [[nodiscard]] Overlaid filled(const Material& material, Walls walls = Walls::left) const;
+    /// By both operands together.
+    [[nodiscard]] const Nesting& nest() const noexcept { return nest_.nesting; }
 
   private:
     const Layer& layer_;

@@ -59,6 +59,15 @@ bool is_common_layer(std::string_view bytes) {
 
 LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
                             const Execution& execution) {
+    const auto no_exposures = [](std::string_view) {
+        return std::nullopt;
+    };
+    return read_common_layer(bytes, name, no_exposures, limits, execution);
+}
+
+LayerFile read_common_layer(std::string_view bytes, const std::string& name,
+                            const ExposureOfLabel& exposure_of, ReadLimits& limits,
+                            const Execution& execution) {
     const CommonLayerHeader header = read_common_layer_header(bytes, name);
     LayerFile file;
     file.path = name;
@@ -81,6 +90,8 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, Rea
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
     geometry.say(file.warnings);
     geometry.number_parts(header, file);
+    for (LayerPart& part : file.parts)
+        part.exposure = exposure_of(part.label);
     make_layers(geometry.layers(), header, bytes.size(), file, limits);
     return file;
 }

@@ -5,6 +5,8 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,6 +19,12 @@ class ReadLimits;
 
 /// Throws Error{input} naming byte or line.
 [[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                                          const Execution& execution);
+
+/// The same for a file of scan vectors: `exposure_of` tells what the part of a label is.
+using ExposureOfLabel = std::function<std::optional<Exposure>(std::string_view label)>;
+[[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name,
+                                          const ExposureOfLabel& exposure_of, ReadLimits& limits,
                                           const Execution& execution);
 
 } // namespace lamella

@@ -51,7 +51,10 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
         for (; next < end; ++next)
             hatches[part].push_back({raw.hatches[next].x + 0.0, raw.hatches[next].y + 0.0});
     for (std::size_t part = 0; part < builders.size(); ++part) {
-        Layer& layer = file.parts[part].layers.emplace_back(builders[part].finish(index, z, bottom, top));
+        LayerPart& to = file.parts[part];
+        Layer& layer =
+            to.layers.emplace_back(to.exposure ? builders[part].finish_as_added(index, z, bottom, top)
+                                               : builders[part].finish(index, z, bottom, top));
         if (!hatches[part].empty())
             layer.hatches = PointArray(std::move(hatches[part]));
     }

@@ -66,8 +66,8 @@ struct RawLayer {
 /// What a layer takes besides itself, even where it is empty: the list of offsets, and what owns the points.
 inline constexpr std::uint64_t of_empty_layer = 128;
 
-/// Appends a layer in normal form to each part; `raw` loses its contours and hatches, the room of which was
-/// counted: these of the layers take their place.
+/// Appends a layer to each part, in normal form unless the part has an exposure; `raw` loses its contours and
+/// hatches, the room of which was counted: these of the layers take their place.
 void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
                ReadLimits& limits);
 

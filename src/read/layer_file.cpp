@@ -6,11 +6,13 @@
 #include "container/text_place.hpp"
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
+#include "read/ilt.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/npz.hpp"
 #include "read/read_limits.hpp"
 #include "read/slc.hpp"
 #include "read/slices_3mf.hpp"
+#include "read/toolpath_3mf.hpp"
 
 #include <fmt/format.h>
 
@@ -27,6 +29,10 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
         const OpcPackage package(source, options.max_memory);
         if (is_npz(package.zip()))
             return read_npz(package.zip(), limits, execution);
+        if (is_ilt(package.zip()))
+            return read_ilt(package.zip(), limits, execution);
+        if (is_toolpath_3mf(package))
+            return read_toolpath_3mf(package, limits, execution);
         if (is_3mf(package.zip()))
             return read_slices_3mf(package, limits, execution);
         if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = options.max_memory});
@@ -34,7 +40,7 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
             throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, other->advice));
         throw Error(ErrorKind::input,
                     fmt::format("{}: found a zip archive that holds no layers; of archives, 3MF with slice "
-                                "stacks and NumPy arrays are read",
+                                "stacks or toolpaths, NumPy arrays and ILT are read",
                                 source.name));
     }
     if (const MeshFormatRow* const format = layer_format_of(source))
@@ -44,11 +50,11 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                     fmt::format("{}: found {}; of the formats that go by this name, that of 3D Systems is "
                                 "read (-SLCVER)",
                                 source.name, other));
-    throw Error(
-        ErrorKind::input,
-        fmt::format("{}: found '{}' at its beginning; a slice file is expected: {}, 3MF with slice stacks "
-                    "or NumPy arrays",
-                    source.name, printable(bytes.substr(0, 16), 48), layer_marks()));
+    throw Error(ErrorKind::input,
+                fmt::format("{}: found '{}' at its beginning; a slice file is expected: {}, 3MF with slice "
+                            "stacks or toolpaths, "
+                            "NumPy arrays or ILT",
+                            source.name, printable(bytes.substr(0, 16), 48), layer_marks()));
 }
 
 LayerFile read_opened(const ByteSource& opened, const LayerReadOptions& options, ReadLimits& limits,

@@ -6,11 +6,13 @@
 #include "core/lower_case.hpp"
 #include "read/amf.hpp"
 #include "read/common_layer.hpp"
+#include "read/ilt.hpp"
 #include "read/layered_svg.hpp"
 #include "read/layers_json.hpp"
 #include "read/npz.hpp"
 #include "read/obj.hpp"
 #include "read/off.hpp"
+#include "read/ovf.hpp"
 #include "read/ply.hpp"
 #include "read/slc.hpp"
 #include "read/stl.hpp"
@@ -41,6 +43,10 @@ bool is_any_stl(const ByteSource& source, const MeshReadOptions&) {
 bool holds(const ZipReader& zip, std::string_view ending) {
     return std::any_of(zip.entries().begin(), zip.entries().end(),
                        [&](const ZipEntry& entry) { return lower_case(entry.name).ends_with(ending); });
+}
+
+bool is_archive_of_scan_vectors(const ByteSource& source, const MeshReadOptions& options) {
+    return is_zip(source.text()) && is_ilt(ZipReader(source, options.max_memory));
 }
 
 /// What may be a 3MF package.
@@ -92,11 +98,27 @@ constexpr std::array rows = {
                   .advice = "is a slice file (NumPy arrays): it holds layers already, no mesh; view, convert "
                             "or verify it as it is",
                   .layers = true},
+    MeshFormatRow{.extension = "ilt",
+                  .recognises = is_archive_of_scan_vectors,
+                  .goes_by_name = true,
+                  .advice =
+                      "holds scan vectors (ILT): layers already, no mesh; view, convert or verify it as "
+                      "it is",
+                  .layers = true},
     MeshFormatRow{.extension = "amf", .recognises = is_plain_or_packed_amf, .read = read_amf},
     MeshFormatRow{.recognises = is_archive_of_pictures,
                   .advice = "holds pictures of layers, as for a resin printer: it is sliced already, and "
                             "neither a mesh nor contours can be read from it"},
     MeshFormatRow{.extension = "3mf", .recognises = by_text<is_zip>, .read = read_three_mf},
+    MeshFormatRow{.extension = "ovf",
+                  .recognises = by_text<is_ovf>,
+                  .goes_by_name = true,
+                  .advice =
+                      "holds scan vectors (Open Vector Format): layers already, no mesh; view, convert or "
+                      "verify it as it is",
+                  .layers = true,
+                  .read_layers = read_ovf,
+                  .layer_mark = "Open Vector Format (LVF!)"},
     // Texts, or binary behind a head of text.
     MeshFormatRow{.extension = "ply", .recognises = by_text<is_ply>, .goes_by_name = true, .read = read_ply},
     MeshFormatRow{.extension = "off", .recognises = by_text<is_off>, .goes_by_name = true, .read = read_off},

@@ -266,7 +266,7 @@ struct SlabFinder::State {
 SlabFinder::SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs) {
     auto state = std::make_unique<State>(plan);
     assert(std::is_sorted(slabs.begin(), slabs.end(),
-                          [](PlaneRange a, PlaneRange b) { return a.begin < b.end; }));
+                          [](PlaneRange a, PlaneRange b) { return a.begin < b.begin || a.end < b.end; }));
     const std::uint32_t planes = state->ranks.count();
     std::uint32_t ended = 0;
     std::uint32_t begun = 0;

@@ -152,7 +152,8 @@ struct SlabMemory {
 /// Tells which slabs triangles touch. Immutable; for any number of threads at once.
 class SlabFinder {
   public:
-    /// Slabs of the plan, ascending and without overlap; gaps between them are allowed.
+    /// Slabs of the plan, none of which begins or ends below the one before; they may overlap or have gaps
+    /// between them.
     SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs);
     ~SlabFinder();
     SlabFinder(const SlabFinder&) = delete;

@@ -27,17 +27,8 @@ static_assert(std::endian::native == std::endian::little, "the binary form is wr
 
 using Direction = CommonLayerDirection;
 
-constexpr double least_units = 1e-9;
-constexpr double most_units = 1e3;
 constexpr Holds holds{.open_chains = true, .hatches = true};
 constexpr int first_part = 1;
-
-void check_units(double units) {
-    if (!(units >= least_units && units <= most_units))
-        throw Error(ErrorKind::usage,
-                    fmt::format("units of {} mm are not possible; choose from {} to {} mm, such as 0.001",
-                                units, least_units, most_units));
-}
 
 // The label as the format's strings have it: readers differ on quotes, commas and letters beyond ASCII.
 std::string label_text(std::string_view label) {
@@ -80,13 +71,19 @@ Direction direction_of(double ring_area) {
     return ring_area >= 0 ? Direction::counter_clockwise : Direction::clockwise;
 }
 
-// Calls write(contour, closed) for outer rings, then holes, then open chains. The order is found by a glance
-// at each ring, so that its points are fetched from memory once.
+// What contours of a part follow one another by.
+enum class Sequence {
+    nesting, // outer rings, then holes, then open chains
+    kept,    // as they come: they are to be exposed one after the other
+};
+
+// Calls write(contour, closed). Nesting is found by a glance at each ring, so that its points are fetched
+// from memory once.
 template <class Write>
-void for_each_contour(const Layer& layer, const Write& write) {
+void for_each_contour(const Layer& layer, Sequence sequence, const Write& write) {
     std::vector<std::size_t> holes;
     for (std::size_t i = 0; i < layer.rings; ++i) {
-        if (starts_convex(layer.contour(i)))
+        if (sequence == Sequence::kept || starts_convex(layer.contour(i)))
             write(layer.contour(i), true);
         else
             holes.push_back(i);
@@ -106,9 +103,9 @@ void for_each_part(std::span<const Layer> parts, const Format& format) {
 
 // The same on a grid: calls put(points, direction) for what the grid leaves of each contour.
 template <class Put>
-void for_each_on_grid(const WriterGrid& grid, const Layer& layer, const Put& put) {
+void for_each_on_grid(const WriterGrid& grid, const Layer& layer, Sequence sequence, const Put& put) {
     std::vector<GridPoint> scratch;
-    for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
+    for_each_contour(layer, sequence, [&](std::span<const Point2> contour, bool closed) {
         const double area = closed ? ring_area(contour) : 0;
         const auto points = grid.snap(contour, closed, area, layer.index, scratch);
         if (!points.empty())
@@ -125,12 +122,21 @@ class CommonLayerWriter : public SequentialWriter {
   protected:
     CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view head)
         : SequentialWriter(path, info, head, holds) {
+        for (const PartInfo& part : info.parts)
+            sequences_.push_back(part.exposure ? Sequence::kept : Sequence::nesting);
         // Of several pieces the first has the head.
         if (info.piece != nullptr && info.piece->before != 0)
             return;
         for (const PartInfo& part : info.parts)
             note_label(part.label, label_text(part.label));
     }
+
+    [[nodiscard]] Sequence sequence_of(int part) const {
+        return sequences_[static_cast<std::size_t>(part - first_part)];
+    }
+
+  private:
+    std::vector<Sequence> sequences_;
 };
 
 class AsciiWriter final : public CommonLayerWriter {
@@ -148,9 +154,10 @@ class AsciiWriter final : public CommonLayerWriter {
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for_each_part(parts, [&](const Layer& layer, int part) {
-            for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
-                put_polyline(part, points, direction, out);
-            });
+            for_each_on_grid(grid_, layer, sequence_of(part),
+                             [&](std::span<const GridPoint> points, Direction direction) {
+                                 put_polyline(part, points, direction, out);
+                             });
             if (!layer.hatches.empty())
                 put_hatches(part, grid_.snap_points(layer.hatches.span(), layer.index), out);
         });
@@ -261,7 +268,7 @@ class LongWriter final : public CommonLayerWriter {
             // All room at once: most layers lose no point.
             static_cast<void>(out.room(layer.contours() * (long_head + float_point_size) +
                                        layer.points.size() * float_point_size));
-            for_each_contour(layer, [&](std::span<const Point2> contour, bool closed) {
+            for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
                 put_polyline(part, contour, closed, layer.index, out);
             });
             put_hatches(part, layer, out);
@@ -379,9 +386,10 @@ class ShortWriter final : public CommonLayerWriter {
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for_each_part(parts, [&](const Layer& layer, int part) {
-            for_each_on_grid(grid_, layer, [&](std::span<const GridPoint> points, Direction direction) {
-                put_polyline(part, points, direction, layer.index, out);
-            });
+            for_each_on_grid(grid_, layer, sequence_of(part),
+                             [&](std::span<const GridPoint> points, Direction direction) {
+                                 put_polyline(part, points, direction, layer.index, out);
+                             });
             if (!layer.hatches.empty())
                 put_hatches(part, grid_.snap_points(layer.hatches.span(), layer.index), layer.index, out);
         });

@@ -19,7 +19,17 @@ namespace {
 constexpr double round_to_whole = 6755399441055744.0; // 1.5 * 2^52
 constexpr double largest = 2251799813685248.0;        // 2^51
 
+constexpr double least_units = 1e-9;
+constexpr double most_units = 1e3;
+
 } // namespace
+
+void check_units(double units) {
+    if (!(units >= least_units && units <= most_units))
+        throw Error(ErrorKind::usage,
+                    fmt::format("units of {} mm are not possible; choose from {} to {} mm, such as 0.001",
+                                units, least_units, most_units));
+}
 
 double grid_area(std::span<const GridPoint> ring) noexcept {
     if (ring.size() < 3)
@@ -70,7 +80,7 @@ double WriterGrid::largest_move(std::span<const Point2> points, const GridPoint*
 }
 
 std::span<const GridPoint> WriterGrid::snap(std::span<const Point2> contour, bool closed, double area,
-                                      std::uint64_t layer, std::vector<GridPoint>& scratch) const {
+                                            std::uint64_t layer, std::vector<GridPoint>& scratch) const {
     if (scratch.size() < contour.size())
         scratch.resize(contour.size());
     GridPoint* const points = scratch.data();

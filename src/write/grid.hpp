@@ -23,6 +23,9 @@ struct GridPoint {
 
 inline constexpr double text_step_mm = text_rounding.step_mm;
 
+/// Throws Error{usage} for units of LayerWriteOptions that no file can have.
+void check_units(double units);
+
 /// Signed area of a ring in square steps.
 [[nodiscard]] double grid_area(std::span<const GridPoint> ring) noexcept;
 

@@ -8,15 +8,18 @@
 #include "write/common_layer.hpp"
 #include "write/dxf.hpp"
 #include "write/geojson.hpp"
+#include "write/ilt.hpp"
 #include "write/layered_svg.hpp"
 #include "write/layers_json.hpp"
 #include "write/limited_writer.hpp"
 #include "write/npz.hpp"
+#include "write/ovf.hpp"
 #include "write/picture_stack.hpp"
 #include "write/sl1.hpp"
 #include "write/slc.hpp"
 #include "write/slices_3mf.hpp"
 #include "write/strict_writer.hpp"
+#include "write/toolpath_3mf.hpp"
 
 #include <fmt/format.h>
 
@@ -98,6 +101,26 @@ constexpr std::array formats{
                 .summary = "NumPy arrays; exact",
                 .open = open_npz,
                 .rounding = unrounded},
+    LayerFormat{.name = "ilt",
+                .extension = ".ilt",
+                .summary =
+                    "scan vectors in binary Common Layer Interface files, with their parameters, zipped",
+                .open = open_ilt,
+                .rounding = Rounding{.step_mm = LayerWriteOptions::usual_units_mm, .single_precision = true},
+                .units = true,
+                .short_form = true},
+    LayerFormat{.name = "ovf",
+                .extension = ".ovf",
+                .summary = "scan vectors with their parameters in the Open Vector Format; single precision",
+                .open = open_ovf,
+                .rounding = Rounding{.single_precision = true}},
+    LayerFormat{.name = "3mf-toolpath",
+                .extension = "",
+                .summary = "scan vectors with their parameters, 3MF with toolpaths; whole units of 0.001 mm",
+                .open = open_toolpath_3mf,
+                .file_extension = ".build.3mf",
+                .rounding = Rounding{.step_mm = LayerWriteOptions::usual_units_mm},
+                .units = true},
     LayerFormat{.name = "html",
                 .extension = ".html",
                 .summary = "a page to look at the layers with any browser; see docs/viewer.md",

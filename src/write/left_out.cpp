@@ -2,7 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lamella {
+
+void say_unexposed(std::span<const PartInfo> parts, std::vector<std::string>& warnings) {
+    const auto count =
+        std::count_if(parts.begin(), parts.end(), [](const PartInfo& part) { return !part.exposure; });
+    if (count != 0)
+        warnings.push_back(fmt::format("{} no scan vectors: contours were written without parameters",
+                                       count == 1 ? "1 part has" : fmt::format("{} parts have", count)));
+}
 
 PlaneExtras extras_of(std::span<const Layer> parts) {
     PlaneExtras extras;

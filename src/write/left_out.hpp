@@ -3,6 +3,7 @@
 // What a format cannot hold is said, not lost in silence.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/write/layer_writer.hpp"
 
 #include "write/rounding_loss.hpp"
 
@@ -26,6 +27,10 @@ struct PlaneExtras {
     std::uint64_t hatches = 0;
     double z = 0;
 };
+
+/// Of formats of scan vectors, which want parameters: says how many parts have no exposure. Nothing where all
+/// have one.
+void say_unexposed(std::span<const PartInfo> parts, std::vector<std::string>& warnings);
 
 [[nodiscard]] PlaneExtras extras_of(std::span<const Layer> parts);
 

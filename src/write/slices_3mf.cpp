@@ -7,19 +7,17 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
-#include "container/deflate.hpp"
-#include "container/inflate.hpp"
 #include "container/zip_writer.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/left_out.hpp"
+#include "write/package_3mf.hpp"
 #include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
 
-#include <array>
 #include <memory>
 #include <mutex>
 #include <string_view>
@@ -30,61 +28,12 @@ namespace lamella {
 
 namespace {
 
-constexpr std::string_view content_types =
-    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-    "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
-    "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
-    "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
-    "</Types>\n";
-
-constexpr std::string_view relations =
-    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-    "<Relationship Id=\"model\" Target=\"/3D/3dmodel.model\" "
-    "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
-
 constexpr std::string_view model_begin =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
     "<model unit=\"millimeter\" xml:lang=\"en-US\" "
     "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
     "xmlns:s=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\" requiredextensions=\"s\">\n"
     "<resources>\n";
-
-/// Bytes of the model part, compressed.
-struct Piece {
-    std::string bytes;
-    std::uint64_t size = 0;
-    std::uint32_t crc = 0;
-
-    [[nodiscard]] ZipPiece in_zip() const { return {bytes, size, crc}; }
-};
-
-/// Deflaters that wait to be used again: each has some hundred kilobytes. For any number of threads.
-class Compression {
-  public:
-    [[nodiscard]] Piece piece(std::string_view text) {
-        std::unique_ptr<Deflater> deflater;
-        {
-            const std::lock_guard lock(mutex_);
-            if (!idle_.empty()) {
-                deflater = std::move(idle_.back());
-                idle_.pop_back();
-            }
-        }
-        if (!deflater)
-            deflater = std::make_unique<Deflater>();
-        Piece piece{{}, text.size(), crc32_of(text)};
-        deflater->append_piece(text, piece.bytes);
-        piece.bytes.shrink_to_fit();
-        const std::lock_guard lock(mutex_);
-        idle_.push_back(std::move(deflater));
-        return piece;
-    }
-
-  private:
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<Deflater>> idle_;
-};
 
 /// One <s:slice>.
 void put_slice(const Layer& layer, const WriterGrid& grid, ByteBuffer& out) {
@@ -135,38 +84,12 @@ void put_slice(const Layer& layer, const WriterGrid& grid, ByteBuffer& out) {
     out.append("</s:slice>\n");
 }
 
-/// Every object must have a mesh; this one only says where the part is.
-std::string box_mesh(const Box3& box) {
-    std::string text = "<mesh>\n<vertices>\n";
-    for (const double z : {box.min.z, box.max.z})
-        for (const auto& [x, y] : {Point2{box.min.x, box.min.y}, Point2{box.max.x, box.min.y},
-                                   Point2{box.max.x, box.max.y}, Point2{box.min.x, box.max.y}})
-            text += fmt::format("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", decimal_text(x), decimal_text(y),
-                                decimal_text(z));
-    text += "</vertices>\n<triangles>\n";
-    constexpr std::array<std::array<int, 3>, 12> triangles{{{0, 2, 1},
-                                                            {0, 3, 2},
-                                                            {4, 5, 6},
-                                                            {4, 6, 7},
-                                                            {0, 1, 5},
-                                                            {0, 5, 4},
-                                                            {1, 2, 6},
-                                                            {1, 6, 5},
-                                                            {2, 3, 7},
-                                                            {2, 7, 6},
-                                                            {3, 0, 4},
-                                                            {3, 4, 7}}};
-    for (const auto& [a, b, c] : triangles)
-        text += fmt::format("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", a, b, c);
-    return text + "</triangles>\n</mesh>\n";
-}
-
 class Slices3mfWriter final : public LayerWriter {
   public:
     Slices3mfWriter(const std::string& path, const LayerFileInfo& info)
         : info_(info), zip_(path), order_(info), later_(info.parts.size() - 1), last_top_(info.bottom) {
-        zip_.add("[Content_Types].xml", content_types, ZipMethod::deflated);
-        zip_.add("_rels/.rels", relations, ZipMethod::deflated);
+        zip_.add("[Content_Types].xml", package_3mf::content_types(), ZipMethod::deflated);
+        zip_.add("_rels/.rels", package_3mf::relations, ZipMethod::deflated);
         zip_.begin("3D/3dmodel.model", ZipMethod::deflated);
         append(std::string(model_begin) + stack_begin(0));
     }
@@ -174,7 +97,7 @@ class Slices3mfWriter final : public LayerWriter {
     std::function<void()> prepare(std::span<const Layer> parts) override {
         order_.check_parts(parts.size());
         const std::shared_ptr<ByteBuffer> text = buffers_->take();
-        auto pieces = std::make_shared<std::vector<Piece>>();
+        auto pieces = std::make_shared<std::vector<package_3mf::Piece>>();
         for (const Layer& layer : parts) {
             text->clear();
             put_slice(layer, grid_, *text);
@@ -201,7 +124,7 @@ class Slices3mfWriter final : public LayerWriter {
         append(stack_end);
         for (std::size_t part = 1; part <= later_.size(); ++part) {
             append(stack_begin(part));
-            for (const Piece& piece : later_[part - 1])
+            for (const package_3mf::Piece& piece : later_[part - 1])
                 zip_.append(piece.in_zip());
             append(stack_end);
         }
@@ -211,7 +134,7 @@ class Slices3mfWriter final : public LayerWriter {
             append(fmt::format("<object id=\"{}\" type=\"model\" name=\"{}\" s:slicestackid=\"{}\" "
                                "s:meshresolution=\"lowres\">\n{}</object>\n",
                                object_id(part), xml_escaped(known.label), stack_id(part),
-                               box_mesh(known.box.empty() ? info_.box : known.box)));
+                               package_3mf::box_mesh(known.box.empty() ? info_.box : known.box)));
             items += fmt::format("<item objectid=\"{}\"/>\n", object_id(part));
         }
         append(fmt::format("</resources>\n<build>\n{}</build>\n</model>\n", items));
@@ -239,10 +162,10 @@ class Slices3mfWriter final : public LayerWriter {
     LayerOrder order_;
     LeftOut left_out_{{.open_chains = false, .hatches = false}};
     WriterGrid grid_{text_step_mm, &left_out_.rounding()};
-    Compression compression_;
+    package_3mf::Compression compression_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
     /// The stacks of all parts but the first, which wait for the end of the first one.
-    std::vector<std::vector<Piece>> later_;
+    std::vector<std::vector<package_3mf::Piece>> later_;
     double last_top_;
 };
 

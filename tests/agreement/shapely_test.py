@@ -143,6 +143,17 @@ class Layers(ProgramTest):
                 off = 0.01 * abs(distance) * shape.length
                 self.assertAlmostEqual(polygons(rings).symmetric_difference(expected).area, 0, delta=off)
 
+    def test_offsets_with_round_corners_are_those_of_geos(self):
+        _, before = self.united(9)
+        for distance in (0.05, 0.4, 1.5):
+            for sign in (1, -1):
+                made = self.made("--offset", f"{sign * distance}", "--offset-corners", "round", source="united.json")
+                for i, (shape, rings) in enumerate(zip(before, made)):
+                    with self.subTest(distance=sign * distance, layer=i):
+                        expected = shape.buffer(sign * distance, resolution=64)
+                        off = 1e-3 * (2 + distance) * (expected.length + 1)  # chords of either, and what GEOS leaves out
+                        self.assertLess(polygons(rings).symmetric_difference(expected).area, off)
+
     def test_simplified_contours_stay_near_and_apart(self):
         layers, before = self.united(4)
         for distance in (0.01, 0.2, 1.0):

@@ -23,7 +23,8 @@ struct Resolution {
     bool chains = true;
     bool hatches = false;
     bool parts = true;
-    bool exact = false; ///< heights, too
+    bool exact = false;   ///< heights, too
+    double height = 1e-5; ///< how far it may move others
 };
 
 // Relative to the corner of the part, which is at -60.
@@ -55,6 +56,12 @@ const std::vector<Resolution>& readable() {
         {.format = "3mf", .coordinate = decimal_thousandths, .chains = false},
         {.format = "json", .coordinate = itself, .hatches = true, .exact = true},
         {.format = "npz", .coordinate = itself, .hatches = true, .exact = true},
+        {.format = "ilt", .coordinate = single_thousandths, .hatches = true},
+        {.format = "ovf", .coordinate = single, .hatches = true},
+        {.format = "3mf-toolpath",
+         .coordinate = [](double v) { return std::nearbyint(v * 1000) * 0.001 + 0.0; },
+         .hatches = true,
+         .height = 0.00051},
     };
     return formats;
 }
@@ -159,7 +166,7 @@ TEST(SliceFormats, ComeBackAtTheirResolution) {
                     const Layer& found = back.parts[part].layers[i];
                     EXPECT_EQ(content_hash(found), content_hash(kept(expected[i], format)))
                         << format.format << ", part " << part << ", layer " << i;
-                    const double tolerance = format.exact ? 0 : 1e-5;
+                    const double tolerance = format.exact ? 0 : format.height;
                     EXPECT_NEAR(found.z, expected[i].z, tolerance) << format.format;
                     EXPECT_NEAR(found.bottom, expected[i].bottom, tolerance) << format.format;
                     EXPECT_NEAR(found.top, expected[i].top, tolerance) << format.format;
@@ -223,7 +230,8 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
             all += warning + '\n';
         const bool closed_only = format.name == "slc" || format.name == "3mf" || format.name == "png-zip";
         const bool no_hatches = format.name != "json" && format.name != "npz" && format.name != "html" &&
-                                !format.name.starts_with("cli");
+                                format.name != "ilt" && format.name != "ovf" &&
+                                format.name != "3mf-toolpath" && !format.name.starts_with("cli");
         EXPECT_EQ(all.find(std::to_string(chains) + " open contours") != std::string::npos, closed_only)
             << all;
         EXPECT_EQ(all.find(std::to_string(hatches) + " hatch lines") != std::string::npos, no_hatches) << all;

@@ -1,5 +1,7 @@
 """What is made of layers between slicing and writing, from the command line: --fill, --offset, --largest-only and so on."""
 
+import math
+
 from program import ProgramTest, binary_stl, box_triangles, main
 
 
@@ -46,6 +48,14 @@ class LayerSteps(ProgramTest):
     def test_offsets(self):
         self.assert_areas(self.stats("--offset", "1"), 2 * 22 * 32 - 12 * 12 + 4 * 3)
         self.assert_areas(self.stats("--offset", "-1"), 2 * 18 * 28 - 8 * 8)
+
+    def test_corners_of_offsets(self):
+        mitred = 2 * 22 * 32 - 12 * 12 + 4 * 3
+        self.assert_areas(self.stats("--offset", "1", "--offset-corners", "mitre"), mitred)
+        self.assert_areas(self.stats("--offset", "1", "--offset-corners", "bevel"), mitred - 10 * 0.5)
+        for layer in self.stats("--offset", "1", "--offset-corners", "round")["layers"]:
+            self.assertAlmostEqual(layer["area_mm2"], mitred - 10 * (1 - math.pi / 4), delta=0.02)
+        self.fail_with(2, "--offset-corners goes with --offset", "slice", "heap.stl", "--offset-corners", "round", "-o", "x.cli")
 
     def test_the_largest_body_and_the_smallest_area(self):
         self.assert_areas(self.stats("--fill", "nonzero", "--largest-only"), 1100)

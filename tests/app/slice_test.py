@@ -11,7 +11,7 @@ STATS_KEYS = ["lamella", "options", "input", "engine", "threads", "seconds", "pe
 INPUT_KEYS = ["path", "triangles", "vertices", "bbox", "unit", "volume_mm3", "defects"]
 DEFECT_KEYS = ["boundary_edges", "nonmanifold_edges", "orientation_conflicts", "duplicate_triangles",
                "degenerate_triangles", "inverted_shells"]
-SECONDS_KEYS = ["read", "weld", "link", "slice", "polygon", "write", "total"]
+SECONDS_KEYS = ["read", "weld", "link", "slice", "polygon", "scan", "write", "total"]
 MATCHING_KEYS = ["searches", "comparisons", "inserted", "by_edge_link", "node_bytes", "bytes"]
 CASES = ["new", "front", "back", "link", "close"]
 PAPER_ENGINES = ["conventional", "ecc", "ecc-edge-match", "eecc"]

@@ -70,7 +70,7 @@ class Cells(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             part = parts.TINY_PARTS[1]
             # The longer the limit, the longer a machine may pause and half of the planes still seem to fit.
-            laboratory = Laboratory(LAMELLA, Path(folder), Path(folder) / "parts", timeout=3600)
+            laboratory = Laboratory(LAMELLA, Path(folder), Path(folder) / "parts", timeout=3600, most_runs=1)
             measured = laboratory.cells(part, ["ecc"])[0]
             estimated = Cell(part.name, "ecc", "timeout")
             mesh = part.path(Path(folder) / "parts")
@@ -81,7 +81,7 @@ class Cells(unittest.TestCase):
     def test_beyond_that_the_square_of_the_triangles_is_taken(self):
         with tempfile.TemporaryDirectory() as folder:
             part = parts.TINY_PARTS[1]
-            laboratory = Laboratory(LAMELLA, Path(folder), Path(folder) / "parts", timeout=60)
+            laboratory = Laboratory(LAMELLA, Path(folder), Path(folder) / "parts", timeout=60, most_runs=1)
             mesh = parts.make(part, LAMELLA, Path(folder) / "parts")
             smaller = Cell("smaller", "ecc", "timeout", triangles=270, estimate=10.0,
                            estimated_from="the square of the triangles, from smallest")
@@ -93,7 +93,7 @@ class Cells(unittest.TestCase):
         """Also with edge matching, where most of them are on the first plane of a triangle."""
         with tempfile.TemporaryDirectory() as folder:
             part = parts.TINY_PARTS[1]
-            laboratory = Laboratory(LAMELLA, Path(folder), Path(folder) / "parts", timeout=60)
+            laboratory = Laboratory(LAMELLA, Path(folder), Path(folder) / "parts", timeout=60, most_runs=1)
             cells = {engine: laboratory.cells(part, [engine])[0] for engine in ("ecc", "eecc")}
             mesh = part.path(Path(folder) / "parts")
             reference = laboratory.slice(part, mesh, "sweep")[-1]

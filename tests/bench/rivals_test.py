@@ -34,7 +34,7 @@ class Rivals(unittest.TestCase):
         self.box = parts.TINY_PARTS[0]
 
     def cells(self, rival, timeout=60.0, part=None):
-        comparison = Comparison(LAMELLA, self.folder, timeout, threads=2)
+        comparison = Comparison(LAMELLA, self.folder, timeout, threads=2, most_runs=2)
         return comparison.run(part or self.box, [rival])
 
     def table(self, cells, rival):
@@ -75,7 +75,7 @@ class Rivals(unittest.TestCase):
 
     def test_after_a_timeout_larger_ones_of_the_family_are_not_tried(self):
         slow = stand_in("slow", "import time; time.sleep(600)")
-        comparison = Comparison(LAMELLA, self.folder, 0.3, threads=2)
+        comparison = Comparison(LAMELLA, self.folder, 0.3, threads=2, most_runs=2)
         small, large = (parts.sheet(holes, segments=16) for holes in (1, 4))
         self.assertEqual(comparison.run(small, [slow])[2].ended, "timeout")
         self.assertEqual(comparison.run(large, [slow])[2].ended, "skipped")

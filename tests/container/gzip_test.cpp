@@ -66,7 +66,7 @@ TEST(Gzip, IsToldByItsFirstBytes) {
 }
 
 TEST(Gzip, UnpacksOneMemberOrSeveral) {
-    const std::string text = some_text(30'000'000);
+    const std::string text = some_text(18'000'000); // more than two steps of the reader
     EXPECT_TRUE(unpacked(packed(text)) == text);
     EXPECT_EQ(unpacked(packed("one ") + packed("") + packed("two")), "one two");
     EXPECT_EQ(unpacked(packed("one") + std::string(100, '\0')), "one");

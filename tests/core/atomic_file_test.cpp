@@ -1,6 +1,7 @@
 #include "core/atomic_file.hpp"
 #include "core/child_process.hpp"
 #include "core/nameless_file.hpp"
+#include "fixtures/rounds.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -142,7 +143,7 @@ TEST(AtomicFile, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
 
 TEST(AtomicFile, LeavesNoTemporaryNameWheneverTheProcessEnds) {
     const TemporaryFolder folder;
-    for (int round = 0; round < 100; ++round) {
+    for (int round = 0; round < test::rounds_within_reason(100); ++round) {
         const int code = exit_code_of_child([&] {
             std::vector<std::thread> writers;
             for (int i = 0; i < 4; ++i)
@@ -155,7 +156,7 @@ TEST(AtomicFile, LeavesNoTemporaryNameWheneverTheProcessEnds) {
                             std::chrono::hours(1)); // whoever ends the process is faster
                     }
                 });
-            std::this_thread::sleep_for(std::chrono::microseconds(500 + 37 * round));
+            std::this_thread::sleep_for(std::chrono::microseconds(500 + 37 * round * test::slowness));
             remove_unfinished();
             _exit(0);
         });

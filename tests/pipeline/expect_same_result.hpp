@@ -27,6 +27,13 @@ inline void expect_same(const LayerChanges& one, const LayerChanges& other) {
     EXPECT_EQ(one.area_after_mm2, other.area_after_mm2);
 }
 
+inline void expect_same(const ScanFigures& one, const ScanFigures& other) {
+    EXPECT_EQ(one.vectors, other.vectors);
+    for (double ScanFigures::*figure : {&ScanFigures::marked_mm, &ScanFigures::jumped_mm,
+                                        &ScanFigures::build_seconds, &ScanFigures::energy_j})
+        EXPECT_EQ(one.*figure, other.*figure);
+}
+
 inline void expect_same(const LayerStatistics& one, const LayerStatistics& other) {
     EXPECT_EQ(one.index, other.index);
     EXPECT_EQ(one.z, other.z);
@@ -39,6 +46,9 @@ inline void expect_same(const LayerStatistics& one, const LayerStatistics& other
     EXPECT_EQ(one.measure.perimeter_mm, other.measure.perimeter_mm);
     expect_same(one.open_gaps, other.open_gaps);
     expect_same(one.changes, other.changes);
+    ASSERT_EQ(one.scan.size(), other.scan.size());
+    for (std::size_t i = 0; i < one.scan.size(); ++i)
+        expect_same(one.scan[i], other.scan[i]);
     ASSERT_EQ(one.joins.size(), other.joins.size());
     for (std::size_t i = 0; i < one.joins.size(); ++i) {
         EXPECT_EQ(one.joins[i].from, other.joins[i].from);
@@ -80,6 +90,9 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
         SCOPED_TRACE(testing::Message() << "layer " << i);
         expect_same(one.layers[i], other.layers[i]);
     }
+    ASSERT_EQ(one.exposures.size(), other.exposures.size());
+    for (std::size_t i = 0; i < one.exposures.size(); ++i)
+        expect_same(one.exposures[i].figures, other.exposures[i].figures);
     ASSERT_EQ(one.parts.size(), other.parts.size());
     for (std::size_t i = 0; i < one.parts.size(); ++i) {
         EXPECT_EQ(one.parts[i].label, other.parts[i].label);

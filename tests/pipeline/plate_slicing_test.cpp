@@ -10,10 +10,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -196,6 +199,41 @@ TEST(PlateSlicing, FillsWindowsWithTwiceThePointsInFlight) {
 TEST(PlateSlicing, SlicesAllPlanesAtOnceWhereTheEngineWelds) {
     const Plate plate = plate_of({{make_cylinder(3, 5, 10), 2}, {make_box(1, 2, 5), 1}});
     EXPECT_EQ(windows_of(plate, plan_of(plate, 0.1), 1, engine("eecc")), 1U);
+}
+
+TEST(PlateSlicing, HandsAFewPlanesAtATimeToASinkThatMakesMuchOfThem) {
+    const Plate plate = plate_of({{make_torus(6, 2, 24, 16), 1}});
+    const Plan plan = plan_of(plate, 0.02);
+    std::atomic<std::int64_t> on_their_way{0};
+    std::atomic<std::int64_t> most{0};
+    std::vector<std::uint64_t> written;
+    const PlateSink sink = [&](std::span<const Layer> parts) -> std::function<void()> {
+        const std::int64_t now = ++on_their_way;
+        for (std::int64_t before = most; before < now && !most.compare_exchange_weak(before, now);) {
+        }
+        return [&, index = parts.front().index] {
+            --on_their_way;
+            written.push_back(index);
+        };
+    };
+    std::vector<Progress> told;
+    const Execution execution{.threads = 2, .progress = [&](const Progress& progress) {
+                                  if (progress.stage == Stage::slice)
+                                      told.push_back(progress);
+                              }};
+    static_cast<void>(
+        slice_plate_to(sink, plate, plan, execution, engines().front(), 1'000'000, SinkYield::much_more));
+    EXPECT_EQ(written.size(), plan.layers.size());
+    EXPECT_TRUE(std::is_sorted(written.begin(), written.end()));
+    EXPECT_LE(most, 8);
+    // What is told of is what the sink has done.
+    ASSERT_GT(told.size(), 10U);
+    for (std::size_t i = 0; i < told.size(); ++i) {
+        EXPECT_EQ(told[i].total, plan.layers.size());
+        EXPECT_GE(told[i].done, i == 0 ? 0 : told[i - 1].done);
+    }
+    EXPECT_EQ(told.front().done, 0U);
+    EXPECT_EQ(told.back().done, plan.layers.size());
 }
 
 TEST(PlateSlicing, StopsWithWhatTheSinkThrows) {

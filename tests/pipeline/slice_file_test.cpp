@@ -63,6 +63,9 @@ TEST_F(Processes, WriteTheBytesOfOneProcessWithAnyNumberOfThem) {
     for (const LayerFormat& format : layer_formats()) {
         if (format.directory)
             continue;
+        if (test::slowed &&
+            format.name == "3mf-toolpath") // has no heights below 0, to where the torus reaches
+            continue;
         FileJob job = job_of({{.path = path("part.stl")}}, 1.5);
         job.format = format.name;
         job.write.page.viewer = "<!--lamella-data-->"; // what the library asks of a viewer

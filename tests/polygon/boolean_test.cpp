@@ -74,6 +74,18 @@ Contours random_rings(Random& random, double range, double size, std::int64_t mo
     return rings;
 }
 
+Contours random_rings_on_a_grid(Random& random) {
+    Contours rings;
+    for (std::int64_t i = random.integer(1, 6); i > 0; --i) {
+        Contour& ring = rings.emplace_back();
+        for (std::int64_t k = random.integer(1, 9); k > 0; --k) {
+            const auto x = static_cast<double>(random.integer(0, 16));
+            ring.push_back({x, static_cast<double>(random.integer(0, 16))});
+        }
+    }
+    return rings;
+}
+
 /// Two layers, which may have rings in common, the same way round or not.
 struct Two {
     Two(Random& random, int round) {
@@ -158,6 +170,30 @@ TEST(Combine, KeepsTheLawsOfSets) {
         EXPECT_TRUE(same_contours(one, combine(layer_of(turned), b, exclude)));
         if (testing::Test::HasFailure())
             return;
+    }
+}
+
+// What was made of layers has corners a little beside the sides on which they were, and sides that all but
+// lie upon one another. Rounding, cut by cut, once drew such sides from place to place of the grid until
+// parts turned over.
+TEST(Combine, TakesWhatItMadeItself) {
+    for (const std::uint64_t seed : {2, 6, 7}) {
+        Random random(seed);
+        for (int round = 0; round < test::rounds_within_reason(150); ++round) {
+            SCOPED_TRACE(round);
+            std::array<Layer, 5> layers;
+            for (Layer& layer : layers)
+                layer = fill(layer_of(random_rings_on_a_grid(random)), FillRule::nonzero).layer;
+            const Layer& middle = layers[2];
+            const Layer above = combine(middle, combine(layers[3], layers[4], intersect), subtract);
+            const Layer below = combine(middle, combine(layers[1], layers[0], intersect), subtract);
+            expect_combined(above, below, subtract, 16);
+            const Layer rest = combine(middle, below, subtract);
+            expect_combined(middle, below, subtract, 16);
+            expect_combined(rest, above, subtract, 16);
+            if (testing::Test::HasFailure())
+                return;
+        }
     }
 }
 

@@ -1,24 +1,36 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/crossings.hpp"
+#include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
 #include "fixtures/layers.hpp"
+#include "fixtures/rounds.hpp"
+#include "polygon/winding_areas.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-namespace lamella {
+namespace lamella::offset_cases {
 namespace {
 
 using test::Contour;
+using test::diamond;
 using test::layer_of;
+using test::Random;
 using test::rectangle;
 using test::reversed;
+
+constexpr OffsetCorners mitred{};
+constexpr OffsetCorners bevelled{.shape = OffsetCorner::bevel};
+constexpr OffsetCorners rounded{.shape = OffsetCorner::round};
 
 double area(const Layer& layer) {
     return measure(layer).area_mm2;
@@ -41,10 +53,12 @@ TEST(Offset, OfNothingIsTheLayerItself) {
 
 TEST(Offset, MovesTheSidesOfBodiesOutwardsAndOfHolesInwards) {
     const Layer frame = normal_form(layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(3, 3, 7, 7))}));
-    EXPECT_NEAR(area(offset(frame, 0.5)), 121 - 9, 1e-6);
-    EXPECT_NEAR(area(offset(frame, -0.5)), 81 - 25, 1e-6);
+    EXPECT_NEAR(area(offset(frame, 0.5)), 121 - 9, 1e-12);
+    EXPECT_NEAR(area(offset(frame, -0.5)), 81 - 25, 1e-12);
     EXPECT_NEAR(area(offset(frame, 2)), 196, 1e-6); // the hole is gone
+    EXPECT_NEAR(area(offset(frame, 5)), 400, 1e-6); // its sides have passed one another
     EXPECT_EQ(offset(frame, -1.5).rings, 0U);
+    EXPECT_EQ(offset(frame, -20).rings, 0U);
 }
 
 TEST(Offset, OfRegularPolygonsIsThatOfTheirCircles) {
@@ -53,20 +67,38 @@ TEST(Offset, OfRegularPolygonsIsThatOfTheirCircles) {
             const Layer grown = offset(normal_form(layer_of({polygon(n, 10)})), distance);
             // The inscribed circle grows by the distance, and the corners stay corners.
             const double inner = 10 * std::cos(std::numbers::pi / n) + distance;
-            EXPECT_NEAR(area(grown), n * inner * inner * std::tan(std::numbers::pi / n), 1e-5) << n;
+            EXPECT_NEAR(area(grown), n * inner * inner * std::tan(std::numbers::pi / n), 1e-9) << n;
             EXPECT_EQ(grown.points.size(), static_cast<std::size_t>(n));
         }
 }
 
 TEST(Offset, CutsSharpCornersOff) {
-    const Layer needle = offset(normal_form(layer_of({{{0, 0}, {100, -1}, {100, 1}}})), 1);
-    for (const Point2& p : needle.points)
-        EXPECT_GE(p.x, -2.0);
+    const Layer needle = normal_form(layer_of({{{0, 0}, {100, -1}, {100, 1}}}));
+    for (const Point2& p : offset(needle, 1).points)
+        EXPECT_GE(p.x, -1.000000001);
+    const double farther = offset(needle, 1, {.mitre_limit = 1000}).points[0].x;
+    EXPECT_NEAR(farther, -std::sqrt(10001), 1e-6);
+}
+
+TEST(Offset, JoinsSidesAsWished) {
+    const Layer square = normal_form(layer_of({rectangle(0, 0, 10, 10)}));
+    EXPECT_NEAR(area(offset(square, 1, bevelled)), 100 + 40 + 4 * 0.5, 1e-12);
+    EXPECT_EQ(offset(square, 1, bevelled).points.size(), 8U);
+    const double circle = std::numbers::pi;
+    EXPECT_NEAR(area(offset(square, 1, rounded)), 140 + circle, 0.005);
+    EXPECT_LT(area(offset(square, 1, rounded)), 140 + circle);
+    EXPECT_NEAR(area(offset(square, 1, {.shape = OffsetCorner::round, .arc_tolerance_mm = 1e-6})),
+                140 + circle, 1e-3);
+    for (const OffsetCorners& corners : {mitred, bevelled, rounded})
+        EXPECT_NEAR(area(offset(square, -1, corners)), 64, 1e-12); // nothing parts
+    const Layer hole = normal_form(layer_of({rectangle(-9, -9, 19, 19), reversed(rectangle(0, 0, 10, 10))}));
+    EXPECT_NEAR(area(offset(hole, -1, rounded)), 26 * 26 - 140 - circle, 0.005);
 }
 
 TEST(Offset, UnitesWhatMeetsAndOverlaps) {
     const Layer apart = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(5, 0, 9, 4)}));
     EXPECT_EQ(offset(apart, 0.25).rings, 2U);
+    EXPECT_EQ(offset(apart, 0.5).rings, 1U);
     EXPECT_EQ(offset(apart, 0.75).rings, 1U);
     const Layer crossing = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(2, 0, 6, 4)}));
     EXPECT_NEAR(area(offset(crossing, 1)), 8 * 6, 1e-6);
@@ -82,6 +114,8 @@ TEST(Offset, MakesNoWallsWhereAHoleRunsAlongItsBody) {
         EXPECT_EQ(moved.rings, 1U);
         EXPECT_NEAR(measure(moved).area_mm2, measure(offset(rest, distance)).area_mm2, 1e-8);
     }
+    const Layer back_to_back = layer_of({rectangle(0, 0, 2, 2), rectangle(2, 0, 4, 2)});
+    EXPECT_NEAR(area(offset(back_to_back, -0.5)), 3, 1e-8);
 }
 
 TEST(Offset, KeepsOpenChains) {
@@ -96,7 +130,291 @@ TEST(Offset, ByWhatIsNoDistanceIsRefused) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4)}));
     EXPECT_THROW(static_cast<void>(offset(layer, std::numeric_limits<double>::infinity())), Error);
     EXPECT_THROW(static_cast<void>(offset(layer, std::nan(""))), Error);
+    EXPECT_THROW(static_cast<void>(offset(layer, 1, {.mitre_limit = 0.5})), Error);
+    EXPECT_THROW(static_cast<void>(offset(layer, 1, {.shape = OffsetCorner::round, .arc_tolerance_mm = 0})),
+                 Error);
+}
+
+TEST(Offset, OfManySidesByFarMoreThanTheirBodyWithoutLookingAtAllPairs) {
+    const Layer disc = normal_form(layer_of({polygon(100000, 10)}));
+    const Layer pierced = normal_form(layer_of({rectangle(-20, -20, 20, 20), reversed(polygon(100000, 10))}));
+    for (const OffsetCorners& corners : {mitred, rounded}) {
+        std::uint64_t vanished = 0;
+        EXPECT_EQ(offset(disc, -100, corners, &vanished).contours(), 0U);
+        EXPECT_EQ(vanished, 1U);
+        EXPECT_EQ(offset(pierced, 100, corners, &vanished).rings, 1U);
+        EXPECT_EQ(vanished, 1U);
+    }
+}
+
+TEST(Offset, CountsRingsThatNothingIsLeftOf) {
+    const Layer layer =
+        layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(1, 1, 2, 2)), reversed(rectangle(4, 4, 8, 8)),
+                  rectangle(5, 5, 6, 6), rectangle(20, 0, 30, 1)});
+    std::uint64_t vanished = 0;
+    const auto gone = [&](double distance) {
+        static_cast<void>(offset(layer, distance, mitred, &vanished));
+        return vanished;
+    };
+    EXPECT_EQ(gone(-0.1), 0U);
+    EXPECT_EQ(gone(-0.6), 2U); // the small body and the flat one
+    EXPECT_EQ(gone(-2), 5U);
+    EXPECT_EQ(gone(0.4), 0U);
+    EXPECT_EQ(gone(0.6), 1U);
+    EXPECT_EQ(gone(2.5), 2U);
+    EXPECT_EQ(gone(0), 0U);
+}
+
+/// Stars and boxes that may overlap, with the boundaries of their material.
+Layer random_material(Random& random, bool integers) {
+    std::vector<Contour> rings;
+    for (std::int64_t c = random.integer(1, 5); c > 0; --c) {
+        const double x = random.real(0, 20);
+        const double y = random.real(0, 20);
+        Contour ring;
+        const std::int64_t n = random.integer(3, 9);
+        for (std::int64_t i = 0; i < n; ++i) {
+            const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+            const double r = random.real(1, 8);
+            Point2 p{x + r * std::cos(angle), y + r * std::sin(angle)};
+            if (integers)
+                p = {std::round(p.x), std::round(p.y)};
+            if (ring.empty() || ring.back() != p)
+                ring.push_back(p);
+        }
+        rings.push_back(random.integer(0, 3) == 0 ? reversed(ring) : ring);
+    }
+    return fill(normal_form(layer_of(rings)), FillRule::positive).layer;
+}
+
+/// The same layer with corners cut off and sides in several pieces, some of them short, some a little off the
+/// line.
+Layer in_pieces(const Layer& layer, Random& random) {
+    std::vector<Contour> rings;
+    for (std::size_t r = 0; r < layer.rings; ++r) {
+        Contour& ring = rings.emplace_back();
+        for (std::size_t i = 0; i < layer.contour(r).size(); ++i) {
+            const Point2& a = layer.contour(r)[i];
+            const Point2& b = layer.contour(r)[(i + 1) % layer.contour(r).size()];
+            const auto along = [&](double t, double off) {
+                return Point2{a.x + t * (b.x - a.x) - off * (b.y - a.y),
+                              a.y + t * (b.y - a.y) + off * (b.x - a.x)};
+            };
+            const double cut = random.integer(0, 2) == 0 ? random.real(1e-6, 0.1) : 0;
+            const double off = random.integer(0, 1) == 0 ? 0 : random.real(-1e-3, 1e-3);
+            ring.push_back(along(cut, 0));
+            for (double t = cut; t < 0.8; t += random.real(1e-7, 0.3) * random.real(0, 1))
+                ring.push_back(along(t + 0.01, off * random.real(0, 1)));
+            ring.push_back(along(0.9, 0));
+            ring.push_back(along(0.95, off));
+        }
+    }
+    return fill(normal_form(layer_of(rings)), FillRule::positive).layer;
+}
+
+/// Whether sides of its rings run along one another: with nothing between them, they count as none.
+bool has_walls(const Layer& layer) {
+    std::vector<std::pair<Point2, Point2>> sides;
+    for (std::size_t r = 0; r < layer.rings; ++r)
+        for (std::size_t i = 0; i < layer.contour(r).size(); ++i)
+            sides.emplace_back(layer.contour(r)[i], layer.contour(r)[(i + 1) % layer.contour(r).size()]);
+    const auto along = [](const auto& s, const Point2& p) {
+        return (p.x - s.first.x) * (s.second.x - s.first.x) + (p.y - s.first.y) * (s.second.y - s.first.y);
+    };
+    const auto across = [](const auto& s, const Point2& p) {
+        return (p.y - s.first.y) * (s.second.x - s.first.x) - (p.x - s.first.x) * (s.second.y - s.first.y);
+    };
+    for (const auto& s : sides)
+        for (const auto& t : sides)
+            if (&s != &t && std::abs(across(s, t.first)) < 1e-9 && std::abs(across(s, t.second)) < 1e-9 &&
+                std::max(along(s, t.first), along(s, t.second)) > 1e-9 &&
+                std::min(along(s, t.first), along(s, t.second)) < along(s, s.second) - 1e-9)
+                return true;
+    return false;
+}
+
+/// The strips and wedges that sides and corners sweep, each a ring counter-clockwise.
+Layer swept(const Layer& layer, double distance, const OffsetCorners& corners) {
+    std::vector<Contour> rings;
+    const auto add = [&](Contour ring) {
+        rings.push_back(ring_area(ring) < 0 ? reversed(ring) : ring);
+    };
+    for (std::size_t r = 0; r < layer.rings; ++r) {
+        Contour ring;
+        for (const Point2& p : layer.contour(r))
+            if (ring.empty() || p != ring.back())
+                ring.push_back(p);
+        const std::size_t n = ring.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            const Point2& a = ring[(i + n - 1) % n];
+            const Point2& b = ring[i];
+            const Point2& c = ring[(i + 1) % n];
+            const double angle = std::atan2(b.y - a.y, b.x - a.x);
+            const double turn =
+                std::remainder(std::atan2(c.y - b.y, c.x - b.x) - angle, 2 * std::numbers::pi);
+            const auto around = [&](double by,
+                                    double times) { // from b, to the right of the side, turned by `by`
+                return Point2{b.x + times * distance * std::sin(angle + by),
+                              b.y - times * distance * std::cos(angle + by)};
+            };
+            const Point2 to = around(0, 1);
+            add({a, b, to, {to.x - b.x + a.x, to.y - b.y + a.y}});
+            if (turn * distance <= 0)
+                continue;
+            Contour wedge{b, to};
+            if (corners.shape == OffsetCorner::mitre) {
+                if (1 / std::cos(turn / 2) <= corners.mitre_limit) {
+                    wedge.push_back(around(turn / 2, 1 / std::cos(turn / 2)));
+                } else {
+                    wedge.push_back(around(turn / 4, 1 / std::cos(turn / 4)));
+                    wedge.push_back(around(turn * 3 / 4, 1 / std::cos(turn / 4)));
+                }
+            } else if (corners.shape == OffsetCorner::round) {
+                for (int k = 1; k < 60; ++k)
+                    wedge.push_back(around(turn * k / 60, 1));
+            }
+            wedge.push_back(around(turn, 1));
+            add(wedge);
+        }
+    }
+    return layer_of(rings);
+}
+
+TEST(Offset, IsTheMaterialWithOrWithoutStripsAndWedges) {
+    Random random(81);
+    for (int round = 0; round < test::rounds_within_reason(3000); ++round) {
+        SCOPED_TRACE(round);
+        Layer layer = random_material(random, round % 2 == 0);
+        if (round % 5 == 0)
+            layer = in_pieces(layer, random);
+        if (has_walls(layer))
+            continue;
+        const OffsetCorners corners = round % 3 == 0 ? mitred : round % 3 == 1 ? bevelled : rounded;
+        const double distance = random.real(0.05, 3) * (random.integer(0, 1) == 0 ? 1 : -1);
+        const Layer moved = offset(layer, distance, corners);
+        const double expected =
+            test::winding_area(layer, swept(layer, distance, corners), [&](int material, int strips) {
+                return distance > 0 ? material > 0 || strips > 0 : material > 0 && strips == 0;
+            });
+        const double tolerance =
+            corners.shape == OffsetCorner::round ? 0.004 * measure(layer).perimeter_mm + 0.05 : 1e-6;
+        ASSERT_NEAR(area(moved), expected, tolerance) << distance;
+        ASSERT_TRUE(in_normal_form(moved));
+        ASSERT_EQ(find_crossings(moved).count, 0U);
+        ASSERT_FALSE(fill(moved, FillRule::positive).changed());
+    }
+}
+
+OffsetCorners random_corners(Random& random) {
+    const std::int64_t shape = random.integer(0, 2);
+    return shape == 0 ? mitred : shape == 1 ? bevelled : rounded;
+}
+
+/// What of a layer's material another one has not.
+double excess(const Layer& layer, const Layer& other) {
+    return area(combine(layer, other, BooleanOperation::subtract));
+}
+
+TEST(Offset, GrowsWithItsDistance) {
+    Random random(82);
+    for (int round = 0; round < test::rounds_within_reason(300); ++round) {
+        SCOPED_TRACE(round);
+        const Layer layer = random_material(random, round % 2 == 0);
+        const OffsetCorners corners = random_corners(random);
+        const std::array<double, 5> distances{-1.1, -0.3, 0, 0.2, random.real(0.3, 4)};
+        const std::vector<Layer> moved = offsets(layer, distances, corners);
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            EXPECT_TRUE(same_contours(moved[i], offset(layer, distances[i], corners)));
+            if (i > 0 && corners.shape != OffsetCorner::bevel) { // a wider strip has a longer bevel
+                EXPECT_NEAR(excess(moved[i - 1], moved[i]), 0, 1e-5);
+            }
+        }
+    }
+}
+
+TEST(Offset, ShrunkThenGrownIsContained) {
+    Random random(83);
+    for (int round = 0; round < test::rounds_within_reason(100); ++round) {
+        SCOPED_TRACE(round);
+        const Layer layer = random_material(random, round % 2 == 0);
+        const double distance = random.real(0.1, 2);
+        const OffsetCorners fine{.shape = OffsetCorner::round, .arc_tolerance_mm = 1e-3};
+        const double perimeter = measure(layer).perimeter_mm;
+        EXPECT_NEAR(excess(offset(offset(layer, -distance, fine), distance, fine), layer), 0,
+                    1e-3 * perimeter);
+        EXPECT_NEAR(excess(layer, offset(offset(layer, distance, fine), -distance, fine)), 0,
+                    1e-3 * perimeter);
+    }
+}
+
+/// The distance of a point to the nearest side of a layer.
+double distance_to(const Layer& layer, const Point2& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t r = 0; r < layer.rings; ++r)
+        for (std::size_t i = 0; i < layer.contour(r).size(); ++i) {
+            const Point2& a = layer.contour(r)[i];
+            const Point2& b = layer.contour(r)[(i + 1) % layer.contour(r).size()];
+            const double dx = b.x - a.x;
+            const double dy = b.y - a.y;
+            const double t =
+                std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+            least = std::min(least, std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy));
+        }
+    return least;
+}
+
+TEST(Offset, WithRoundCornersHasItsContoursAtTheDistance) {
+    Random random(84);
+    for (int round = 0; round < test::rounds_within_reason(300); ++round) {
+        SCOPED_TRACE(round);
+        const Layer layer = random_material(random, round % 2 == 0);
+        if (has_walls(layer))
+            continue;
+        const double distance = random.real(0.1, 2) * (round % 3 == 0 ? 1 : -1);
+        for (const Point2& p : offset(layer, distance, rounded).points)
+            ASSERT_NEAR(distance_to(layer, p), std::abs(distance), 0.0011);
+        for (const Point2& p : offset(layer, distance).points) { // mitred: up to twice that
+            ASSERT_GE(distance_to(layer, p), std::abs(distance) - 1e-6);
+            ASSERT_LE(distance_to(layer, p), 2 * std::abs(distance) + 1e-6);
+        }
+    }
+}
+
+TEST(Offset, TakesAnyLayerThatFillTakes) {
+    Random random(85);
+    for (int round = 0; round < test::rounds_within_reason(300); ++round) {
+        SCOPED_TRACE(round);
+        std::vector<Contour> rings;
+        for (std::int64_t c = random.integer(1, 6); c > 0; --c) {
+            Contour ring;
+            for (std::int64_t i = random.integer(0, 8); i > 0; --i)
+                ring.push_back({std::round(random.real(0, 9)), std::round(random.real(0, 9))});
+            rings.push_back(ring);
+        }
+        const Layer layer = layer_of(rings);
+        for (const double distance : {-0.3, 0.4, 1.0, 1e-9, -1e-9, 1e6}) {
+            const Layer moved = offset(layer, distance, random_corners(random));
+            ASSERT_TRUE(in_normal_form(moved));
+            ASSERT_EQ(find_crossings(moved).count, 0U);
+            ASSERT_FALSE(fill(moved, FillRule::positive).changed());
+        }
+    }
+}
+
+TEST(Offset, ScalesWithTheLayer) {
+    Random random(86);
+    const Layer layer = random_material(random, false);
+    const double expected = area(offset(layer, -0.2));
+    for (const double scale : {0x1p-400, 1e-6, 1e6, 0x1p400}) {
+        std::vector<Contour> scaled;
+        for (std::size_t i = 0; i < layer.rings; ++i) {
+            Contour& ring = scaled.emplace_back(layer.contour(i).begin(), layer.contour(i).end());
+            for (Point2& p : ring)
+                p = {p.x * scale, p.y * scale};
+        }
+        EXPECT_NEAR(area(offset(layer_of(scaled), -0.2 * scale)) / scale / scale, expected, 1e-6);
+    }
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::offset_cases

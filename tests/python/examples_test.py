@@ -55,14 +55,23 @@ def test_area_over_height(rook, tmp_path):
     assert imread(picture).std() > 0
 
 
-def test_hatches_fill_the_material(bodies):
+def test_scan_vectors_are_drawn(bodies, tmp_path):
+    picture = tmp_path / "scan.png"
     path = bodies("box", "--size", "20,30,10")
-    text = run("hatch.py", path, 1, 0.5)
-    length, area, each = numbers(text.replace("mm2", "").replace("one", ""))
-    assert area == pytest.approx(10 * 19.5 * 29.5)
-    # Lines half a millimetre apart: each stands for half a square millimetre a millimetre, but for the rims.
-    assert each == pytest.approx(0.5, rel=0.02)
-    assert length == pytest.approx(area / each, rel=0.01)
+    (lines,) = numbers(run("plot_scan.py", path, 5, picture).partition("50, ")[2])
+    (layer,) = lamella.scan(lamella.slice(path, layer_height=0.1)[50:51])
+    assert lines == len(layer.vectors)
+    assert imread(picture).std() > 0
+
+
+def test_narrow_places_get_less_power(bodies):
+    path = bodies("box", "--size", "20,30,1")
+    layers = list(lamella.scan(lamella.slice(path, 0.1)))
+    lines, length, reduced, before, after = numbers(run("power_by_width.py", path, 0.1, 4))
+    assert lines == sum(len(layer.vectors) for layer in layers)
+    assert length == pytest.approx(sum(f.marked_mm for layer in layers for f in layer.figures), abs=1e-3)
+    assert before == pytest.approx(sum(f.energy_j for layer in layers for f in layer.figures), abs=1e-3)
+    assert 0.6 * before < after < before and 0 < reduced < lines
 
 
 def test_a_batch_gives_what_a_single_run_gives(bodies, tmp_path):

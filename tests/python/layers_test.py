@@ -131,6 +131,10 @@ def test_what_can_be_made_of_a_layer():
     square = lamella.Layer([[(0, 0), (2, 0), (4, 0), (4, 4), (0, 4)]], z=0)
     assert np.isclose(square.offset(1).area, 36)
     assert np.isclose(square.offset(-1).area, 4)
+    assert np.isclose(square.offset(1, "bevel").area, 34)
+    assert np.isclose(square.offset(1, corners="round").area, 32 + np.pi, atol=0.01)
+    with pytest.raises(lamella.UsageError, match="there are mitre, bevel and round"):
+        square.offset(1, "sharp")
     assert len(square.simplified(0.01).points) == 4
     other = lamella.Layer([[(3, 1), (9, 1), (9, 2), (3, 2)]], z=5)
     for name, area in [("union", 21), ("intersection", 1), ("difference", 15), ("symmetric_difference", 20)]:

@@ -82,12 +82,14 @@ def test_docstrings_tell_shapes_and_units(name):
 @pytest.mark.parametrize("name", EXTENSION)
 def test_stubs_have_what_the_extension_has(name):
     declared = {node.name for node in stub()[name].body if isinstance(node, ast.FunctionDef)}
+    declared |= {node.target.id for node in stub()[name].body if isinstance(node, ast.AnnAssign)}
     assert set(members(name)) <= declared
     assert {member for member in declared if not member.startswith("__")} <= set(vars(getattr(lamella, name)))
 
 
 def test_the_extension_is_where_the_stubs_are():
-    assert EXTENSION == ["Layer", "LayerStream", "Mesh", "Stack"]
+    assert EXTENSION == ["ContourRule", "Exposure", "HatchRule", "Layer", "LayerStream", "Mesh", "ParameterSet",
+                         "ScanFigures", "ScanStrategy", "SkinRule", "Stack"]
     functions = {name for name, node in stub().items() if isinstance(node, ast.FunctionDef)}
     assert functions == {name for name in vars(lamella._lamella) if inspect.isbuiltin(getattr(lamella._lamella, name))}
     assert (Path(lamella.__file__).parent / "py.typed").is_file()

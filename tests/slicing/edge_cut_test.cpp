@@ -1,4 +1,5 @@
 #include "fixtures/random.hpp"
+#include "fixtures/rounds.hpp"
 #include "slicing/edge_cut.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +73,7 @@ void expect_inside(const Point2& p, const Point3& a, const Point3& b) {
 
 TEST(EdgeCut, IsTheBaseBitForBitOnAPlaneThroughTheBase) {
     test::Random random(10);
-    for (int i = 0; i < 200000; ++i) {
+    for (int i = 0; i < test::rounds_within_reason(200000); ++i) {
         const auto [a, b] = any_edge(random, -60, 60);
         expect_same_bits(EdgeCut(a, b).at(a.z), {a.x, a.y});
         expect_same_bits(EdgeCut(b, a).at(b.z), {b.x, b.y});
@@ -81,7 +82,7 @@ TEST(EdgeCut, IsTheBaseBitForBitOnAPlaneThroughTheBase) {
 
 TEST(EdgeCut, NeverLeavesTheBoxOfTheEdge) {
     test::Random random(11);
-    for (int i = 0; i < 200000; ++i) {
+    for (int i = 0; i < test::rounds_within_reason(200000); ++i) {
         const auto [a, b] = any_edge(random, -60, 60);
         for (const double z : heights_on(random, a.z, b.z)) {
             expect_inside(EdgeCut(a, b).at(z), a, b);
@@ -92,7 +93,7 @@ TEST(EdgeCut, NeverLeavesTheBoxOfTheEdge) {
 
 TEST(EdgeCut, NeverLeavesTheBoxOfAnEdgeOfAnySize) {
     test::Random random(12);
-    for (int i = 0; i < 200000; ++i) {
+    for (int i = 0; i < test::rounds_within_reason(200000); ++i) {
         const auto [a, b] = any_edge(random, -1074, 1022);
         for (const double z : heights_on(random, a.z, b.z)) {
             expect_inside(EdgeCut(a, b).at(z), a, b);
@@ -103,7 +104,7 @@ TEST(EdgeCut, NeverLeavesTheBoxOfAnEdgeOfAnySize) {
 
 TEST(EdgeCut, NeverLeavesTheBoxOfAnEdgeThatIsAlmostLevel) {
     test::Random random(13);
-    for (int i = 0; i < 100000; ++i) {
+    for (int i = 0; i < test::rounds_within_reason(100000); ++i) {
         auto [a, b] = any_edge(random, -10, 10);
         a.z = any_size(random, -1074, -1020);
         b.z = a.z + static_cast<double>(random.integer(1, 5)) * 5e-324;
@@ -116,7 +117,7 @@ TEST(EdgeCut, NeverLeavesTheBoxOfAnEdgeThatIsAlmostLevel) {
 
 TEST(EdgeCut, ReachesTheFarEndUpToRounding) {
     test::Random random(14);
-    for (int i = 0; i < 100000; ++i) {
+    for (int i = 0; i < test::rounds_within_reason(100000); ++i) {
         const auto [a, b] = any_edge(random, -30, 30);
         const Point2 p = EdgeCut(a, b).at(b.z);
         const double dx = b.x - a.x;
@@ -128,7 +129,7 @@ TEST(EdgeCut, ReachesTheFarEndUpToRounding) {
 
 TEST(EdgeCut, ErrsByNoMoreThanItsStatedBound) {
     test::Random random(15);
-    for (int i = 0; i < 300000; ++i) {
+    for (int i = 0; i < test::rounds_within_reason(300000); ++i) {
         const auto [a, b] = any_edge(random, -30, 30);
         const EdgeCut cut(a, b);
         for (const double z : heights_on(random, a.z, b.z)) {
@@ -146,7 +147,7 @@ TEST(EdgeCut, ErrsByNoMoreThanItsStatedBound) {
 
 TEST(EdgeCut, DoesNotTurnBackAsThePlaneRises) {
     test::Random random(16);
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < test::rounds_within_reason(20000); ++i) {
         const auto [a, b] = any_edge(random, -30, 30);
         const bool up = a.z < b.z;
         std::vector<double> z = heights_on(random, a.z, b.z);

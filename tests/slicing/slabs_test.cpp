@@ -139,22 +139,24 @@ TEST(Slabs, SharesCountTogetherAsTheWhole) {
 }
 
 TEST(Slabs, FindWhomATriangleTouches) {
+    const std::vector<PlaneRange> overlapping{{0, 5}, {2, 9}, {2, 9}, {8, 12}, {30, 40}, {40, 40}};
     const Triangles triangles = litter(3000);
-    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
-        const Plan plan = crossing_plan(rule);
-        const Ranks ranks(plan);
-        const SlabFinder finder(plan, some_slabs);
-        std::vector<SlabFinder::Touched> touched;
-        finder.find(TriangleSoup(triangles), touched);
-        ASSERT_EQ(touched.size(), triangles.size());
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            const auto [low, middle, high] = ranks_of(ranks, triangles[i]);
-            for (std::uint32_t s = 0; s < some_slabs.size(); ++s)
-                ASSERT_EQ(touched[i].begin <= s && s < touched[i].end,
-                          std::max(low, some_slabs[s].begin) < std::min(high, some_slabs[s].end))
-                    << "triangle " << i << ", slab " << s;
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below})
+        for (const std::vector<PlaneRange>& slabs : {some_slabs, overlapping}) {
+            const Plan plan = crossing_plan(rule);
+            const Ranks ranks(plan);
+            const SlabFinder finder(plan, slabs);
+            std::vector<SlabFinder::Touched> touched;
+            finder.find(TriangleSoup(triangles), touched);
+            ASSERT_EQ(touched.size(), triangles.size());
+            for (std::size_t i = 0; i < triangles.size(); ++i) {
+                const auto [low, middle, high] = ranks_of(ranks, triangles[i]);
+                for (std::uint32_t s = 0; s < slabs.size(); ++s)
+                    ASSERT_EQ(touched[i].begin <= s && s < touched[i].end,
+                              std::max(low, slabs[s].begin) < std::min(high, slabs[s].end))
+                        << "triangle " << i << ", slab " << s;
+            }
         }
-    }
 }
 
 /// Each plane in one slab, in order.

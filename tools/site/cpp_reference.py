@@ -17,6 +17,7 @@ TITLES = {
     "slicing": "Slicing",
     "polygon": "What is made of layers",
     "raster": "Pictures",
+    "scan": "Scan vectors",
     "write": "Writing",
     "pipeline": "From file to file",
 }

@@ -83,6 +83,9 @@ class LayerBuilder {
     void end_contour(bool closed);
     /// The layer, in normal form, with index, z, bottom and top as given. The builder is empty afterwards.
     [[nodiscard]] Layer finish(std::uint64_t index, double z, double bottom, double top);
+    /// The same for contours whose order counts, as that of scan vectors does: rings, then chains, each from
+    /// its first point, as they were added.
+    [[nodiscard]] Layer finish_as_added(std::uint64_t index, double z, double bottom, double top);
     [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
 
   private:

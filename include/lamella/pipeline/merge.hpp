@@ -29,8 +29,9 @@ struct MergeResult {
 /// Layers of other formats are read and written anew. Memory holds one of the files at a time.
 ///
 /// `format`: by name; "" goes by the extension of `output`. Throws Error{input} when files differ in their
-/// parts, their units or their head, when one begins above the end of the one below it (a gap) or below it
-/// (an overlap), naming both; and what reading and writing throw.
+/// parts (but of scan vectors, formats that know only parts with some), their units or their head, when one
+/// begins above the end of the one below it (a gap) or below it (an overlap), naming both; and what reading
+/// and writing throw.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format = {}, const LayerWriteOptions& options = {},
                               const LayerReadOptions& reading = {}, const Execution& execution = {});

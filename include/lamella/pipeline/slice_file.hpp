@@ -10,7 +10,9 @@
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
+#include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/polygon/layer_steps.hpp"
+#include "lamella/scan/strategy.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -81,6 +83,9 @@ struct FileJob {
 
     /// What is made of the layers of each part before they are written.
     LayerSteps steps;
+    /// Where set, scan vectors of what the steps make are written in the place of contours (with_exposures).
+    /// Skins see the planes beside those that are written, too, whichever `layering` and `shard` leave out.
+    std::optional<ScanStrategy> scan;
 
     std::string output; ///< "" writes nothing, "-" is standard output
     std::string format; ///< by name; "" goes by the extension of `output`
@@ -97,6 +102,7 @@ struct LayerStatistics {
     std::vector<GapJoin> joins; ///< with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
     LayerChanges changes;   ///< by FileJob::steps
+    std::vector<ScanFigures> scan; ///< with FileJob::scan: of each of FileResult::exposures
 };
 
 /// What became of one part.
@@ -147,15 +153,17 @@ struct FileResult {
         double first_z = 0;
     };
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
-    Affected open;                       ///< with open chains
-    OpenGaps open_gaps;                  ///< of these, in all
-    Affected inside_out;                 ///< whose first ring, always an outer one, runs clockwise
-    std::uint64_t planned_layers = 0;    ///< by all shards
-    PlaneRange shard;                    ///< which of them by this one: all, where there are no shards
-    double bottom = 0;                   ///< of the first layer
-    double top = 0;                      ///< of the last layer
-    std::string format;                  ///< of the slice file, "" when none was written
-    std::uint64_t bytes = 0;             ///< written
+    /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
+    std::vector<ExposureResult> exposures;
+    Affected open;                    ///< with open chains
+    OpenGaps open_gaps;               ///< of these, in all
+    Affected inside_out;              ///< whose first ring, always an outer one, runs clockwise
+    std::uint64_t planned_layers = 0; ///< by all shards
+    PlaneRange shard;                 ///< which of them by this one: all, where there are no shards
+    double bottom = 0;                ///< of the first layer
+    double top = 0;                   ///< of the last layer
+    std::string format;               ///< of the slice file, "" when none was written
+    std::uint64_t bytes = 0;          ///< written
     /// What the format has no place for, one line each (LayerWriter::warnings).
     std::vector<std::string> warnings;
     /// The same of the report.
@@ -168,13 +176,15 @@ struct FileResult {
     /// Wall time. `read` includes finding the bounding box;
     /// `weld` includes the inspection, the repair of meshes, and the weld of engines that need one; `write`
     /// is the part of writing that must be done in order, while formatting is done in parallel and part of
-    /// `slice`. So is what is made of the layers; `polygon` is its time on all threads added up.
+    /// `slice`. So is what is made of the layers; `polygon` is its time on all threads added up, and `scan`
+    /// that of scan vectors.
     struct Seconds {
         double read = 0;
         double weld = 0;
         double link = 0;
         double slice = 0;
         double polygon = 0;
+        double scan = 0;
         double write = 0;
         double total = 0;
     } seconds;
@@ -186,8 +196,9 @@ struct FileResult {
 [[nodiscard]] Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution = {});
 
 /// Slices files into a file. The layers of a single part are written while slicing goes on; several parts are
-/// sliced one after the other on so many planes at a time as memory is meant for. So memory holds a bounded
-/// number of layers. Nothing appears at the output path before all went well.
+/// sliced one after the other on so many planes at a time as memory is meant for, and so is what becomes scan
+/// vectors, which are made a few planes at a time. So memory holds a bounded number of layers. Nothing
+/// appears at the output path before all went well.
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
 /// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.

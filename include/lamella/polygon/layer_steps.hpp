@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/polygon/fill.hpp"
+#include "lamella/polygon/offset.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -15,9 +16,10 @@ namespace LAMELLA_API lamella {
 struct LayerSteps {
     FillRule fill = FillRule::none; ///< see `fill`
     double offset_mm = 0;           ///< see `offset`; 0 is none
-    bool largest_only = false;      ///< see `largest_body`
-    double min_area_mm2 = 0;        ///< see `without_small_rings`; 0 is none
-    double simplify_mm = 0;         ///< see `simplify`; 0 is none
+    OffsetCorners offset_corners = {};
+    bool largest_only = false; ///< see `largest_body`
+    double min_area_mm2 = 0;   ///< see `without_small_rings`; 0 is none
+    double simplify_mm = 0;    ///< see `simplify`; 0 is none
 
     [[nodiscard]] bool any() const noexcept {
         return fill != FillRule::none || offset_mm != 0 || largest_only || min_area_mm2 > 0 ||

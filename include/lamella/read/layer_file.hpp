@@ -2,6 +2,7 @@
 
 // Reading slice files back.
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/plane_rule.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -9,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,11 +27,15 @@ struct LayerReadOptions {
 struct LayerPart {
     std::string label; ///< "" where the file has none
     LayerStack layers;
+    /// Where the file says so, the layers are scan vectors: in the order in which they are executed, not in
+    /// normal form. Numbers of the parameters that it does not say are 0.
+    std::optional<Exposure> exposure = {};
 };
 
 struct LayerFile {
     std::string path;
-    std::string format;  ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json" or "npz"
+    std::string
+        format; ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json", "npz", "ilt", "ovf" or "3mf-toolpath"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
     Rounding rounding;   ///< of coordinates and heights, by the format
     /// By which the layers were cut, where the format says it; else the usual one.
@@ -42,10 +48,11 @@ struct LayerFile {
 };
 
 /// Reads a slice file, by its content: Common Layer Interface (binary or ASCII), layered SVG, SLC, 3MF with
-/// slice stacks, JSON of layers or NumPy arrays, each also packed with gzip. "-" reads standard
-/// input. Layers come in normal form and in ascending z; what the format does not say is made from what it
-/// does (a Common Layer Interface layer knows its top: its cut is taken half-way up). Throws Error{input}
-/// with file, byte or line, what was found and what was expected.
+/// slice stacks, JSON of layers, NumPy arrays, ILT, Open Vector Format or 3MF with toolpaths, each also
+/// packed with gzip. "-" reads standard input. Layers come in ascending z, and in normal form but for
+/// exposures; what the format does not say is made from what it does (a Common Layer Interface layer knows
+/// its top: its cut is taken half-way up). Throws Error{input} with file, byte or line, what was found and
+/// what was expected.
 [[nodiscard]] LayerFile read_layers(const std::string& path, const LayerReadOptions& options = {},
                                     const Execution& execution = {});
 

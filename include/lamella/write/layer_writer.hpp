@@ -2,6 +2,7 @@
 
 // Writing slice files: Common Layer Interface, SVG, pictures.
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/plane_rule.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -21,10 +22,12 @@
 
 namespace LAMELLA_API lamella {
 
-/// One of the parts whose layers a file holds.
+/// One of the parts whose layers a file holds, or one exposure of a part.
 struct PartInfo {
     std::string label = "part";
     Box3 box = {}; ///< mm; empty where nothing is known
+    /// Where set, its layers are scan vectors; see `scan`.
+    std::optional<Exposure> exposure = {};
 };
 
 /// A piece of a slice file, for formats whose files are layers one after the other (LayerFormat::pieces):

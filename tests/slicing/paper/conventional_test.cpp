@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
 
 #include "fixtures/named_solids.hpp"
+#include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/naive_section.hpp"
@@ -62,7 +63,7 @@ TEST(Conventional, GoesRightAroundACommonVertexThatNoPlaneGoesThrough) {
 
 TEST(Conventional, KeepsOpenChainsWhole) {
     test::Random random(31);
-    for (int trial = 0; trial < 20; ++trial) {
+    for (int trial = 0; trial < test::rounds_within_reason(20); ++trial) {
         Triangles drum = test::rugged_drum(static_cast<std::size_t>(random.integer(3, 40)), random.bits());
         for (std::int64_t holes = random.integer(1, 8); holes > 0; --holes)
             drum.erase(drum.begin() + random.integer(0, static_cast<std::int64_t>(drum.size()) - 1));

@@ -1,4 +1,5 @@
 #include "fixtures/named_solids.hpp"
+#include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/naive_section.hpp"
@@ -77,7 +78,7 @@ TEST_P(EdgeLinks, SearchOnceForAnUprightWallHoweverManyPlanesCutIt) {
 
 TEST_P(EdgeLinks, HoldWhereListsOfTwoPlanesAreNotTheSame) {
     // Bodies whose contours part and meet from plane to plane, in orders that link lists in every way.
-    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    for (int seed = 0; seed < test::rounds_within_reason(60); ++seed) {
         SCOPED_TRACE(seed);
         const TriangleSoup torus =
             shuffled(make_torus(6, 2, 9, 7), seed).transformed(test::random_affine(seed));
@@ -88,7 +89,7 @@ TEST_P(EdgeLinks, HoldWhereListsOfTwoPlanesAreNotTheSame) {
 
 TEST_P(EdgeLinks, AreNotFollowedWhereTheyDoNotHold) {
     // Many triangles on every edge: neighbours of one plane are not those of the next one.
-    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    for (int seed = 0; seed < test::rounds_within_reason(60); ++seed) {
         SCOPED_TRACE(seed);
         const Triangles triangles = test::random_triangles(60, 2, seed);
         std::vector<double> z;

@@ -1,0 +1,184 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/core/version.hpp"
+#include "lamella/pipeline/scan_layers.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "layer_file_info.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "page_notes.hpp"
+#include "scan_figures.hpp"
+#include "scan_options.hpp"
+#include "strategy_file.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+struct ScanCommandArguments {
+    std::string input;
+    std::string output;
+    LayerOutputOptions writing;
+    ScanArguments scanning;
+    std::string stats;
+    bool strict = false;
+    ReadLimits limits;
+    RunOptions run;
+};
+
+OptionGroup output_options(ScanCommandArguments& target) {
+    Option output = output_file(
+        "output", "the slice file; its extension says the format; - is standard output", target.output);
+    output.letter = 'o';
+    OptionGroup group{"What is written", {std::move(output)}};
+    for (Option& option : layer_output_options(target.writing))
+        group.options.push_back(std::move(option));
+    group.options.push_back(output_file(
+        "stats", "write figures of the vectors of every layer as JSON; - is standard output", target.stats));
+    group.options.push_back(
+        flag("strict", "make an error of whatever would be lost, and write nothing", target.strict));
+    return group;
+}
+
+/// Vectors are no material: a hatch has no contours, and each contour would be hatched.
+void check_layers(const LayerFile& file) {
+    for (const LayerPart& part : file.parts)
+        if (part.exposure)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: holds scan vectors already ({}); give the layers that they are made "
+                                    "of",
+                                    file.path, one_line(part.label)));
+}
+
+/// What layers have that no vectors are made of.
+std::vector<std::string> losses(const LayerFile& file) {
+    std::uint64_t hatches = 0;
+    std::uint64_t chains = 0;
+    for (const LayerPart& part : file.parts)
+        for (const Layer& layer : part.layers) {
+            hatches += layer.hatches.size() / 2;
+            chains += layer.open_chains();
+        }
+    std::vector<std::string> lost;
+    if (hatches > 0)
+        lost.push_back(fmt::format("{}: {} left out: layers are hatched anew", file.path,
+                                   counted(hatches, "hatch line")));
+    if (chains > 0)
+        lost.push_back(fmt::format("{}: {} left out: only closed contours bound material", file.path,
+                                   counted(chains, "open contour")));
+    return lost;
+}
+
+Json stats_of(const Command& command, const LayerFile& file, const ScanStrategy& strategy,
+              const ScanResult& result) {
+    Json layers = Json::array();
+    double volume_mm3 = 0;
+    for (std::size_t i = 0; i < result.layers.size(); ++i) {
+        const Layer& first = file.parts.front().layers[i];
+        LayerMeasure measured;
+        for (const LayerPart& part : file.parts)
+            measured.add(measure(part.layers[i]));
+        const double layer_mm3 = measured.area_mm2 * first.thickness();
+        volume_mm3 += layer_mm3;
+        layers.push_back({{"index", first.index},
+                          {"z", first.z},
+                          {"thickness", first.thickness()},
+                          {"area_mm2", measured.area_mm2},
+                          {"scan", with_density(scan_json(result.exposures, result.layers[i]), layer_mm3)}});
+    }
+    Json stats = {{"lamella", version()},
+                  {"options", options_in_effect(command)},
+                  {"input", {{"path", file.path}, {"format", file.format}, {"parts", file.parts.size()}}},
+                  {"seconds", {{"scan", result.scan_seconds}}},
+                  {"volume_mm3", volume_mm3},
+                  {"scan", with_density(scan_json(result.exposures), volume_mm3)}};
+    stats["scan"]["strategy"] = strategy_json(strategy);
+    stats["layers"] = std::move(layers);
+    return stats;
+}
+
+int run_scan(const ScanCommandArguments& arguments, const Context& context) {
+    if (arguments.output.empty())
+        throw Error(ErrorKind::usage, "where should the vectors go? Say -o job.cli");
+    check_outputs(context.command);
+    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    LayerWriteOptions options = arguments.writing.write_options(format);
+    options.strict = arguments.strict;
+    options.page.title = title_of(arguments.input);
+    const ScanStrategy strategy = arguments.scanning.strategy();
+    const Execution execution = arguments.run.execution(context);
+    const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
+    check_layers(file);
+    for (const std::string& warning : file.warnings)
+        context.messages.warn(warning);
+    for (const std::string& lost : losses(file)) {
+        if (arguments.strict)
+            throw Error(ErrorKind::defect, lost);
+        context.messages.warn(lost);
+    }
+    const LayerFileInfo info = info_of(file);
+    std::vector<LayerStack> stacks;
+    for (const LayerPart& part : file.parts)
+        stacks.push_back(part.layers);
+    const ScanResult result =
+        scan_layers(arguments.output, format, stacks, info, strategy, options, execution);
+    for (const std::string& warning : result.warnings)
+        context.messages.warn(fmt::format("{}: {}", one_line(arguments.output), warning));
+    if (!arguments.stats.empty()) {
+        const std::string text = json_text(stats_of(context.command, file, strategy, result));
+        if (arguments.stats == "-")
+            context.messages.result(text);
+        else
+            write_text_file(arguments.stats, text);
+    }
+    const std::string text = fmt::format("{}: {} from {} ({}) as {}, {}\n  {}\n", one_line(arguments.output),
+                                         counted(info.layers, "layer"), one_line(file.path), file.format,
+                                         format.name, byte_size(result.bytes), scan_text(result.exposures));
+    context.messages.written(text, arguments.stats == "-" ? "-" : arguments.output);
+    return 0;
+}
+
+} // namespace
+
+Command scan_command() {
+    const auto arguments = std::make_shared<ScanCommandArguments>();
+    return {
+        .name = "scan",
+        .summary = "make scan vectors of a slice file",
+        .description =
+            "Reads the layers of a slice file and writes what a powder-bed machine exposes: contours moved "
+            "inwards and parallel lines that fill the inside, for each part and each region of a strategy "
+            "apart. lamella slice does the same at once, with --scan or --strategy.",
+        .operands = {{.placeholder = "FILE",
+                      .help = "the slice file to read; - is standard input",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->input = text;
+                          }}},
+        .groups = {output_options(*arguments), scan_options(arguments->scanning),
+                   picture_options(arguments->writing.picture),
+                   run_options(arguments->run, {max_memory_option(arguments->limits, "the layers take")}),
+                   common_options(true)},
+        .examples = {{"lamella scan part.cli -o job.cli", "with the strategy that is there by default"},
+                     {"lamella scan part.3mf -o job.cli --strategy 316l.toml --hatch-distance 0.09",
+                      "with another distance than the file has"}},
+        .run = [arguments](const Context& context) {
+            return run_scan(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app

@@ -1,0 +1,64 @@
+#include "lamella/core/error.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "messages.hpp"
+#include "strategy_file.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+namespace lamella::app {
+namespace {
+
+struct StrategyArguments {
+    std::string action;
+    std::string file;
+};
+
+int run_strategy(const StrategyArguments& arguments) {
+    if (arguments.action == "check" && arguments.file.empty())
+        throw Error(ErrorKind::usage, "lamella strategy check needs FILE: the strategy to check");
+    const ScanStrategy strategy = arguments.file.empty() ? ScanStrategy{} : read_strategy(arguments.file);
+    print(arguments.action == "show" ? strategy_text(strategy)
+                                     : fmt::format("{}: is a strategy\n", one_line(arguments.file)));
+    return 0;
+}
+
+} // namespace
+
+Command strategy_command() {
+    const auto arguments = std::make_shared<StrategyArguments>();
+    return {
+        .name = "strategy",
+        .summary = "show or check how parts are scanned",
+        .description =
+            "show prints all of a scan strategy, with units and meanings, as a TOML file to begin a new one "
+            "with: that of FILE, or the one that is there by default. check says whether FILE is a strategy, "
+            "and where it is not.",
+        .operands = {{.placeholder = "ACTION",
+                      .help = "what to do",
+                      .choices = {"show", "check"},
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->action = text;
+                          }},
+                     {.placeholder = "FILE",
+                      .help = "the strategy; - is standard input",
+                      .required = false,
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->file = text;
+                          }}},
+        .groups = {common_options(false)},
+        .examples = {{"lamella strategy show > 316l.toml", "a file to change"},
+                     {"lamella strategy check 316l.toml", "is it right?"}},
+        .run = [arguments](const Context& /*context*/) {
+            return run_strategy(*arguments);
+        }};
+}
+
+} // namespace lamella::app

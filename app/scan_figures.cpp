@@ -1,0 +1,107 @@
+#include "scan_figures.hpp"
+
+#include "numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace lamella::app {
+namespace {
+
+struct Sums {
+    std::uint64_t contour_vectors = 0;
+    std::uint64_t hatch_vectors = 0;
+    ScanFigures all;
+};
+
+Sums sums_of(std::span<const ExposureResult> exposures) {
+    Sums sums;
+    for (const auto& [exposure, figures] : exposures) {
+        (exposure.kind == VectorKind::contour ? sums.contour_vectors : sums.hatch_vectors) += figures.vectors;
+        sums.all += figures;
+    }
+    return sums;
+}
+
+std::string length_text(double mm) {
+    constexpr double metre = 1e3;
+    constexpr double kilometre = 1e6;
+    return mm < metre       ? fmt::format("{:.1f} mm", mm)
+           : mm < kilometre ? fmt::format("{:.1f} m", mm / metre)
+                            : fmt::format("{:.1f} km", mm / kilometre);
+}
+
+std::string time_text(double seconds) {
+    constexpr double minute = 60;
+    if (seconds < minute)
+        return fmt::format("{:.1f} s", seconds);
+    const auto whole = static_cast<std::uint64_t>(std::llround(seconds));
+    const std::uint64_t minutes = whole / 60;
+    return minutes < 60 ? fmt::format("{} min {:02} s", minutes, whole % 60)
+                        : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+std::string energy_text(double joules) {
+    constexpr double kilo = 1e3;
+    constexpr double mega = 1e6;
+    return joules < kilo   ? fmt::format("{:.1f} J", joules)
+           : joules < mega ? fmt::format("{:.1f} kJ", joules / kilo)
+                           : fmt::format("{:.1f} MJ", joules / mega);
+}
+
+} // namespace
+
+Figures scan_figures(std::span<const ExposureResult> exposures) {
+    const Sums sums = sums_of(exposures);
+    return {{"contour_vectors", sums.contour_vectors, "contour vectors", grouped(sums.contour_vectors)},
+            {"hatch_vectors", sums.hatch_vectors, "hatch vectors", grouped(sums.hatch_vectors)},
+            {"marked_mm", sums.all.marked_mm, "marked", length_text(sums.all.marked_mm)},
+            {"jumped_mm", sums.all.jumped_mm, "jumped", length_text(sums.all.jumped_mm)},
+            {"build_seconds", sums.all.build_seconds, "time of the beam", time_text(sums.all.build_seconds)},
+            {"energy_j", sums.all.energy_j, "energy", energy_text(sums.all.energy_j)}};
+}
+
+Json scan_json(std::span<const ExposureResult> exposures) {
+    Json object = as_json(scan_figures(exposures));
+    Json regions = Json::object();
+    for (const ScanRegion region :
+         {ScanRegion::core, ScanRegion::upskin, ScanRegion::downskin, ScanRegion::support}) {
+        std::vector<ExposureResult> its;
+        for (const ExposureResult& one : exposures)
+            if (one.exposure.region == region)
+                its.push_back(one);
+        if (!its.empty())
+            regions[std::string(scan_region_name(region))] = as_json(scan_figures(its));
+    }
+    if (regions.size() > 1)
+        object["regions"] = std::move(regions);
+    return object;
+}
+
+Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer) {
+    assert(layer.size() == exposures.size());
+    std::vector<ExposureResult> its(exposures.begin(), exposures.end());
+    for (std::size_t i = 0; i < its.size(); ++i)
+        its[i].figures = layer[i];
+    return scan_json(its);
+}
+
+Json with_density(Json scan, double volume_mm3) {
+    scan["energy_j_mm3"] = volume_mm3 > 0 ? Json(scan["energy_j"].get<double>() / volume_mm3) : Json();
+    return scan;
+}
+
+std::string scan_text(std::span<const ExposureResult> exposures) {
+    const Sums sums = sums_of(exposures);
+    return fmt::format("{} vectors, {} marked, {} jumped, {}, {}",
+                       grouped(sums.contour_vectors + sums.hatch_vectors), length_text(sums.all.marked_mm),
+                       length_text(sums.all.jumped_mm), time_text(sums.all.build_seconds),
+                       energy_text(sums.all.energy_j));
+}
+
+} // namespace lamella::app

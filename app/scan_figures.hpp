@@ -1,0 +1,29 @@
+#pragma once
+
+// The figures of scan vectors.
+
+#include "lamella/pipeline/scan_layers.hpp"
+
+#include "figures.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella::app {
+
+/// Of all of them together: contour_vectors, hatch_vectors, marked_mm, jumped_mm, build_seconds, energy_j.
+[[nodiscard]] Figures scan_figures(std::span<const ExposureResult> exposures);
+
+/// The same figures as an object; with `regions` by their names, where there are several.
+[[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures);
+/// Of one layer, whose figures are in the order of the exposures.
+[[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer);
+
+/// With `energy_j_mm3`: how much of the energy each cubic millimetre gets; null without volume.
+[[nodiscard]] Json with_density(Json scan, double volume_mm3);
+
+/// "1,234,567 vectors, 12.3 m marked, 1.2 m jumped, 1 h 02 min, 45.0 kJ"
+[[nodiscard]] std::string scan_text(std::span<const ExposureResult> exposures);
+
+} // namespace lamella::app

@@ -1,0 +1,463 @@
+#include "strategy_file.hpp"
+
+#include "lamella/core/error.hpp"
+#include "lamella/scan/strategy_fields.hpp"
+
+#include "numbers.hpp"
+#include "suggest.hpp"
+#include "toml_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace lamella::app {
+namespace {
+
+constexpr std::string_view parameters_key = "parameters";
+constexpr std::string_view hatch_key = "hatch"; ///< of a skin, too
+
+// ------------------------------------------------------------------------------------------------ read
+
+std::string found_text(const TomlValue& value) {
+    if (const auto* text = value.as<std::string>())
+        return fmt::format("\"{}\"", *text);
+    if (const auto* flag = value.as<bool>())
+        return *flag ? "true" : "false";
+    if (const auto* whole = value.as<std::int64_t>())
+        return std::to_string(*whole);
+    if (const auto* number = value.as<double>())
+        return exact(*number);
+    if (value.as<TomlList>() != nullptr)
+        return "a list";
+    return value.as<TomlTable>() != nullptr ? "a table" : "a date or time";
+}
+
+[[noreturn]] void refuse_value(const TomlValue& value, const std::string& name, const std::string& expected) {
+    refuse_toml(value.place, fmt::format("{} is {}, but has to be {}", name, found_text(value), expected));
+}
+
+std::string meant(std::string_view word, const std::vector<std::string>& candidates) {
+    const std::string near = nearest(word, candidates);
+    return near.empty() ? fmt::format("; there are {}", fmt::join(candidates, ", "))
+                        : fmt::format("; did you mean {}?", near);
+}
+
+// Values by their type.
+
+void take(const TomlValue& value, const std::string& name, double& into) {
+    if (const auto* number = value.as<double>())
+        into = *number;
+    else if (const auto* whole = value.as<std::int64_t>())
+        into = static_cast<double>(*whole);
+    else
+        refuse_value(value, name, "a number");
+}
+
+template <class Count>
+void take_count(const TomlValue& value, const std::string& name, Count& into) {
+    const auto* const whole = value.as<std::int64_t>();
+    if (whole == nullptr || *whole < 0 ||
+        static_cast<std::uint64_t>(*whole) > std::numeric_limits<Count>::max())
+        refuse_value(value, name, "a whole number, 0 or more");
+    into = static_cast<Count>(*whole);
+}
+void take(const TomlValue& value, const std::string& name, std::uint32_t& into) {
+    take_count(value, name, into);
+}
+void take(const TomlValue& value, const std::string& name, std::uint64_t& into) {
+    take_count(value, name, into);
+}
+
+void take(const TomlValue& value, const std::string& name, bool& into) {
+    const auto* const flag = value.as<bool>();
+    if (flag == nullptr)
+        refuse_value(value, name, "true or false");
+    into = *flag;
+}
+
+template <class Choice>
+void take(const TomlValue& value, const std::string& name, Choice& into) {
+    const NamedValues<Choice> known = named_values(Choice{});
+    const auto* const text = value.as<std::string>();
+    for (const Choice one : known.values)
+        if (text != nullptr && *text == known.name(one)) {
+            into = one;
+            return;
+        }
+    const std::vector<std::string> names = known.names();
+    const std::string near = text == nullptr ? "" : nearest(*text, names);
+    refuse_value(value, name,
+                 fmt::format("one of {}{}", fmt::join(names, ", "),
+                             near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+}
+
+const TomlTable& table_of(const TomlValue& value, const std::string& name) {
+    const auto* const table = value.as<TomlTable>();
+    if (table == nullptr)
+        refuse_value(value, name, fmt::format("a table: [{}]", name));
+    return *table;
+}
+
+/// Goes through a file.
+class StrategyReading {
+  public:
+    ScanStrategy strategy;
+
+    void read(const TomlTable& file) {
+        read_fields("", file, strategy, strategy_fields(),
+                    {{"contours",
+                      [&](const TomlValue& value) {
+                          read_contours(value);
+                      }},
+                     {"hatch",
+                      [&](const TomlValue& value) {
+                          read_hatch("hatch", value, strategy.hatch);
+                      }},
+                     {"upskin",
+                      [&](const TomlValue& value) {
+                          read_skin("upskin", value, strategy.upskin);
+                      }},
+                     {"downskin",
+                      [&](const TomlValue& value) {
+                          read_skin("downskin", value, strategy.downskin);
+                      }},
+                     {"parameters", [&](const TomlValue& value) {
+                          read_sets(value);
+                      }}});
+        resolve("contours", strategy.contours.parameters);
+        resolve("hatch", strategy.hatch.parameters);
+        resolve("upskin.hatch", strategy.upskin.hatch.parameters);
+        resolve("downskin.hatch", strategy.downskin.hatch.parameters);
+        check_use();
+        check_ranges();
+    }
+
+  private:
+    using Others = std::vector<std::pair<std::string, std::function<void(const TomlValue&)>>>;
+
+    /// Where a value stands, and what it is called there.
+    struct Origin {
+        std::string place;
+        std::string name;
+    };
+    struct Set {
+        ParameterSet parameters;
+        Origin origin; ///< without a place where it is not in the file
+        std::map<std::string, Origin> fields;
+        bool used = false;
+    };
+
+    /// The fields of a rule, and what else its table may have. `path`: "" or the name of the table and a dot.
+    template <class Rule>
+    void read_fields(const std::string& path, const TomlTable& table, Rule& rule,
+                     std::span<const StrategyField<Rule>> fields, const Others& others) {
+        for (const auto& [key, value] : table.entries) {
+            const std::string name = path + key;
+            const auto is_it = [&, wanted = std::string_view(key)](const auto& one) {
+                return one.name == wanted;
+            };
+            const auto other =
+                std::find_if(others.begin(), others.end(), [&](const auto& one) { return one.first == key; });
+            origins_[name] = {value.place, name};
+            if (const auto field = std::find_if(fields.begin(), fields.end(), is_it); field != fields.end())
+                std::visit([&](const auto member) { take(value, name, rule.*member); }, field->member);
+            else if (other != others.end())
+                other->second(value);
+            else
+                refuse_key(path, key, value, fields, others);
+        }
+    }
+
+    template <class Rule>
+    [[noreturn]] static void refuse_key(const std::string& path, const std::string& key,
+                                        const TomlValue& value, std::span<const StrategyField<Rule>> fields,
+                                        const Others& others) {
+        std::vector<std::string> known;
+        for (const StrategyField<Rule>& field : fields)
+            known.emplace_back(field.name);
+        for (const auto& [name, read] : others)
+            known.push_back(name);
+        refuse_toml(
+            value.place,
+            fmt::format("{} has no \"{}\"{}",
+                        path.empty() ? "a strategy" : fmt::format("[{}]", path.substr(0, path.size() - 1)),
+                        key, meant(key, known)));
+    }
+
+    /// The parameter set that a rule names.
+    std::pair<std::string, std::function<void(const TomlValue&)>> set_name(const std::string& path,
+                                                                           ParameterSet& of_rule) {
+        return {std::string(parameters_key), [this, path, &of_rule](const TomlValue& value) {
+                    const std::string name = fmt::format("{}.{}", path, parameters_key);
+                    const auto* const text = value.as<std::string>();
+                    if (text == nullptr || text->empty())
+                        refuse_value(value, name, "the name of a parameter set");
+                    of_rule.name = *text;
+                }};
+    }
+
+    void read_contours(const TomlValue& value) {
+        ContourRule& rule = strategy.contours;
+        read_fields("contours.", table_of(value, "contours"), rule, contour_fields(),
+                    {set_name("contours", rule.parameters)});
+    }
+
+    void read_hatch(const std::string& path, const TomlValue& value, HatchRule& rule) {
+        read_fields(path + ".", table_of(value, path), rule, hatch_fields(),
+                    {set_name(path, rule.parameters)});
+    }
+
+    void read_skin(const std::string& path, const TomlValue& value, SkinRule& rule) {
+        const std::string hatch = fmt::format("{}.{}", path, hatch_key);
+        read_fields(path + ".", table_of(value, path), rule, skin_fields(),
+                    {{std::string(hatch_key), [&](const TomlValue& inner) {
+                          read_hatch(hatch, inner, rule.hatch);
+                      }}});
+    }
+
+    void read_sets(const TomlValue& value) {
+        for (const auto& [name, inner] : table_of(value, std::string(parameters_key)).entries) {
+            const std::string path = fmt::format("{}.{}", parameters_key, name);
+            Set& set = sets_.try_emplace(name, named(name)).first->second;
+            set.origin = {inner.place, path};
+            read_fields(path + ".", table_of(inner, path), set.parameters, parameter_fields(), {});
+            for (const auto& [key, unused] : inner.as<TomlTable>()->entries)
+                set.fields[key] = origins_[fmt::format("{}.{}", path, key)];
+        }
+    }
+
+    static Set named(const std::string& name) {
+        Set set;
+        set.parameters.name = name;
+        return set;
+    }
+
+    static std::map<std::string, Set> preset_sets() {
+        const ScanStrategy preset;
+        std::map<std::string, Set> sets;
+        for (const ParameterSet* one : {&preset.contours.parameters, &preset.hatch.parameters,
+                                        &preset.upskin.hatch.parameters, &preset.downskin.hatch.parameters})
+            sets.try_emplace(one->name).first->second.parameters = *one;
+        return sets;
+    }
+
+    void resolve(const std::string& rule, ParameterSet& parameters) {
+        const auto found = sets_.find(parameters.name);
+        if (found == sets_.end()) {
+            std::vector<std::string> names;
+            for (const auto& [name, set] : sets_)
+                names.push_back(name);
+            const std::string key = fmt::format("{}.{}", rule, parameters_key);
+            refuse_toml(origins_.at(key).place,
+                        fmt::format("{} is \"{}\", but there is no [{}.{}]{}", key, parameters.name,
+                                    parameters_key, parameters.name, meant(parameters.name, names)));
+        }
+        Set& set = found->second;
+        set.used = true;
+        parameters = set.parameters;
+        for (const auto& [key, origin] : set.fields)
+            origins_[fmt::format("{}.{}", rule, key)] = origin;
+    }
+
+    /// Powers in a set whose name is mistyped would be those of nobody.
+    void check_use() const {
+        std::vector<std::string> used;
+        for (const auto& [name, set] : sets_)
+            if (set.used)
+                used.push_back(name);
+        for (const auto& [name, set] : sets_)
+            if (!set.used && !set.origin.place.empty())
+                refuse_toml(set.origin.place,
+                            fmt::format("[{}] is used nowhere{}", set.origin.name, meant(name, used)));
+    }
+
+    /// The library names the field; here it gets its place, or that of its table.
+    void check_ranges() const {
+        try {
+            check_strategy(strategy);
+        } catch (const Error& error) {
+            std::string text = error.what();
+            std::string field = text.substr(1, text.find('`', 1) - 1);
+            auto found = origins_.find(field);
+            for (std::string path = field; found == origins_.end(); found = origins_.find(path)) {
+                assert(path.find('.') != std::string::npos); // by default all is right
+                path.resize(path.rfind('.'));
+            }
+            if (found->first == field)
+                field = found->second.name;
+            text = field + text.substr(text.find('`', 1) + 1);
+            std::erase(text, '`');
+            refuse_toml(found->second.place, text);
+        }
+    }
+
+    std::map<std::string, Set> sets_ = preset_sets();
+    std::map<std::string, Origin> origins_; ///< by path, as the library has it
+};
+
+// ----------------------------------------------------------------------------------------------- write
+
+template <class Choice>
+Json value_json(Choice value) {
+    return std::string(named_values(value).name(value));
+}
+Json value_json(double value) {
+    return value;
+}
+Json value_json(bool value) {
+    return value;
+}
+Json value_json(std::uint32_t value) {
+    return value;
+}
+Json value_json(std::uint64_t value) {
+    return value;
+}
+
+std::string value_text(double value) {
+    return exact(value);
+}
+template <class Value>
+std::string value_text(Value value) {
+    return value_json(value).dump(); // as TOML has it, too
+}
+
+template <class Choice>
+std::string choices_text(Choice) {
+    return fmt::format(": {}", fmt::join(named_values(Choice{}).names(), ", "));
+}
+template <class Number>
+requires std::is_arithmetic_v<Number> std::string choices_text(Number) {
+    return {};
+}
+
+template <class Rule>
+Json rule_json(const Rule& rule, std::span<const StrategyField<Rule>> fields) {
+    Json object = Json::object();
+    for (const StrategyField<Rule>& field : fields)
+        object[std::string(field.name)] =
+            std::visit([&](const auto member) { return value_json(rule.*member); }, field.member);
+    return object;
+}
+
+std::string commented(const std::string& line, const std::string& comment) {
+    constexpr std::size_t column = 32;
+    return fmt::format("{:<{}}# {}\n", line, column, comment);
+}
+
+template <class Rule>
+std::string rule_text(const Rule& rule, std::span<const StrategyField<Rule>> fields) {
+    std::string text;
+    for (const StrategyField<Rule>& field : fields)
+        std::visit(
+            [&](const auto member) {
+                text += commented(fmt::format("{} = {}", field.name, value_text(rule.*member)),
+                                  fmt::format("{}{}{}{}", field.unit, field.unit.empty() ? "" : ", ",
+                                              field.help, choices_text(rule.*member)));
+            },
+            field.member);
+    return text;
+}
+
+/// A key of a table; quotes only where TOML asks for them.
+std::string key_text(const std::string& name) {
+    const bool bare = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_' || c == '-';
+    });
+    return bare ? name : toml_quoted(name);
+}
+
+std::string set_text(const ParameterSet& set) {
+    return commented(fmt::format("{} = {}", parameters_key, toml_quoted(set.name)),
+                     "what the beam does: the table of this name below");
+}
+
+std::string hatch_text(const HatchRule& rule) {
+    return rule_text(rule, hatch_fields()) + set_text(rule.parameters);
+}
+
+std::string skin_text(const std::string& name, const SkinRule& rule, std::string_view where) {
+    return fmt::format("\n# Where there is no material {}, or little.\n[{}]\n{}\n[{}.{}]\n{}", where, name,
+                       rule_text(rule, skin_fields()), name, hatch_key, hatch_text(rule.hatch));
+}
+
+Json hatch_json(const HatchRule& rule) {
+    Json object = rule_json(rule, hatch_fields());
+    object[std::string(parameters_key)] = rule.parameters.name;
+    return object;
+}
+
+Json skin_json(const SkinRule& rule) {
+    Json object = rule_json(rule, skin_fields());
+    object[std::string(hatch_key)] = hatch_json(rule.hatch);
+    return object;
+}
+
+/// Each once, in the order of the tables.
+std::vector<ParameterSet> sets_of(const ScanStrategy& strategy) {
+    std::vector<ParameterSet> sets;
+    for (const ParameterSet* one : {&strategy.contours.parameters, &strategy.hatch.parameters,
+                                    &strategy.upskin.hatch.parameters, &strategy.downskin.hatch.parameters})
+        if (std::none_of(sets.begin(), sets.end(),
+                         [&](const ParameterSet& set) { return set.name == one->name; }))
+            sets.push_back(*one);
+    return sets;
+}
+
+} // namespace
+
+ScanStrategy read_strategy(const std::string& path) {
+    StrategyReading reading;
+    reading.read(read_toml(path));
+    return reading.strategy;
+}
+
+std::string strategy_text(const ScanStrategy& strategy) {
+    std::string text =
+        "# A strategy for --strategy of lamella slice and lamella scan. What a file does not say is "
+        "as by default.\n\n";
+    text += rule_text(strategy, strategy_fields());
+    text +=
+        fmt::format("\n# Lines along the outline of the part.\n[contours]\n{}{}",
+                    rule_text(strategy.contours, contour_fields()), set_text(strategy.contours.parameters));
+    text += fmt::format("\n# Parallel lines that fill the core.\n[hatch]\n{}", hatch_text(strategy.hatch));
+    text += skin_text("upskin", strategy.upskin, "above");
+    text += skin_text("downskin", strategy.downskin, "below");
+    text += "\n# What the beam does along lines and between them.\n";
+    for (const ParameterSet& set : sets_of(strategy))
+        text += fmt::format("[{}.{}]\n{}\n", parameters_key, key_text(set.name),
+                            rule_text(set, parameter_fields()));
+    text.pop_back();
+    return text;
+}
+
+Json strategy_json(const ScanStrategy& strategy) {
+    Json object = rule_json(strategy, strategy_fields());
+    object["contours"] = rule_json(strategy.contours, contour_fields());
+    object["contours"][std::string(parameters_key)] = strategy.contours.parameters.name;
+    object["hatch"] = hatch_json(strategy.hatch);
+    object["upskin"] = skin_json(strategy.upskin);
+    object["downskin"] = skin_json(strategy.downskin);
+    for (const ParameterSet& set : sets_of(strategy))
+        object[std::string(parameters_key)][set.name] = rule_json(set, parameter_fields());
+    return object;
+}
+
+} // namespace lamella::app

@@ -1,0 +1,91 @@
+// The TOML library is visible in this source only.
+#define TOML_HEADER_ONLY 1
+
+#include "toml_file.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "standard_streams.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <toml++/toml.h>
+
+#include <cstddef>
+
+namespace lamella::app {
+namespace {
+
+/// Makes values of the library's nodes.
+class Conversion {
+  public:
+    explicit Conversion(const std::string& name) : name_(name) {}
+
+    TomlTable table(const toml::table& table) const {
+        TomlTable found;
+        for (const auto& [key, node] : table)
+            found.entries.emplace_back(std::string(key.str()), value(key.source(), node));
+        return found;
+    }
+
+  private:
+    TomlValue value(const toml::source_region& source, const toml::node& node) const {
+        TomlValue found{fmt::format("{}:{}", name_, source.begin.line), {}};
+        if (const auto* text = node.as_string())
+            found.value = text->get();
+        else if (const auto* flag = node.as_boolean())
+            found.value = flag->get();
+        else if (const auto* whole = node.as_integer())
+            found.value = whole->get();
+        else if (const auto* number = node.as_floating_point())
+            found.value = number->get();
+        else if (const auto* array = node.as_array())
+            found.value = list(*array);
+        else if (const auto* inner = node.as_table())
+            found.value = table(*inner);
+        return found;
+    }
+
+    TomlList list(const toml::array& array) const {
+        TomlList found;
+        for (const toml::node& item : array)
+            found.push_back(value(item.source(), item));
+        return found;
+    }
+
+    const std::string& name_;
+};
+
+} // namespace
+
+TomlTable read_toml(const std::string& path) {
+    const std::string content = read_text_file(path);
+    const std::string name = input_name(path);
+    try {
+        return Conversion(name).table(toml::parse(content));
+    } catch (const toml::parse_error& error) {
+        refuse_toml(fmt::format("{}:{}", name, error.source().begin.line),
+                    fmt::format("expected TOML: {}", error.description()));
+    }
+}
+
+// TOML's basic strings escape as JSON's do, but for one character more.
+std::string toml_quoted(const std::string& text) {
+    std::string quoted;
+    try {
+        quoted = nlohmann::json(text).dump();
+    } catch (const nlohmann::json::type_error&) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" is not UTF-8, as text in a configuration file has to be", text));
+    }
+    for (std::size_t at = 0; (at = quoted.find('\x7f', at)) != std::string::npos;)
+        quoted.replace(at, 1, "\\u007f");
+    return quoted;
+}
+
+void refuse_toml(const std::string& place, std::string_view text) {
+    throw Error(ErrorKind::usage, fmt::format("{}: {}", place, text));
+}
+
+} // namespace lamella::app

@@ -1,0 +1,43 @@
+#pragma once
+
+// TOML files, as values that know where they stand.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace lamella::app {
+
+struct TomlValue;
+
+struct TomlTable {
+    /// Keys and their values, ordered by key.
+    std::vector<std::pair<std::string, TomlValue>> entries = {};
+};
+using TomlList = std::vector<TomlValue>;
+
+struct TomlValue {
+    std::string place; ///< file and line of its key, or of the value itself in a list: "job.toml:3"
+    /// Nothing for dates and times.
+    std::variant<std::monostate, std::string, bool, std::int64_t, double, TomlList, TomlTable> value;
+
+    template <class Kind>
+    [[nodiscard]] const Kind* as() const noexcept {
+        return std::get_if<Kind>(&value);
+    }
+};
+
+/// Reads a file; "-" is standard input. Throws Error{usage} with the line for what is no TOML, and
+/// Error{input} when it cannot be read.
+[[nodiscard]] TomlTable read_toml(const std::string& path);
+
+/// A text as TOML has it. Throws Error{usage} where it is not UTF-8.
+[[nodiscard]] std::string toml_quoted(const std::string& text);
+
+/// Throws Error{usage}: "job.toml:3: ...".
+[[noreturn]] void refuse_toml(const std::string& place, std::string_view text);
+
+} // namespace lamella::app

@@ -1,0 +1,61 @@
+#pragma once
+
+// What a machine is told of vectors besides where they are.
+
+#include "lamella/core/api.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace LAMELLA_API lamella {
+
+/// Of what vectors are, in a layer of a part.
+enum class ScanRegion : std::uint8_t {
+    core,
+    upskin,   ///< with no material above, or little
+    downskin, ///< with no material below, or little
+    support,
+};
+
+/// "core", "upskin", "downskin", "support".
+[[nodiscard]] std::string_view scan_region_name(ScanRegion region) noexcept;
+
+enum class VectorKind : std::uint8_t {
+    contour, ///< vectors one after the other, along the outline
+    hatch,   ///< apart from one another, to fill the inside
+};
+
+/// "contour", "hatch".
+[[nodiscard]] std::string_view vector_kind_name(VectorKind kind) noexcept;
+
+/// What a beam does along vectors and between them. Called by its name in files and by machines. The values
+/// preset are those that a strategy begins with: for the hatch of 316L steel, layers of 0.03 mm; a place to
+/// begin at, not a promise for a certain machine.
+struct ParameterSet {
+    std::string name = "hatch";
+    double power_w = 200;
+    double speed_mm_s = 800;
+    double jump_speed_mm_s = 5000;
+    double focus_mm = 0;        ///< how far the focus is above the layer
+    double spot_mm = 0.08;      ///< diameter of the beam on the layer
+    double mark_delay_us = 100; ///< after each line, or run of lines without a jump
+    double jump_delay_us = 100; ///< after each jump
+
+    friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
+};
+
+/// What the vectors of one part on one layer have in common that a machine executes in one go. Slice files
+/// have it as a part of their own: layers with rings and chains for contours, with hatches for a hatch.
+struct Exposure {
+    std::string part = "part"; ///< its label
+    ScanRegion region = ScanRegion::core;
+    VectorKind kind = VectorKind::contour;
+    std::uint32_t contour = 0; ///< its number, of the outermost one 1; 0 for hatches
+    ParameterSet parameters;
+
+    /// Such as "core contour 1" and "upskin hatch".
+    [[nodiscard]] std::string name() const;
+};
+
+} // namespace lamella

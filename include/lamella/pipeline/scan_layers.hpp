@@ -1,0 +1,47 @@
+#pragma once
+
+// Layers that are there already: their scan vectors, written to a file.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/scan/scan.hpp"
+#include "lamella/scan/strategy.hpp"
+#include "lamella/write/layer_writer.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace LAMELLA_API lamella {
+
+/// What one of the `exposures` of a strategy takes.
+struct ExposureResult {
+    Exposure exposure; ///< of no part: of all of them
+    ScanFigures figures;
+};
+
+/// The head of a slice file for scan vectors: in the place of each part its exposures, called by the label of
+/// the part and their own name, such as "bracket core hatch".
+[[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
+
+struct ScanResult {
+    /// In the order in which they are executed, all layers and parts together. A beam goes through the parts
+    /// of a layer one after the other; how it comes from layer to layer does not count.
+    std::vector<ExposureResult> exposures;
+    /// For each layer what each of these takes.
+    std::vector<std::vector<ScanFigures>> layers;
+    double scan_seconds = 0; ///< of all threads
+    std::uint64_t bytes = 0; ///< written
+    std::vector<std::string> warnings;
+};
+
+/// Scans the layers of parts, whose stacks have the same planes, and writes the vectors; `info` is the head
+/// of a file of these layers. Hatches that layers have already do not count. On all threads, each of which
+/// holds the vectors of one plane. Throws what `scan` and `write_layers` throw.
+[[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
+                                     std::span<const LayerStack> parts, const LayerFileInfo& info,
+                                     const ScanStrategy& strategy, const LayerWriteOptions& options = {},
+                                     const Execution& execution = {});
+
+} // namespace lamella

@@ -1,0 +1,53 @@
+#pragma once
+
+// From layers to scan vectors: what a powder-bed machine executes.
+
+#include "lamella/contour/exposure.hpp"
+#include "lamella/contour/layer.hpp"
+#include "lamella/scan/strategy.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace LAMELLA_API lamella {
+
+/// The vectors of one layer of a part, by a strategy: a layer for each of its `exposures`, with index and
+/// heights of that one. Those of contours have rings, in the order in which they are followed, each from the
+/// point where the beam begins; those of hatches have `hatches`, in their order, from first point to second
+/// point. They are not in normal form: order is part of the result.
+///
+/// What is filled is the material of the layer as `offset` sees it (open chains are none), moved inwards: by
+/// the beam's offset for the outermost contour, by the distance for each of the others, by the border for
+/// hatches. A line on an edge is decided by the rule of the plane, in one dimension less: of a point on a
+/// line counts what is above it.
+///
+/// `below` and `above`: the layers beneath and on top, the nearest one first, for skins; as many as the
+/// strategy asks for (`SkinRule::layers`), and fewer only where there are no more: where the part ends there
+/// is no material.
+///
+/// The same bits on every machine, for any order of rings. O((n + v) log) for n points and v vectors, beside
+/// what offsets and, for skins, differences take. Throws Error{usage} as `check_strategy`, and Error{limit}
+/// for a layer that would have more than 2^26 lines, or islands, before memory is spent on them.
+[[nodiscard]] std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below,
+                                      std::span<const Layer> above, const ScanStrategy& strategy);
+
+/// What a machine does for vectors.
+struct ScanFigures {
+    std::uint64_t vectors = 0;
+    double marked_mm = 0;
+    double jumped_mm = 0;
+    double build_seconds =
+        0; ///< by the speeds and delays of the parameter sets alone: what accelerates is left out
+    double energy_j = 0; ///< power by the time of marking
+
+    ScanFigures& operator+=(const ScanFigures& other) noexcept;
+};
+
+/// Of vectors executed one after the other with one parameter set, from where the beam was before, and that
+/// is moved to where it ends. O(vectors).
+[[nodiscard]] ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
+                                          std::optional<Point2>& beam);
+
+} // namespace lamella

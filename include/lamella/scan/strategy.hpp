@@ -1,0 +1,101 @@
+#pragma once
+
+// How a powder-bed machine is to expose a part: contours, hatches, skins. Lengths are in mm.
+
+#include "lamella/contour/exposure.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace LAMELLA_API lamella {
+
+/// How lines that fill an area follow one another.
+enum class HatchPattern : std::uint8_t {
+    lines,      ///< one by one, all in one direction
+    meander,    ///< one by one, back and forth
+    stripes,    ///< cut into stripes, across which they go back and forth; stripe by stripe
+    chessboard, ///< cut into squares, each hatched across the direction of its neighbours
+    hexagons,   ///< cut into hexagons, hatched in three directions, other ones in neighbours
+};
+[[nodiscard]] std::string_view hatch_pattern_name(HatchPattern pattern) noexcept;
+
+/// In what order squares or hexagons are hatched.
+enum class IslandOrder : std::uint8_t {
+    rows,   ///< row by row, back and forth
+    random, ///< by the seed of the strategy, another order on each layer
+};
+[[nodiscard]] std::string_view island_order_name(IslandOrder order) noexcept;
+
+/// Parallel lines that fill an area.
+///
+/// They lie at multiples of the distance from a line through the origin of the machine, whatever part, shard
+/// or neighbour they are for; stripes and islands likewise. Angles are from the x axis to the y axis.
+struct HatchRule {
+    HatchPattern pattern = HatchPattern::stripes;
+    double distance = 0.1;    ///< from line to line, above 0
+    double angle_degrees = 0; ///< of the lines of layer 0
+    double turn_degrees = 67; ///< from each layer to the next
+    double border = 0.05;     ///< from the innermost contour, or the outline of the part, to where lines end
+    double shortest = 0.1;    ///< shorter lines are left out
+    double cell = 5;          ///< width of a stripe or a square, of a hexagon from side to side; above 0
+    double overlap = 0.1;     ///< of neighbouring stripes or islands; less than half of `cell`
+    IslandOrder order = IslandOrder::rows;
+    ParameterSet parameters;
+};
+
+/// Where a beam begins to follow a contour.
+enum class StartPoint : std::uint8_t {
+    aligned,  ///< at the corner that is farthest in a direction
+    sharpest, ///< at the sharpest convex corner; of equal ones at the first
+    random,   ///< at a corner by the seed of the strategy
+};
+[[nodiscard]] std::string_view start_point_name(StartPoint start) noexcept;
+
+/// Which contour of several comes first.
+enum class ContourOrder : std::uint8_t { inside_out, outside_in };
+[[nodiscard]] std::string_view contour_order_name(ContourOrder order) noexcept;
+
+/// The most that a strategy can ask for.
+inline constexpr std::uint32_t most_contours = 100;
+inline constexpr std::uint32_t most_skin_layers = 1000;
+
+/// Lines along the outline of the part.
+struct ContourRule {
+    std::uint32_t count = 1; ///< at most `most_contours`; 0 leaves contours out
+    double beam_offset =
+        0.05; ///< from the outline of the part inwards to the outermost contour: half of the melt
+    double distance = 0.1; ///< from each contour to the next one inwards
+    ContourOrder order = ContourOrder::inside_out;
+    bool before_hatch = false;
+    StartPoint start = StartPoint::aligned;
+    double start_direction_degrees = 90; ///< of StartPoint::aligned
+    ParameterSet parameters{.name = "contour", .power_w = 120, .speed_mm_s = 500};
+};
+
+/// A region of the layer that has less than `layers` layers of material above it, or below.
+struct SkinRule {
+    std::uint32_t layers = 0; ///< at most `most_skin_layers`; 0: there is no such region
+    /// Strips that are narrower are none: walls differ from layer to layer by roundings, and by their slope.
+    double narrowest = 0.02;
+    double overlap = 0.1; ///< by which it is grown into the core
+    HatchRule hatch;
+};
+
+/// All of it. By default what makes sense for 316L steel and layers of 0.03 mm.
+struct ScanStrategy {
+    ContourRule contours;
+    HatchRule hatch; ///< of the core
+    SkinRule upskin{.hatch = {.parameters = {.name = "upskin", .power_w = 180, .speed_mm_s = 900}}};
+    SkinRule downskin{.hatch = {.parameters = {.name = "downskin", .power_w = 120, .speed_mm_s = 1200}}};
+    std::uint64_t seed = 1;
+};
+
+/// Throws Error{usage} that names the field for values out of range.
+void check_strategy(const ScanStrategy& strategy);
+
+/// What each layer of a part has, in the order in which it is executed.
+[[nodiscard]] std::vector<Exposure> exposures(const ScanStrategy& strategy, const std::string& part);
+
+} // namespace lamella

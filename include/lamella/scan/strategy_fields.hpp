@@ -1,0 +1,56 @@
+#pragma once
+
+// All that a scan strategy consists of, described once: strategy files are read and written by these tables,
+// statistics tell the strategy by them, options that set the same take their words, and Python its
+// attributes.
+
+#include "lamella/scan/strategy.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace LAMELLA_API lamella {
+
+/// One value of a struct of a strategy.
+template <class Rule>
+struct StrategyField {
+    std::string_view name; ///< in files; that of the member
+    std::string_view unit; ///< such as "mm"; "" where there is none
+    std::string_view help;
+    std::variant<double Rule::*, std::uint32_t Rule::*, std::uint64_t Rule::*, bool Rule::*,
+                 HatchPattern Rule::*, IslandOrder Rule::*, StartPoint Rule::*, ContourOrder Rule::*>
+        member;
+};
+
+/// In the order in which files have them. Parameter sets are named where they are used, and have tables of
+/// their own; so have the hatches of skins.
+[[nodiscard]] std::span<const StrategyField<ContourRule>> contour_fields() noexcept;
+[[nodiscard]] std::span<const StrategyField<HatchRule>> hatch_fields() noexcept;
+[[nodiscard]] std::span<const StrategyField<SkinRule>> skin_fields() noexcept;
+[[nodiscard]] std::span<const StrategyField<ParameterSet>> parameter_fields() noexcept;
+/// What belongs to none of these.
+[[nodiscard]] std::span<const StrategyField<ScanStrategy>> strategy_fields() noexcept;
+
+/// All values of a type, and what they are called.
+template <class Choice>
+struct NamedValues {
+    std::span<const Choice> values;
+    std::string_view (*name)(Choice) noexcept;
+
+    [[nodiscard]] std::vector<std::string> names() const {
+        std::vector<std::string> all;
+        for (const Choice value : values)
+            all.emplace_back(name(value));
+        return all;
+    }
+};
+[[nodiscard]] NamedValues<HatchPattern> named_values(HatchPattern) noexcept;
+[[nodiscard]] NamedValues<IslandOrder> named_values(IslandOrder) noexcept;
+[[nodiscard]] NamedValues<StartPoint> named_values(StartPoint) noexcept;
+[[nodiscard]] NamedValues<ContourOrder> named_values(ContourOrder) noexcept;
+
+} // namespace lamella

@@ -1,0 +1,230 @@
+"""From layers to scan vectors: what a powder-bed machine executes."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections import deque
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Deque, Dict, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arguments as check
+from . import _lamella
+from ._errors import InputError, UsageError
+from ._lamella import Exposure, Layer, ParameterSet, ScanFigures, ScanStrategy
+
+StrategyLike = Union[ScanStrategy, Mapping[str, Any], "os.PathLike[str]", str, None]
+
+
+@dataclass(frozen=True)
+class ScanLayer:
+    """The scan vectors of one layer of a part, exposure by exposure, in the order in which they are executed."""
+
+    index: int  #: of the layer in the whole plan
+    z: float  #: where it was cut, in millimetres
+    bottom: float  #: of the material it stands for
+    top: float
+    exposures: Tuple[Exposure, ...]
+    #: Of each exposure: contours as rings, each from where the beam begins; hatches as `hatches`. Without copies.
+    layers: Tuple[Layer, ...]
+
+    def __iter__(self) -> Iterator[Tuple[Exposure, Layer]]:
+        return zip(self.exposures, self.layers)
+
+    @property
+    def vectors(self) -> npt.NDArray[np.float64]:
+        """All lines, from point to point, in their order: (n, 2, 2), millimetres. A copy."""
+        lines = [_lines(layer) for layer in self.layers]
+        return np.concatenate(lines) if lines else np.empty((0, 2, 2))
+
+    @property
+    def exposure(self) -> npt.NDArray[np.int64]:
+        """For each line the number of its exposure: (n,)."""
+        counts = [len(_lines(layer)) for layer in self.layers]
+        return np.repeat(np.arange(len(counts)), counts)
+
+    @property
+    def figures(self) -> List[ScanFigures]:
+        """What a machine does for each exposure: lengths, seconds, energy; the beam goes from one to the next."""
+        return _lamella.measure_vectors(list(self.layers), list(self.exposures))
+
+
+def _lines(layer: Layer) -> npt.NDArray[np.float64]:
+    closed = layer.closed
+    runs = [np.vstack([ring, ring[:1]]) if closed[i] else ring for i, ring in enumerate(layer)]
+    lines = [np.stack([run[:-1], run[1:]], axis=1) for run in runs]
+    return np.concatenate([*lines, layer.hatches])
+
+
+def scan(
+    layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part"
+) -> Iterator[ScanLayer]:
+    """Makes scan vectors of layers in ascending z, such as a Stack or what `iter_layers` gives; one by one, while no
+    more layers are held than skins ask for.
+
+    strategy: a ScanStrategy; the path of a TOML file, as the program takes it (needs Python 3.11); the same as a dict,
+        such as {"hatch": {"distance": 0.08}}; None is what is there by default.
+    part: what exposures call the part.
+
+    Raises UsageError for a strategy that is not right, LimitError for layers that would have too many vectors.
+    """
+    try:
+        each = iter(layers)
+    except TypeError:
+        check.refuse_type("layers", "layers in ascending z", layers)
+    return _scan(each, as_strategy("strategy", strategy), check.label("part", part))
+
+
+def _scan(layers: Iterator[Layer], strategy: ScanStrategy, part: str) -> Iterator[ScanLayer]:
+    exposures = tuple(_lamella.exposures(strategy, part))
+    below: Deque[Layer] = deque(maxlen=strategy.downskin.layers)
+    coming: Deque[Layer] = deque(islice(layers, 1 + strategy.upskin.layers))
+    while coming:
+        layer = coming.popleft()
+        if not isinstance(layer, Layer):
+            check.refuse_type("layers", "layers", layer)
+        vectors = _lamella.scan(layer, list(reversed(below)), list(coming), strategy)
+        yield ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors))
+        below.append(layer)
+        coming.extend(islice(layers, 1))
+
+
+def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
+    if strategy is None:
+        return ScanStrategy()
+    if isinstance(strategy, ScanStrategy):
+        found = strategy
+    elif isinstance(strategy, Mapping):
+        found = _from_tables(name, strategy)
+    elif isinstance(strategy, (str, os.PathLike)):
+        path = os.fsdecode(check.path(name, strategy))
+        found = _from_tables(path, _toml(path))
+    else:
+        check.refuse_type(name, "a ScanStrategy, a path, or a dict of tables", strategy)
+    _lamella.check_strategy(found)
+    return found
+
+
+def _toml(path: str) -> Dict[str, Any]:
+    try:
+        import tomllib
+    except ImportError as error:
+        raise ImportError("strategies as files need Python 3.11; a dict of the same tables will do") from error
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise UsageError(f"{path}: {error}") from error
+
+
+def _from_tables(name: str, tables: Mapping[str, Any]) -> ScanStrategy:
+    """The tables of a strategy file, of which any may be missing."""
+    strategy = ScanStrategy()
+    rules = [strategy.contours, strategy.hatch, strategy.upskin.hatch, strategy.downskin.hatch]
+    sets = {rule.parameters.name: ParameterSet(rule.parameters) for rule in rules}
+    parameters = tables.get("parameters", {})
+    for label, table in _items(f"{name}: parameters", parameters):
+        chosen = sets.setdefault(label, _named(label))
+        _assign(f"{name}: parameters.{label}", chosen, table)
+    _assign(name, strategy, {key: value for key, value in tables.items() if key != "parameters"}, sets)
+    used = [rule.parameters.name for rule in rules]
+    for label in parameters:
+        if label not in used:
+            raise UsageError(f"{name}: the parameters {label} are used nowhere; there are {', '.join(used)}")
+    for rule in rules:
+        rule.parameters = sets[rule.parameters.name]
+    return strategy
+
+
+def _named(label: str) -> ParameterSet:
+    parameters = ParameterSet()
+    parameters.name = label
+    return parameters
+
+
+def _items(name: str, table: Any) -> Any:
+    if not isinstance(table, Mapping):
+        check.refuse_type(name, "a table", table)
+    return table.items()
+
+
+def _assign(name: str, rule: Any, table: Any, sets: Optional[Dict[str, ParameterSet]] = None) -> None:
+    known = [key for key in dir(type(rule)) if not key.startswith("_")]
+    for key, value in _items(name, table):
+        if key not in known:
+            near = difflib.get_close_matches(str(key), known, 1)
+            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+            raise UsageError(f"{name}: there is no {key}; {hint}")
+        place = f"{name}: {key}" if isinstance(rule, ScanStrategy) else f"{name}.{key}"
+        if key == "parameters" and sets is not None:
+            if value not in sets:
+                raise UsageError(f"{place}: there are no parameters {value}; there are {', '.join(sets)}")
+            rule.parameters = sets[value]
+        elif isinstance(value, Mapping):
+            _assign(place, getattr(rule, key), value, sets)
+        else:
+            try:
+                setattr(rule, key, value)
+            except TypeError:
+                check.refuse_type(place, type(getattr(rule, key)).__name__, value)
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Lines as PySLM has them: its HatchGeometry, ContourGeometry."""
+
+    coords: npt.NDArray[np.float64]  #: hatches: (2 n, 2), from point to point; contours: (n, 2), the first one again
+    bid: int  #: the number of the build style: that of the exposure, from 1
+    mid: int  #: of the model
+    kind: str  #: "contour" or "hatch"
+
+    def numPoints(self) -> int:  # noqa: N802, the name is PySLM's
+        """How many points it has."""
+        return len(self.coords)
+
+
+@dataclass(frozen=True)
+class PyslmLayer:
+    """A layer with the attributes and methods of pyslm.geometry.Layer, for its plots, analyses and exporters."""
+
+    layerId: int  # noqa: N815
+    z: int  #: micrometres
+    geometry: List[Geometry]
+
+    def getGeometry(self) -> List[Geometry]:  # noqa: N802
+        """All of it, in order."""
+        return list(self.geometry)
+
+    def getHatchGeometry(self) -> List[Geometry]:  # noqa: N802
+        """The hatches."""
+        return [one for one in self.geometry if one.kind == "hatch"]
+
+    def getContourGeometry(self) -> List[Geometry]:  # noqa: N802
+        """The contours."""
+        return [one for one in self.geometry if one.kind == "contour"]
+
+    def getPointsGeometry(self) -> List[Geometry]:  # noqa: N802
+        """None: no exposures of points."""
+        return []
+
+
+def to_pyslm(layer: ScanLayer, mid: int = 1) -> PyslmLayer:
+    """The layer as tools that know PySLM's layers take it; PySLM itself is not needed. `mid`: the number of the model.
+    Build styles (`bid`) are numbered like the exposures, from 1."""
+    if not isinstance(layer, ScanLayer):
+        check.refuse_type("layer", "a ScanLayer", layer)
+    mid = check.whole("mid", mid)
+    geometry = []
+    for bid, (exposure, vectors) in enumerate(layer, 1):
+        if len(vectors.hatches):
+            geometry.append(Geometry(vectors.hatches.reshape(-1, 2), bid, mid, "hatch"))
+        for ring, closed in zip(vectors, vectors.closed):
+            coords = np.vstack([ring, ring[:1]]) if closed else ring
+            geometry.append(Geometry(coords, bid, mid, exposure.kind))
+    return PyslmLayer(layer.index, round(layer.top * 1000), geometry)

@@ -1,0 +1,110 @@
+#include "pipeline/layer_window.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+std::uint32_t less(std::uint32_t from, std::uint32_t by) noexcept {
+    return from - std::min(from, by);
+}
+
+} // namespace
+
+LayerWindow::LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t below, std::uint32_t above,
+                         Work work)
+    : coming_(coming), wanted_(wanted), below_(below), above_(above), work_(std::move(work)) {
+    assert(wanted.size() == 0 || (coming.begin <= wanted.begin && wanted.end <= coming.end));
+}
+
+/// Itself included.
+PlaneRange LayerWindow::neighbours(std::uint32_t plane) const noexcept {
+    return {std::max(coming_.begin, less(plane, below_)),
+            plane + std::min(above_, coming_.end - 1 - plane) + 1};
+}
+
+/// Whose neighbour it is.
+PlaneRange LayerWindow::users(std::uint32_t plane) const noexcept {
+    const std::uint32_t begin = std::max(wanted_.begin, less(plane, above_));
+    const std::uint32_t last = plane + std::min(below_, coming_.end - 1 - plane);
+    return {begin, std::max(begin, std::min(wanted_.end, last + 1))};
+}
+
+std::function<void()> LayerWindow::operator()(std::uint32_t plane, std::span<const Layer> parts) {
+    assert(coming_.begin <= plane && plane < coming_.end);
+    for (const Complete& complete :
+         store(plane, std::make_shared<const std::vector<Layer>>(parts.begin(), parts.end())))
+        work_on(complete);
+    return [this, plane] {
+        finish(plane);
+    };
+}
+
+std::vector<LayerWindow::Complete> LayerWindow::store(std::uint32_t plane, Parts parts) {
+    const std::lock_guard lock(mutex_);
+    const PlaneRange its_users = users(plane);
+    if (its_users.size() == 0)
+        return {};
+    const bool is_new = held_.emplace(plane, Held{std::move(parts), its_users.size()}).second;
+    assert(is_new);
+    static_cast<void>(is_new);
+    std::vector<Complete> complete;
+    for (std::uint32_t user = its_users.begin; user < its_users.end; ++user) {
+        std::uint32_t& missing = missing_.emplace(user, neighbours(user).size()).first->second;
+        if (--missing == 0)
+            complete.push_back(take(user));
+    }
+    return complete;
+}
+
+/// With the mutex held. Lets go of layers that nobody will ask for any more.
+LayerWindow::Complete LayerWindow::take(std::uint32_t plane) {
+    missing_.erase(plane);
+    Complete complete{plane, {}};
+    const PlaneRange range = neighbours(plane);
+    for (std::uint32_t p = range.begin; p < range.end; ++p) {
+        const auto found = held_.find(p);
+        assert(found != held_.end());
+        complete.layers.push_back(found->second.parts);
+        if (--found->second.users == 0)
+            held_.erase(found);
+    }
+    return complete;
+}
+
+void LayerWindow::work_on(const Complete& complete) {
+    const std::uint32_t first = neighbours(complete.plane).begin;
+    const std::size_t own = complete.plane - first;
+    PlaneLayers plane{.parts = *complete.layers[own]};
+    for (std::size_t i = own; i-- > 0;)
+        plane.below.emplace_back(*complete.layers[i]);
+    for (std::size_t i = own + 1; i < complete.layers.size(); ++i)
+        plane.above.emplace_back(*complete.layers[i]);
+    std::function<void()> action = work_(plane);
+    const std::lock_guard lock(mutex_);
+    ready_.emplace(complete.plane, std::move(action));
+}
+
+// Halves in order come when those in parallel of all planes below are over: what was complete is worked on.
+void LayerWindow::finish(std::uint32_t last) {
+    const PlaneRange its_users = users(last);
+    for (std::uint32_t plane = its_users.begin; plane < its_users.end; ++plane) {
+        if (neighbours(plane).end != last + 1)
+            continue;
+        std::function<void()> action;
+        {
+            const std::lock_guard lock(mutex_);
+            const auto found = ready_.find(plane);
+            assert(found != ready_.end());
+            action = std::move(found->second);
+            ready_.erase(found);
+        }
+        if (action)
+            action();
+    }
+}
+
+} // namespace lamella

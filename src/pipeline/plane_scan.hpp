@@ -1,0 +1,29 @@
+#pragma once
+
+// One plane of a plate and its neighbours become scan vectors.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/scan/scan.hpp"
+#include "lamella/scan/strategy.hpp"
+
+#include <span>
+#include <vector>
+
+namespace lamella {
+
+/// The layers of all parts on a plane, and on those beneath it and on top, the nearest one first.
+struct PlaneLayers {
+    std::span<const Layer> parts;
+    std::vector<std::span<const Layer>> below = {};
+    std::vector<std::span<const Layer>> above = {};
+};
+
+struct PlaneVectors {
+    std::vector<Layer> layers;        ///< of each part each exposure
+    std::vector<ScanFigures> figures; ///< of each exposure, all parts together
+};
+
+/// See `scan`. The beam goes through the parts one after the other.
+[[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const ScanStrategy& strategy);
+
+} // namespace lamella

@@ -1,0 +1,92 @@
+#include "lamella/pipeline/scan_layers.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "core/stopwatch.hpp"
+#include "pipeline/plane_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+namespace lamella {
+
+LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy) {
+    LayerFileInfo exposed = info;
+    exposed.parts.clear();
+    for (const PartInfo& part : info.parts)
+        for (Exposure& exposure : exposures(strategy, part.label))
+            exposed.parts.push_back(
+                {fmt::format("{} {}", part.label, exposure.name()), part.box, std::move(exposure)});
+    return exposed;
+}
+
+namespace {
+
+/// Planes of several stacks.
+class Stacks {
+  public:
+    explicit Stacks(std::span<const LayerStack> parts) {
+        planes_.resize(parts.empty() ? 0 : parts.front().size());
+        for (const LayerStack& part : parts) {
+            if (part.size() != planes_.size())
+                throw Error(ErrorKind::usage, "parts of one file must have the same planes");
+            for (std::size_t i = 0; i < part.size(); ++i)
+                planes_[i].push_back(part[i]);
+        }
+    }
+
+    [[nodiscard]] std::size_t size() const noexcept { return planes_.size(); }
+
+    /// A plane with the neighbours that a strategy asks for.
+    [[nodiscard]] PlaneLayers plane(std::size_t i, const ScanStrategy& strategy) const {
+        PlaneLayers found{.parts = planes_[i]};
+        for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.downskin.layers, i); ++k)
+            found.below.emplace_back(planes_[i - k]);
+        for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.upskin.layers, size() - 1 - i); ++k)
+            found.above.emplace_back(planes_[i + k]);
+        return found;
+    }
+
+  private:
+    std::vector<std::vector<Layer>> planes_; ///< of all parts
+};
+
+} // namespace
+
+ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
+                       const LayerFileInfo& info, const ScanStrategy& strategy,
+                       const LayerWriteOptions& options, const Execution& execution) {
+    check_strategy(strategy);
+    const Stacks stacks(parts);
+    ScanResult result;
+    for (Exposure& exposure : exposures(strategy, {}))
+        result.exposures.push_back({std::move(exposure), {}});
+    result.layers.resize(stacks.size());
+    std::atomic<std::uint64_t> nanoseconds{0};
+    const std::unique_ptr<LayerWriter> writer =
+        open_layer_writer(path, format, with_exposures(info, strategy), options);
+    const auto vectors_of = [&](std::size_t i) {
+        const Stopwatch scanning;
+        PlaneVectors vectors = scan_plane(stacks.plane(i, strategy), strategy);
+        nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
+                              std::memory_order_relaxed);
+        result.layers[i] = std::move(vectors.figures);
+        return std::move(vectors.layers);
+    };
+    write_planes(*writer, stacks.size(), vectors_of, execution);
+    writer->finish();
+    for (const std::vector<ScanFigures>& layer : result.layers)
+        for (std::size_t i = 0; i < layer.size(); ++i)
+            result.exposures[i].figures += layer[i];
+    result.scan_seconds = 1e-9 * static_cast<double>(nanoseconds);
+    result.bytes = writer->bytes();
+    result.warnings = writer->warnings();
+    return result;
+}
+
+} // namespace lamella

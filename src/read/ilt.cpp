@@ -1,0 +1,241 @@
+// The list of parameters names the files of the archive. Each is read as any Common Layer Interface file is;
+// then all get the planes of all.
+
+#include "read/ilt.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/ilt_format.hpp"
+#include "container/text_place.hpp"
+#include "container/xml.hpp"
+#include "core/parse_number.hpp"
+#include "read/common_layer.hpp"
+#include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+/// What the list says of one file.
+struct Section {
+    std::string name;
+    std::size_t line;
+    ParameterSet parameters{.name = {},
+                            .power_w = 0,
+                            .speed_mm_s = 0,
+                            .jump_speed_mm_s = 0,
+                            .focus_mm = 0,
+                            .spot_mm = 0,
+                            .mark_delay_us = 0,
+                            .jump_delay_us = 0};
+};
+
+/// Lines such as "[file.cli]" and, for that file, "LaserPower = 200.0 watt". Other lines say nothing here.
+std::vector<Section> read_parameters(std::string_view text, const std::string& name, ReadLimits& limits) {
+    std::vector<Section> sections;
+    std::size_t line = 1;
+    for (std::size_t begin = 0; begin < text.size(); ++line) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view words = trimmed(text.substr(begin, end - begin));
+        begin = end + 1;
+        if (words.starts_with('[') && words.ends_with(']')) {
+            limits.make_room(sections, 1, [&] { return fmt::format("line {}", line); });
+            sections.push_back({std::string(words.substr(1, words.size() - 2)), line});
+            sections.back().parameters.name = sections.back().name.substr(0, sections.back().name.rfind('.'));
+            continue;
+        }
+        const std::size_t equals = words.find('=');
+        if (equals == std::string_view::npos || sections.empty())
+            continue;
+        const std::string_view key = trimmed(words.substr(0, equals));
+        ParameterSet& set = sections.back().parameters;
+        double* const to = key == "LaserSpeed"   ? &set.speed_mm_s
+                           : key == "LaserPower" ? &set.power_w
+                           : key == "FocusShift" ? &set.focus_mm
+                                                 : nullptr;
+        if (to == nullptr)
+            continue;
+        const std::string_view value = trimmed(words.substr(equals + 1));
+        double number = 0;
+        if (parse_number(value.data(), value.data() + value.size(), number) == value.data() ||
+            !std::isfinite(number))
+            throw Error(ErrorKind::input, fmt::format("{}, line {}: found '{}'; {} must be a number", name,
+                                                      line, printable(value, 40), key));
+        *to = number;
+    }
+    return sections;
+}
+
+/// What the name of a file, such as "modelsection_001_s1_vs.cli", says of its vectors; see docs/formats.md.
+Exposure named_exposure(std::string_view name) {
+    name = name.substr(0, name.rfind('.'));
+    const std::size_t last = name.rfind('_');
+    const std::string_view code = last == std::string_view::npos ? name : name.substr(last + 1);
+    std::string_view rest = name.substr(0, last == std::string_view::npos ? 0 : last);
+    const bool support = rest.ends_with("_st") || code == "sx";
+    rest = rest.substr(0, std::min(rest.rfind('_'), rest.size()));
+    Exposure exposure;
+    exposure.part = rest.empty() ? name : rest;
+    if (support)
+        exposure.region = ScanRegion::support;
+    else if (code == "us" || code == "uk")
+        exposure.region = ScanRegion::downskin;
+    else if (code == "skin")
+        exposure.region = ScanRegion::upskin;
+    const bool contour = code.starts_with('k') || code.ends_with('k');
+    exposure.kind = contour ? VectorKind::contour : VectorKind::hatch;
+    exposure.contour = !contour ? 0 : code.starts_with('k') ? 2 : 1;
+    return exposure;
+}
+
+/// What a label such as "bracket core contour 2" says: part, region, kind and number.
+std::optional<Exposure> labelled_exposure(std::string_view label) {
+    Exposure exposure;
+    if (const std::size_t blank = label.rfind(' '); blank != std::string_view::npos)
+        std::from_chars(label.data() + blank + 1, label.data() + label.size(), exposure.contour);
+    for (const ScanRegion region :
+         {ScanRegion::core, ScanRegion::upskin, ScanRegion::downskin, ScanRegion::support}) {
+        for (const VectorKind kind : {VectorKind::contour, VectorKind::hatch}) {
+            exposure.region = region;
+            exposure.kind = kind;
+            const std::string name = ' ' + exposure.name();
+            if (!label.ends_with(name))
+                continue;
+            exposure.part = label.substr(0, label.size() - name.size());
+            return exposure;
+        }
+    }
+    return std::nullopt;
+}
+
+/// Of the parts of a file in the archive. Files without a speed hold no scan vectors that could be executed.
+std::optional<Exposure> exposure_of(const Section& section, std::string_view label) {
+    if (!(section.parameters.speed_mm_s > 0))
+        return std::nullopt;
+    Exposure exposure = labelled_exposure(label).value_or(named_exposure(section.name));
+    exposure.parameters = section.parameters;
+    return exposure;
+}
+
+/// Heights no further apart are the same plane, although files round them each in its own way.
+constexpr double one_plane_mm = 1e-5;
+
+bool same_height(double a, double b) {
+    return std::abs(a - b) <= one_plane_mm;
+}
+
+/// The planes of all files, as empty layers.
+LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
+    LayerStack all;
+    for (const LayerFile& file : files) {
+        const auto place = [&] {
+            return std::string_view(file.path);
+        };
+        for (const Layer& layer : file.parts.front().layers) {
+            limits.make_room(all, 1, place);
+            all.push_back({.z = layer.z, .bottom = layer.bottom, .top = layer.top});
+        }
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Layer& a, const Layer& b) { return a.top < b.top; });
+    all.erase(std::unique(all.begin(), all.end(),
+                          [](const Layer& a, const Layer& b) { return same_height(a.top, b.top); }),
+              all.end());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        all[i].index = i;
+    return all;
+}
+
+/// Layers of a part of `file` on all planes: empty where it has none.
+LayerStack on_planes(LayerStack layers, const LayerStack& planes, const std::string& file) {
+    LayerStack result = planes;
+    std::size_t next = 0;
+    for (Layer& plane : result) {
+        if (next == layers.size() || !same_height(layers[next].top, plane.top))
+            continue;
+        Layer& layer = layers[next++];
+        plane.points = layer.points;
+        plane.offsets = std::move(layer.offsets);
+        plane.rings = layer.rings;
+        plane.hatches = layer.hatches;
+    }
+    if (next != layers.size())
+        throw Error(
+            ErrorKind::input,
+            fmt::format("{}: found layers at z = {} mm that are thinner than {} mm; they cannot be told "
+                        "apart",
+                        file, layers[next].top, one_plane_mm));
+    return result;
+}
+
+} // namespace
+
+bool is_ilt(const ZipReader& zip) {
+    return zip.find(ilt_parameters) != nullptr;
+}
+
+LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
+    const ByteSource list = zip.read(*zip.find(ilt_parameters));
+    std::vector<LayerFile> files;
+    LayerFile result;
+    result.path = zip.name();
+    result.format = "ilt";
+    result.warnings = zip.oddities();
+    std::uint64_t bytes = 0;
+    std::set<const ZipEntry*> known;
+    for (const Section& section : read_parameters(list.text(), list.name, limits)) {
+        const ZipEntry* const entry = zip.find(section.name);
+        if (entry == nullptr)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, line {}: found parameters of '{}'; the archive has no such file",
+                                    list.name, section.line, printable(section.name, 80)));
+        if (!known.insert(entry).second)
+            throw Error(
+                ErrorKind::input,
+                fmt::format("{}, line {}: found parameters of '{}' a second time; there must be one list "
+                            "for each file",
+                            list.name, section.line, printable(section.name, 80)));
+        const ByteSource source = zip.read(*entry);
+        bytes += source.bytes.size();
+        if (!is_common_layer(source.text()))
+            throw Error(
+                ErrorKind::input,
+                fmt::format("{}: found no Common Layer Interface header ($$HEADERSTART); files of this "
+                            "archive must have one",
+                            source.name));
+        files.push_back(read_common_layer(
+            source.text(), source.name, [&](std::string_view label) { return exposure_of(section, label); },
+            limits, execution));
+        for (const std::string& warning : files.back().warnings)
+            result.warnings.push_back(fmt::format("{}: {}", section.name, warning));
+    }
+    if (files.empty())
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found parameters of no file; there must be one at least", list.name));
+    result.units_mm = files.front().units_mm;
+    result.rounding = files.front().rounding;
+    const LayerStack planes = planes_of(files, limits);
+    for (LayerFile& file : files)
+        for (LayerPart& part : file.parts) {
+            result.parts.push_back({std::move(part.label), {}, std::move(part.exposure)});
+            check_part_planes(result, planes.size(), bytes);
+            limits.add_bytes(planes.size() * (sizeof(Layer) + of_empty_layer), file.path);
+            assert(part.layers.size() <= planes.size());
+            result.parts.back().layers = on_planes(std::move(part.layers), planes, file.path);
+        }
+    return result;
+}
+
+} // namespace lamella

@@ -1,0 +1,441 @@
+// A table at the end tells where the job and its work planes lie, and a table of each work plane where its
+// blocks of vectors do. Blocks that have part, parameters, region and kind in common are the layers of one
+// part of what is read.
+
+#include "read/ovf.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/ovf_format.hpp"
+#include "container/protobuf_reader.hpp"
+#include "container/text_place.hpp"
+#include "core/executor.hpp"
+#include "read/layer_assembly.hpp"
+#include "read/read_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <compare>
+#include <cstring>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+/// What the blocks of one part of the result have in common.
+struct BlockKind {
+    std::int64_t part = 0;
+    std::int64_t parameters = 0;
+    std::int64_t structure = 0;
+    std::int64_t skin = 0;
+    std::int64_t area = 0;
+
+    friend auto operator<=>(const BlockKind&, const BlockKind&) = default;
+};
+
+/// Where messages lie.
+struct Table {
+    std::uint64_t shell = 0;
+    std::vector<std::uint64_t> positions;
+};
+
+class OvfReader {
+  public:
+    OvfReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
+              const Execution& execution)
+        : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
+          progress_(execution, Stage::read, bytes.size()) {}
+
+    void read() {
+        std::uint64_t place = position_at(ovf::magic.size());
+        const Table planes = read_table(place);
+        read_job(planes.shell);
+        for (const std::uint64_t plane : planes.positions)
+            read_plane(plane);
+        if (layers_.empty())
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: found no work plane; there must be one at least", name_));
+        number_parts();
+        make_layers();
+        for (const Oddity* oddity : {&moved_, &other_vectors_, &dropped_})
+            oddity->say(file_.warnings);
+        progress_.finish();
+    }
+
+  private:
+    [[noreturn]] void fail(std::uint64_t place, const std::string& found, const std::string& expected) const {
+        throw Error(ErrorKind::input,
+                    fmt::format("{}, byte {}: found {}; {}", name_, place, found, expected));
+    }
+
+    static auto byte(std::uint64_t place) {
+        return [place] {
+            return fmt::format("byte {}", place);
+        };
+    }
+
+    /// The number of 64 bits that says where something lies.
+    std::uint64_t position_at(std::uint64_t place) const {
+        std::int64_t position = 0;
+        if (place > bytes_.size() || bytes_.size() - place < sizeof position)
+            fail(place, "the end of the file", "the place of a table must stand here");
+        std::memcpy(&position, bytes_.data() + place, sizeof position);
+        if (position < 0 || static_cast<std::uint64_t>(position) >= bytes_.size())
+            fail(place, fmt::format("a table at byte {}", position),
+                 fmt::format("the file has {}", bytes_.size()));
+        return static_cast<std::uint64_t>(position);
+    }
+
+    Table read_table(std::uint64_t place) {
+        Table table;
+        ProtobufReader fields = ProtobufReader::delimited(bytes_, place, name_);
+        while (fields.next()) {
+            const auto position = [&](std::int64_t value) {
+                if (value < 0 || static_cast<std::uint64_t>(value) >= bytes_.size())
+                    fields.fail(fmt::format("a message at byte {}", value),
+                                fmt::format("the file has {}", bytes_.size()));
+                return static_cast<std::uint64_t>(value);
+            };
+            if (fields.field() == ovf::table::shell)
+                table.shell = position(fields.integer());
+            else if (fields.field() == ovf::table::positions)
+                fields.integers([&](std::int64_t value) {
+                    limits_.make_room(table.positions, 1, byte(fields.place()));
+                    table.positions.push_back(position(value));
+                });
+        }
+        return table;
+    }
+
+    void read_job(std::uint64_t place) {
+        ProtobufReader job = ProtobufReader::delimited(bytes_, place, name_);
+        while (job.next()) {
+            if (job.field() == ovf::job::marking_params)
+                read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
+                    parameters_[key] = read_parameters(value);
+                });
+            else if (job.field() == ovf::job::parts)
+                read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
+                    labels_[key] = read_part(value);
+                });
+        }
+    }
+
+    /// An entry of a map. What is absent is 0, or an empty message.
+    template <class Take>
+    void read_entry(const ProtobufReader& map, const Take& take) {
+        std::int64_t key = 0;
+        std::optional<ProtobufReader> value;
+        ProtobufReader entry = map.message();
+        while (entry.next()) {
+            if (entry.field() == ovf::map_entry::key)
+                key = entry.integer();
+            else if (entry.field() == ovf::map_entry::value)
+                value = entry.message();
+        }
+        limits_.add_bytes_at(node_bytes + sizeof(ParameterSet) + map.bytes().size(), byte(map.place()));
+        take(key, value.value_or(ProtobufReader({}, map.place(), name_)));
+    }
+
+    static double finite(const ProtobufReader& field) {
+        const float value = field.real();
+        if (!std::isfinite(value))
+            field.fail("a number that is not finite", "it must be one");
+        return static_cast<double>(value);
+    }
+
+    static ParameterSet read_parameters(ProtobufReader fields) {
+        ParameterSet set{.name = {},
+                         .power_w = 0,
+                         .speed_mm_s = 0,
+                         .jump_speed_mm_s = 0,
+                         .focus_mm = 0,
+                         .spot_mm = 0,
+                         .mark_delay_us = 0,
+                         .jump_delay_us = 0};
+        while (fields.next()) {
+            switch (fields.field()) {
+            case ovf::marking::power_w:
+                set.power_w = finite(fields);
+                break;
+            case ovf::marking::speed_mm_s:
+                set.speed_mm_s = finite(fields);
+                break;
+            case ovf::marking::focus_mm:
+                set.focus_mm = finite(fields);
+                break;
+            case ovf::marking::jump_speed_mm_s:
+                set.jump_speed_mm_s = finite(fields);
+                break;
+            case ovf::marking::jump_delay_us:
+                set.jump_delay_us = finite(fields);
+                break;
+            case ovf::marking::mark_delay_us:
+                set.mark_delay_us = finite(fields);
+                break;
+            case ovf::marking::name:
+                set.name = fields.bytes();
+                break;
+            default:
+                break;
+            }
+        }
+        return set;
+    }
+
+    /// Its label.
+    std::string read_part(ProtobufReader fields) {
+        std::string label;
+        while (fields.next()) {
+            if (fields.field() == ovf::part::name)
+                label = fields.bytes();
+            else if (fields.field() == ovf::part::strategy)
+                read_strategy(fields.message());
+        }
+        return label;
+    }
+
+    void read_strategy(ProtobufReader fields) {
+        while (fields.next())
+            if (fields.field() == ovf::part::strategy_of_part::layer_thickness_mm)
+                layer_thickness_ = finite(fields);
+    }
+
+    void read_plane(std::uint64_t begin) {
+        executor_.check_cancelled();
+        const Table table = read_table(position_at(begin));
+        limits_.make_room(layers_, 1, byte(begin));
+        RawLayer& raw = layers_.emplace_back();
+        raw.place = fmt::format("byte {}", begin);
+        std::uint64_t place = table.shell;
+        ProtobufReader shell = ProtobufReader::delimited(bytes_, place, name_);
+        while (shell.next()) {
+            if (shell.field() == ovf::work_plane::z)
+                raw.z = finite(shell);
+            else if (shell.type() == ProtobufType::bits_32 &&
+                     (shell.field() <= ovf::work_plane::y || (shell.field() >= ovf::work_plane::x_turn &&
+                                                              shell.field() <= ovf::work_plane::z_turn)) &&
+                     shell.real() != 0)
+                moved_.note(byte(begin));
+        }
+        for (const std::uint64_t block : table.positions)
+            read_block(block, raw);
+        progress_.add(end_of_blocks_ - reported_);
+        reported_ = end_of_blocks_;
+    }
+
+    /// Blocks follow one another: so none is read twice.
+    void read_block(std::uint64_t begin, RawLayer& raw) {
+        if (begin < end_of_blocks_)
+            fail(begin, "a block of vectors that lies before the end of another one",
+                 "they must follow each other");
+        end_of_blocks_ = begin;
+        ProtobufReader fields = ProtobufReader::delimited(bytes_, end_of_blocks_, name_);
+        BlockKind kind;
+        std::optional<ProtobufReader> lines;
+        std::optional<ProtobufReader> hatches;
+        while (fields.next()) {
+            if (fields.field() == ovf::block::line_sequence)
+                lines = fields.message();
+            else if (fields.field() == ovf::block::hatches)
+                hatches = fields.message();
+            else if (fields.field() <= ovf::block::last_of_vectors)
+                other_vectors_.note(byte(begin));
+            else if (fields.field() == ovf::block::marking_params_key)
+                kind.parameters = fields.integer();
+            else if (fields.field() == ovf::block::meta_data)
+                read_meta_data(fields.message(), kind);
+            else if (fields.field() == ovf::block::lpbf_meta_data)
+                read_lpbf_meta_data(fields.message(), kind);
+        }
+        if (lines)
+            add_line_sequence(*lines, begin, slot_of(kind, begin), raw);
+        if (hatches)
+            add_hatches(*hatches, begin, slot_of(kind, begin), raw);
+    }
+
+    static void read_meta_data(ProtobufReader fields, BlockKind& kind) {
+        while (fields.next())
+            if (fields.field() == ovf::block::meta::part_key)
+                kind.part = fields.integer();
+    }
+
+    static void read_lpbf_meta_data(ProtobufReader fields, BlockKind& kind) {
+        while (fields.next()) {
+            if (fields.field() == ovf::block::lpbf::part_area)
+                kind.area = fields.integer();
+            else if (fields.field() == ovf::block::lpbf::skin_type)
+                kind.skin = fields.integer();
+            else if (fields.field() == ovf::block::lpbf::structure_type)
+                kind.structure = fields.integer();
+        }
+    }
+
+    /// x and y in turn: so many numbers at a time make one item.
+    void add_points(ProtobufReader fields, std::uint64_t begin, std::size_t numbers,
+                    std::vector<Point2>& to) {
+        std::string_view list;
+        while (fields.next()) {
+            if (fields.field() != ovf::block::points)
+                continue;
+            if (!list.empty())
+                fields.fail("a second list of points", "there must be one");
+            list = fields.bytes();
+        }
+        const std::size_t item = numbers * sizeof(float);
+        if (list.size() % item != 0)
+            fail(begin, fmt::format("vectors of {} bytes", list.size()),
+                 fmt::format("each point or line has {}", item));
+        limits_.make_room(to, list.size() / (2 * sizeof(float)), byte(begin));
+        for (std::size_t at = 0; at < list.size(); at += 2 * sizeof(float)) {
+            float p[2];
+            std::memcpy(p, list.data() + at, sizeof p);
+            if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+                fail(begin, "a point that is not finite", "coordinates must be numbers");
+            to.push_back({static_cast<double>(p[0]) + 0.0, static_cast<double>(p[1]) + 0.0});
+        }
+    }
+
+    void add_line_sequence(const ProtobufReader& lines, std::uint64_t begin, std::uint32_t slot,
+                           RawLayer& raw) {
+        const std::size_t first = raw.points.size();
+        add_points(lines, begin, 2, raw.points);
+        limits_.make_room(raw.ends, 1, byte(begin));
+        const bool closed = raw.points.size() - first > 3 && raw.points.back() == raw.points[first];
+        if (!raw.end_clean_contour(first, closed, slot))
+            dropped_.note(byte(begin));
+    }
+
+    void add_hatches(const ProtobufReader& hatches, std::uint64_t begin, std::uint32_t slot, RawLayer& raw) {
+        add_points(hatches, begin, 4, raw.hatches);
+        limits_.make_room(raw.hatch_ends, 1, byte(begin));
+        raw.end_hatches(slot);
+    }
+
+    std::uint32_t slot_of(const BlockKind& kind, std::uint64_t begin) {
+        const auto found = slots_.find(kind);
+        if (found != slots_.end())
+            return found->second;
+        limits_.add_bytes_at(node_bytes + sizeof(BlockKind) + 2 * sizeof(LayerPart), byte(begin));
+        return slots_.emplace(kind, static_cast<std::uint32_t>(slots_.size())).first->second;
+    }
+
+    /// Parts by their keys, and exposures of each by those of their parameters.
+    void number_parts() {
+        if (slots_.empty())
+            slots_.emplace(BlockKind{.part = labels_.empty() ? 0 : labels_.begin()->first}, 0);
+        std::vector<std::uint32_t> places(slots_.size());
+        for (const auto& [kind, slot] : slots_) {
+            places[slot] = static_cast<std::uint32_t>(file_.parts.size());
+            const auto label = labels_.find(kind.part);
+            LayerPart part{label == labels_.end() ? std::string() : printable(label->second, most_text), {}};
+            part.exposure = exposure_of(kind, part.label);
+            if (part.exposure)
+                part.label = fmt::format("{} {}", part.label, part.exposure->name());
+            file_.parts.push_back(std::move(part));
+        }
+        for (RawLayer& layer : layers_) {
+            for (RawLayer::Contour& contour : layer.ends)
+                contour.part = places[contour.part];
+            for (RawLayer::Hatches& hatches : layer.hatch_ends)
+                hatches.part = places[hatches.part];
+        }
+    }
+
+    std::optional<Exposure> exposure_of(const BlockKind& kind, const std::string& part) const {
+        const auto parameters = parameters_.find(kind.parameters);
+        if (parameters == parameters_.end())
+            return std::nullopt;
+        namespace lpbf = ovf::block::lpbf;
+        Exposure exposure;
+        exposure.part = part;
+        exposure.parameters = parameters->second;
+        exposure.region = kind.structure == lpbf::of_support ? ScanRegion::support
+                          : kind.skin == lpbf::down_skin     ? ScanRegion::downskin
+                          : kind.skin == lpbf::up_skin       ? ScanRegion::upskin
+                                                             : ScanRegion::core;
+        exposure.kind = kind.area == lpbf::volume ? VectorKind::hatch : VectorKind::contour;
+        std::string& name = exposure.parameters.name;
+        name = printable(name, most_text);
+        if (kind.area == lpbf::contour)
+            exposure.contour = 1;
+        else if (kind.area == lpbf::transition_contour)
+            exposure.contour = take_number(name);
+        return exposure;
+    }
+
+    /// The number of a contour further inwards stands behind the name of its parameters.
+    static std::uint32_t take_number(std::string& name) {
+        constexpr std::uint32_t second = 2;
+        const std::size_t blank = name.rfind(' ');
+        if (blank == std::string::npos)
+            return second;
+        std::uint32_t number = 0;
+        const char* const end = name.data() + name.size();
+        const auto [behind, error] = std::from_chars(name.data() + blank + 1, end, number);
+        if (error != std::errc() || behind != end || number < second)
+            return second;
+        name.resize(blank);
+        return number;
+    }
+
+    /// Heights are tops of layers.
+    void make_layers() {
+        sort_by_height(layers_, file_.warnings);
+        check_part_planes(file_, layers_.size(), bytes_.size());
+        for (std::size_t i = 0; i < layers_.size(); ++i) {
+            const double top = layers_[i].z;
+            const double first_step = layer_thickness_ > 0 ? layer_thickness_
+                                      : layers_.size() > 1 ? layers_[1].z - layers_[0].z
+                                                           : std::max(top, 0.0);
+            const double bottom = i > 0 ? layers_[i - 1].z : top - first_step;
+            add_layer(file_, layers_[i], i, bottom + (top - bottom) / 2, bottom, top, limits_);
+        }
+    }
+
+    static constexpr std::size_t most_text = 4096;
+
+    std::string_view bytes_;
+    const std::string& name_;
+    LayerFile& file_;
+    ReadLimits& limits_;
+    Executor executor_;
+    ProgressMeter progress_;
+    std::map<std::int64_t, ParameterSet> parameters_;
+    std::map<std::int64_t, std::string> labels_;
+    double layer_thickness_ = 0;
+    std::vector<RawLayer> layers_;
+    std::map<BlockKind, std::uint32_t> slots_;
+    std::uint64_t end_of_blocks_ = 0;
+    std::uint64_t reported_ = 0;
+    Oddity moved_{"work planes are moved or turned; their vectors were read as they stand"};
+    Oddity other_vectors_{"blocks hold other vectors than lines and hatches; they were left out"};
+    Oddity dropped_{"line sequences had too few different points; they were dropped"};
+};
+
+} // namespace
+
+bool is_ovf(std::string_view bytes) {
+    return bytes.starts_with(ovf::magic);
+}
+
+LayerFile read_ovf(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                   const Execution& execution) {
+    LayerFile file;
+    file.path = name;
+    file.format = "ovf";
+    file.units_mm = 1;
+    file.rounding = {.single_precision = true};
+    OvfReader(bytes, name, file, limits, execution).read();
+    return file;
+}
+
+} // namespace lamella

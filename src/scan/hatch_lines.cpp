@@ -1,0 +1,123 @@
+#include "scan/hatch_lines.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::size_t most_lines = std::size_t{1} << 26;
+
+/// A point as lines see it.
+struct RankedPoint {
+    double u;
+    double v;
+    std::int32_t rank; ///< how many of the layer's lines lie below it
+};
+
+/// For few values: most lines meet a part a few times.
+void sort_ends(std::span<double> ends) {
+    constexpr std::size_t few = 48;
+    if (ends.size() > few) {
+        std::sort(ends.begin(), ends.end());
+        return;
+    }
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+        const double end = ends[i];
+        std::size_t k = i;
+        for (; k > 0 && ends[k - 1] > end; --k)
+            ends[k] = ends[k - 1];
+        ends[k] = end;
+    }
+}
+
+} // namespace
+
+// The rule of the plane, in one dimension less. Each point has a rank, the number of lines below it, which
+// depends on nothing but the point. An edge meets the lines between the ranks of its ends. So a closed ring
+// meets each line an even number of times, whatever rounding makes of the ranks, and lines through vertices
+// and along edges need no care.
+
+HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance)
+    : frame_{angle}, distance_(distance) {
+    assert(distance > 0);
+    const std::span<const Point2> all = layer.points.span().first(layer.offsets[layer.rings]);
+    if (all.empty())
+        return;
+
+    std::vector<RankedPoint> points(all.size());
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        points[i] = {frame_.along(all[i]), frame_.across(all[i]), 0};
+        least = std::min(least, points[i].v);
+        most = std::max(most, points[i].v);
+    }
+    const double below = std::ceil(least / distance); // the first line, or one on which the lowest point lies
+    const double lines = std::ceil(most / distance) - below;
+    if (!(std::abs(below) < 0x1p52 && lines <= static_cast<double>(most_lines)))
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("layer {}: lines {:g} mm apart are too many across {:.6g} mm; the limit is 2^26",
+                        layer.index, distance, most - least));
+    first_ = static_cast<std::int64_t>(below);
+    for (RankedPoint& p : points)
+        p.rank = static_cast<std::int32_t>(std::ceil(p.v / distance) - below);
+
+    // Count, sum up, put: each edge into the lines that it meets.
+    const auto for_edges = [&](const auto& meet) {
+        for (std::size_t ring = 0; ring < layer.rings; ++ring) {
+            const RankedPoint* from = &points[layer.offsets[ring + 1] - 1];
+            for (std::size_t i = layer.offsets[ring]; i < layer.offsets[ring + 1]; ++i) {
+                const RankedPoint* to = &points[i];
+                if (from->rank != to->rank)
+                    meet(*from, *to);
+                from = to;
+            }
+        }
+    };
+    std::uint64_t ends = 0;
+    for_edges([&](const RankedPoint& a, const RankedPoint& b) {
+        ends += static_cast<std::uint64_t>(std::abs(std::int64_t{a.rank} - b.rank));
+    });
+    if (ends > 2 * most_lines)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("layer {}: {} lines are more than the limit of 2^26; hatch at a larger distance "
+                        "than {:g} mm",
+                        layer.index, ends / 2, distance));
+    begins_.assign(static_cast<std::size_t>(lines) + 1, 0);
+    for_edges([&](const RankedPoint& a, const RankedPoint& b) {
+        const auto [first, last] = std::minmax(a.rank, b.rank);
+        for (std::int32_t line = first; line < last; ++line)
+            ++begins_[static_cast<std::size_t>(line) + 1];
+    });
+    for (std::size_t i = 1; i < begins_.size(); ++i)
+        begins_[i] += begins_[i - 1];
+    assert(begins_.back() == ends);
+
+    ends_.resize(ends);
+    std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
+    for_edges([&](const RankedPoint& a, const RankedPoint& b) {
+        const RankedPoint& low = a.rank < b.rank ? a : b;
+        const RankedPoint& high = a.rank < b.rank ? b : a;
+        for (std::int32_t line = low.rank; line < high.rank; ++line) {
+            const auto i = static_cast<std::size_t>(line);
+            const double share = std::clamp((v(i) - low.v) / (high.v - low.v), 0.0, 1.0);
+            ends_[next[i]++] = low.u + share * (high.u - low.u);
+        }
+    });
+    for (std::size_t i = 0; i < size(); ++i) {
+        assert((begins_[i + 1] - begins_[i]) % 2 == 0);
+        sort_ends(std::span(ends_).subspan(begins_[i], begins_[i + 1] - begins_[i]));
+    }
+}
+
+} // namespace lamella

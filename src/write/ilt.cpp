@@ -1,0 +1,232 @@
+// An archive holds one file after the other, and layers come for all of them at once. The first one goes to
+// the archive as it comes, the others wait in a store for their turn.
+
+#include "write/ilt.hpp"
+
+#include "container/byte_store.hpp"
+#include "container/ilt_format.hpp"
+#include "container/zip_writer.hpp"
+#include "write/common_layer.hpp"
+#include "write/decimal.hpp"
+#include "write/left_out.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::uint64_t most_in_memory = std::uint64_t{64} << 20;
+
+/// What the name of a file says of its vectors, in German initials: st (Stuetze) is support, s1 a shell,
+/// which is the whole part where there is one beam only; v volume, u (unten) below, s (Schraffur) hatch, k
+/// (Kontur) contour, kv (Versatz) contours further inwards. Of upskin there is but one name.
+std::string code_of(const Exposure& exposure) {
+    const bool contour = exposure.kind == VectorKind::contour;
+    switch (exposure.region) {
+    case ScanRegion::support:
+        return contour ? "st_vk" : "st_vs";
+    case ScanRegion::upskin:
+        return "s1_skin";
+    case ScanRegion::downskin:
+        return contour ? "s1_uk" : "s1_us";
+    default:
+        return !contour ? "s1_vs" : exposure.contour > 1 ? "s1_kv" : "s1_vk";
+    }
+}
+
+/// What parts without an exposure have; a machine does nothing with it.
+Exposure no_exposure(const std::string& part) {
+    return {.part = part, .parameters = {.name = {}, .power_w = 0, .speed_mm_s = 0, .focus_mm = 0}};
+}
+
+/// One file of the archive.
+struct Section {
+    std::string name;
+    std::string code; ///< in the name
+    ParameterSet parameters;
+    std::vector<std::size_t> parts; ///< those of LayerFileInfo::parts that it holds
+};
+
+/// Vectors of a part that have name and parameters in common share a file. Files of a part have its number,
+/// and another one where they would have the name of one before.
+class Sections {
+  public:
+    void add(std::size_t part, const Exposure& exposure) {
+        const std::string code = code_of(exposure);
+        for (const std::size_t i : of_part_[exposure.part])
+            if (sections_[i].code == code && sections_[i].parameters == exposure.parameters) {
+                sections_[i].parts.push_back(part);
+                return;
+            }
+        const auto [number, is_new] = numbers_.try_emplace(exposure.part, next_);
+        next_ += is_new ? 1 : 0;
+        std::string name = name_of(number->second, code);
+        if (!names_.insert(name).second) {
+            name = name_of(next_++, code);
+            names_.insert(name);
+        }
+        of_part_[exposure.part].push_back(sections_.size());
+        sections_.push_back({std::move(name), code, exposure.parameters, {part}});
+    }
+
+    [[nodiscard]] std::vector<Section> take() { return std::move(sections_); }
+
+  private:
+    static std::string name_of(std::size_t number, const std::string& code) {
+        return fmt::format("modelsection_{:03}_{}.cli", number, code);
+    }
+
+    std::vector<Section> sections_;
+    std::map<std::string, std::vector<std::size_t>> of_part_;
+    std::map<std::string, std::size_t> numbers_;
+    std::set<std::string> names_;
+    std::size_t next_ = 1;
+};
+
+/// Five lines for each file, as readers count them. Distance and time of points are for beams that are
+/// pulsed; ours are not. The sign of a millionth is one byte of Latin-1.
+std::string parameters_text(const std::vector<Section>& sections) {
+    constexpr std::string_view micro = "\xb5";
+    std::string text;
+    for (const auto& [name, code, parameters, parts] : sections)
+        text += fmt::format("[{}]\nLaserSpeed = {} mm/s\nLaserPower = {} watt\nFocusShift = {} mm\n"
+                            "PointDistance = 0.0 {}m\nExposureTime = 0.0 {}s\n\n",
+                            name, exact_decimal_text(parameters.speed_mm_s),
+                            exact_decimal_text(parameters.power_w), exact_decimal_text(parameters.focus_mm),
+                            micro, micro);
+    return text;
+}
+
+class IltWriter final : public LayerWriter {
+  public:
+    IltWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
+        : parts_(info.parts), order_(info), zip_(path) {
+        Sections sections;
+        for (std::size_t part = 0; part < info.parts.size(); ++part) {
+            const PartInfo& known = info.parts[part];
+            sections.add(part, known.exposure.value_or(no_exposure(known.label)));
+        }
+        sections_ = sections.take();
+        assert(!sections_.empty());
+        zip_.add(ilt_parameters, parameters_text(sections_));
+        zip_.begin(sections_.front().name, ZipMethod::stored);
+        entries_.resize(sections_.size());
+        for (std::size_t i = 0; i < sections_.size(); ++i)
+            open(i, info, options);
+    }
+
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
+        std::vector<std::function<void()>> writes;
+        for (std::size_t i = 0; i < sections_.size(); ++i) {
+            std::vector<Layer> layers;
+            for (const std::size_t part : sections_[i].parts)
+                layers.push_back(parts[part]);
+            writes.push_back(entries_[i].writer->prepare(layers));
+        }
+        return [this, writes = std::move(writes), z = parts.front().z] {
+            order_.next(z);
+            for (const std::function<void()>& write : writes)
+                write();
+        };
+    }
+
+    void finish() override {
+        order_.end();
+        for (const Entry& entry : entries_)
+            entry.writer->finish();
+        zip_.end();
+        for (std::size_t i = 1; i < sections_.size(); ++i) {
+            zip_.begin(sections_[i].name, ZipMethod::stored);
+            std::string bytes;
+            for (const auto& [place, size] : entries_[i].waiting) {
+                bytes.resize(size);
+                store_.read(place, bytes);
+                zip_.append_stored(bytes);
+            }
+            zip_.end();
+        }
+        zip_.finish();
+    }
+
+    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+
+    std::vector<std::string> warnings() const override {
+        std::vector<std::string> lines;
+        say_unexposed(parts_, lines);
+        for (std::size_t i = 0; i < sections_.size(); ++i)
+            for (const std::string& line : entries_[i].writer->warnings())
+                lines.push_back(fmt::format("{}: {}", sections_[i].name, line));
+        return lines;
+    }
+
+  private:
+    struct Stretch {
+        std::uint64_t place;
+        std::size_t size;
+    };
+    /// What writes a file of the archive, and which bytes of it are in the store.
+    struct Entry {
+        LayerFilePiece piece;
+        std::unique_ptr<LayerWriter> writer;
+        std::vector<Stretch> waiting;
+    };
+
+    /// All of the file is one piece, which goes where it is put.
+    void open(std::size_t section, const LayerFileInfo& info, const LayerWriteOptions& options) {
+        Entry& entry = entries_[section];
+        entry.piece = {0, info.layers, [this, section](std::string_view bytes) {
+                           put(section, bytes);
+                       }};
+        LayerFileInfo part_info = info;
+        part_info.piece = &entry.piece;
+        part_info.parts.clear();
+        for (const std::size_t part : sections_[section].parts) {
+            PartInfo known = info.parts[part];
+            if (known.exposure)
+                known.label = fmt::format("{} {}", known.exposure->part, known.exposure->name());
+            part_info.parts.push_back(std::move(known));
+        }
+        entry.writer = open_common_layer_binary({}, part_info, options);
+    }
+
+    void put(std::size_t section, std::string_view bytes) {
+        if (section == 0) {
+            zip_.append_stored(bytes);
+            return;
+        }
+        if (bytes.empty())
+            return;
+        std::vector<Stretch>& waiting = entries_[section].waiting;
+        if (!waiting.empty() && waiting.back().place + waiting.back().size == store_.size() &&
+            waiting.back().size + bytes.size() <= ByteStore::block_bytes)
+            waiting.back().size += bytes.size();
+        else
+            waiting.push_back({store_.size(), bytes.size()});
+        store_.add(bytes);
+    }
+
+    std::vector<PartInfo> parts_;
+    LayerOrder order_;
+    ZipWriter zip_;
+    std::vector<Section> sections_;
+    std::vector<Entry> entries_; ///< of sections_; their pieces stay where they are
+    ByteStore store_{most_in_memory};
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_ilt(const std::string& path, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options) {
+    return std::make_unique<IltWriter>(path, info, options);
+}
+
+} // namespace lamella

@@ -1,0 +1,302 @@
+// The file is a work plane after the other, each with a table of where its vectors lie, then the job, which
+// has what all of them share, and a table of where work planes lie. The file's first bytes tell where that
+// is; they are written last.
+
+#include "write/ovf.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include "container/ovf_format.hpp"
+#include "container/protobuf.hpp"
+#include "container/text_place.hpp"
+#include "core/atomic_file.hpp"
+#include "write/byte_buffer.hpp"
+#include "write/exposure_keys.hpp"
+#include "write/float_contour.hpp"
+#include "write/left_out.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::size_t most_text = 4096; ///< bytes of a label or name
+constexpr std::size_t position_size = sizeof(std::int64_t);
+
+std::string_view position_bytes(const std::uint64_t& position) {
+    return {reinterpret_cast<const char*>(&position), position_size};
+}
+
+/// The name of the parameters: contours further inwards have their number in it, for which there is no other
+/// place.
+std::string name_of_parameters(const Exposure& exposure) {
+    return exposure.contour > 1 ? fmt::format("{} {}", exposure.parameters.name, exposure.contour)
+                                : exposure.parameters.name;
+}
+
+ProtobufMessage marking_params(const Exposure& exposure) {
+    const ParameterSet& parameters = exposure.parameters;
+    ProtobufMessage message;
+    message.real(ovf::marking::power_w, parameters.power_w);
+    message.real(ovf::marking::speed_mm_s, parameters.speed_mm_s);
+    message.real(ovf::marking::focus_mm, parameters.focus_mm);
+    message.real(ovf::marking::jump_speed_mm_s, parameters.jump_speed_mm_s);
+    message.real(ovf::marking::jump_delay_us, parameters.jump_delay_us);
+    message.real(ovf::marking::mark_delay_us, parameters.mark_delay_us);
+    message.text(ovf::marking::name, printable(name_of_parameters(exposure), most_text));
+    return message;
+}
+
+ProtobufMessage lpbf_meta_data(const Exposure& exposure) {
+    namespace lpbf = ovf::block::lpbf;
+    ProtobufMessage message;
+    if (exposure.kind == VectorKind::contour)
+        message.integer(lpbf::part_area, exposure.contour > 1 ? lpbf::transition_contour : lpbf::contour);
+    if (exposure.region == ScanRegion::downskin)
+        message.integer(lpbf::skin_type, lpbf::down_skin);
+    if (exposure.region == ScanRegion::upskin)
+        message.integer(lpbf::skin_type, lpbf::up_skin);
+    if (exposure.region == ScanRegion::support)
+        message.integer(lpbf::structure_type, lpbf::of_support);
+    return message;
+}
+
+/// What stands behind the vectors in each block of a part of the file. Keys of the job count from 1; 0 is
+/// none.
+std::vector<std::string> ends_of_blocks(const ExposureKeys& keys) {
+    std::vector<std::string> ends;
+    for (const auto& [part, exposure] : keys.keys) {
+        ProtobufMessage meta_data;
+        meta_data.integer(ovf::block::meta::part_key, static_cast<std::int64_t>(part + 1));
+        ProtobufMessage block;
+        if (exposure)
+            block.integer(ovf::block::marking_params_key, static_cast<std::int64_t>(*exposure + 1));
+        block.message(ovf::block::meta_data, meta_data);
+        if (exposure)
+            block.message(ovf::block::lpbf_meta_data, lpbf_meta_data(keys.exposures[*exposure]));
+        ends.emplace_back(block.view());
+    }
+    return ends;
+}
+
+/// Parameters and parts of the job.
+void put_keys(const ExposureKeys& keys, double layer_thickness, ProtobufMessage& job) {
+    std::int64_t key = 1;
+    for (const Exposure& exposure : keys.exposures)
+        job.entry(ovf::job::marking_params, key++, marking_params(exposure));
+    ProtobufMessage strategy;
+    strategy.real(ovf::part::strategy_of_part::layer_thickness_mm, layer_thickness);
+    key = 1;
+    for (const std::string& label : keys.parts) {
+        ProtobufMessage part;
+        part.text(ovf::part::name, printable(label, most_text));
+        part.message(ovf::part::strategy, strategy);
+        job.entry(ovf::job::parts, key++, part);
+    }
+}
+
+/// The vectors of a plane, and where each block of them begins.
+struct Blocks {
+    std::shared_ptr<ByteBuffer> bytes;
+    std::vector<std::uint64_t> begins;
+};
+
+/// Blocks of vectors with their lengths in front.
+class BlockWriter {
+  public:
+    BlockWriter(const FloatContours& floats, std::uint64_t layer, Blocks& blocks)
+        : floats_(floats), layer_(layer), blocks_(blocks) {}
+
+    /// A ring ends with its first point once more.
+    void put_contour(std::span<const Point2> contour, bool closed, std::string_view of_block) {
+        const std::size_t expected = contour.size() + (closed ? 1 : 0);
+        char* const begin = room(expected, of_block);
+        char* const points = put_head(begin, ovf::block::line_sequence, expected, of_block);
+        const std::size_t listed = floats_.put(contour, closed, layer_, points).points;
+        if (listed == 0)
+            return;
+        if (listed != expected) {
+            char* const moved = begin + head_size(ovf::block::line_sequence, listed, of_block);
+            std::memmove(moved, points, listed * float_point_size);
+            put_head(begin, ovf::block::line_sequence, listed, of_block);
+        }
+        end(begin, ovf::block::line_sequence, listed, of_block);
+    }
+
+    void put_hatches(std::span<const Point2> hatches, std::string_view of_block) {
+        if (hatches.empty())
+            return;
+        char* const begin = room(hatches.size(), of_block);
+        floats_.put_points(hatches, layer_, put_head(begin, ovf::block::hatches, hatches.size(), of_block));
+        end(begin, ovf::block::hatches, hatches.size(), of_block);
+    }
+
+  private:
+    char* room(std::size_t points, std::string_view of_block) {
+        constexpr std::size_t most_head = 5 * most_varint;
+        return blocks_.bytes->room(most_head + (points + 1) * float_point_size + of_block.size());
+    }
+
+    /// What stands in front of the points: the lengths of the block, of its vectors and of their list.
+    static char* put_head(char* out, std::uint32_t kind, std::size_t points, std::string_view of_block) {
+        constexpr auto bytes = ProtobufType::bytes;
+        char text[most_varint];
+        const auto size = [&](std::uint64_t value) {
+            return static_cast<std::uint64_t>(put_varint(text, value) - text);
+        };
+        const std::uint64_t list = points * float_point_size;
+        const std::uint64_t vectors = size(protobuf_tag(ovf::block::points, bytes)) + size(list) + list;
+        const std::uint64_t block =
+            size(protobuf_tag(kind, bytes)) + size(vectors) + vectors + of_block.size();
+        out = put_varint(out, block);
+        out = put_varint(put_varint(out, protobuf_tag(kind, bytes)), vectors);
+        return put_varint(put_varint(out, protobuf_tag(ovf::block::points, bytes)), list);
+    }
+
+    static std::size_t head_size(std::uint32_t kind, std::size_t points, std::string_view of_block) {
+        char text[5 * most_varint];
+        return static_cast<std::size_t>(put_head(text, kind, points, of_block) - text);
+    }
+
+    void end(char* begin, std::uint32_t kind, std::size_t points, std::string_view of_block) {
+        blocks_.begins.push_back(blocks_.bytes->view().size());
+        char* const behind = begin + head_size(kind, points, of_block) + points * float_point_size;
+        blocks_.bytes->end_at(put_text(behind, of_block));
+    }
+
+    const FloatContours& floats_;
+    std::uint64_t layer_;
+    Blocks& blocks_;
+};
+
+class OvfWriter final : public LayerWriter {
+  public:
+    OvfWriter(const std::string& path, const LayerFileInfo& info)
+        : box_(info.box), parts_(info.parts), keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)),
+          file_(path, Overwriting::yes), order_(info), left_out_({.open_chains = true, .hatches = true}),
+          floats_(1, &left_out_.rounding()) {
+        file_.append(ovf::magic);
+        file_.append(position_bytes(0));
+    }
+
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
+        auto blocks = std::make_shared<Blocks>(Blocks{buffers_->take(), {}});
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            const Layer& layer = parts[part];
+            BlockWriter writer(floats_, layer.index, *blocks);
+            for (std::size_t i = 0; i < layer.contours(); ++i)
+                writer.put_contour(layer.contour(i), layer.closed(i), ends_of_blocks_[part]);
+            writer.put_hatches(layer.hatches.span(), ends_of_blocks_[part]);
+        }
+        const Layer& layer = parts.front();
+        return [this, blocks, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
+            order_.next(z);
+            check_top(top, index);
+            if (order_.count() == 1)
+                layer_thickness_ = top - bottom;
+            append_plane(*blocks, top);
+        };
+    }
+
+    void finish() override {
+        order_.end();
+        ProtobufMessage bounds;
+        bounds.real(ovf::box::x_min, box_.min.x);
+        bounds.real(ovf::box::y_min, box_.min.y);
+        bounds.real(ovf::box::x_max, box_.max.x);
+        bounds.real(ovf::box::y_max, box_.max.y);
+        ProtobufMessage meta_data;
+        meta_data.message(ovf::job::meta::bounds, bounds);
+        ProtobufMessage job;
+        job.message(ovf::job::meta_data, meta_data);
+        put_keys(keys_, layer_thickness_, job);
+        job.integer(ovf::job::work_plane_count, static_cast<std::int64_t>(planes_.size()));
+
+        ProtobufMessage table;
+        table.integer(ovf::table::shell, static_cast<std::int64_t>(file_.bytes()));
+        table.integers(ovf::table::positions, planes_);
+        file_.append(job.delimited());
+        const std::uint64_t table_place = file_.bytes();
+        file_.append(table.delimited());
+        file_.overwrite(ovf::magic.size(), position_bytes(table_place));
+        file_.commit();
+    }
+
+    std::uint64_t bytes() const noexcept override { return file_.bytes(); }
+
+    std::vector<std::string> warnings() const override {
+        std::vector<std::string> lines = left_out_.warnings();
+        say_unexposed(parts_, lines);
+        return lines;
+    }
+
+  private:
+    void check_top(double top, std::uint64_t index) {
+        const auto single = static_cast<float>(top);
+        if (!(single > last_top_))
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("layer {} is so thin that its top, z = {} mm, is that of the layer before "
+                            "in single precision",
+                            index, top));
+        last_top_ = single;
+    }
+
+    /// In front of a plane stands where its table lies.
+    void append_plane(const Blocks& blocks, double top) {
+        const std::uint64_t begin = file_.bytes();
+        ProtobufMessage shell;
+        shell.real(ovf::work_plane::z, top);
+        shell.integer(ovf::work_plane::block_count, static_cast<std::int64_t>(blocks.begins.size()));
+        shell.integer(ovf::work_plane::number, static_cast<std::int64_t>(planes_.size()));
+        const std::string shell_bytes = shell.delimited();
+        planes_.push_back(begin);
+
+        const std::uint64_t shell_place = begin + position_size + blocks.bytes->view().size();
+        const std::uint64_t table_place = shell_place + shell_bytes.size();
+        std::vector<std::uint64_t> places = blocks.begins;
+        for (std::uint64_t& place : places)
+            place += begin + position_size;
+        ProtobufMessage table;
+        table.integer(ovf::table::shell, static_cast<std::int64_t>(shell_place));
+        table.integers(ovf::table::positions, places);
+
+        file_.append(position_bytes(table_place));
+        file_.append(blocks.bytes->view());
+        assert(file_.bytes() == shell_place);
+        file_.append(shell_bytes);
+        assert(file_.bytes() == table_place);
+        file_.append(table.delimited());
+    }
+
+    Box3 box_;
+    std::vector<PartInfo> parts_;
+    ExposureKeys keys_;
+    std::vector<std::string> ends_of_blocks_; ///< of parts
+    AtomicFile file_;
+    LayerOrder order_;
+    LeftOut left_out_;
+    FloatContours floats_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+    std::vector<std::uint64_t> planes_; ///< where they begin
+    float last_top_ = -std::numeric_limits<float>::infinity();
+    double layer_thickness_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_ovf(const std::string& path, const LayerFileInfo& info,
+                                      const LayerWriteOptions& /*options*/) {
+    return std::make_unique<OvfWriter>(path, info);
+}
+
+} // namespace lamella

@@ -1,0 +1,74 @@
+#include "write/package_3mf.hpp"
+
+#include "container/inflate.hpp"
+#include "write/decimal.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+namespace lamella::package_3mf {
+
+std::string content_types(std::string_view more) {
+    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                       "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+                       "<Default Extension=\"rels\" "
+                       "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
+                       "<Default Extension=\"model\" "
+                       "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
+                       "{}</Types>\n",
+                       more);
+}
+
+Piece Compression::piece(std::string_view text) {
+    std::unique_ptr<Deflater> deflater;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!idle_.empty()) {
+            deflater = std::move(idle_.back());
+            idle_.pop_back();
+        }
+    }
+    if (!deflater)
+        deflater = std::make_unique<Deflater>();
+    Piece piece{{}, text.size(), crc32_of(text)};
+    deflater->append_piece(text, piece.bytes);
+    piece.bytes.shrink_to_fit();
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(deflater));
+    return piece;
+}
+
+Piece Compression::whole(std::string_view text) {
+    Piece all = piece(text);
+    all.bytes += deflate_end;
+    return all;
+}
+
+std::string box_mesh(const Box3& box) {
+    std::string text = "<mesh>\n<vertices>\n";
+    for (const double z : {box.min.z, box.max.z})
+        for (const auto& [x, y] : {Point2{box.min.x, box.min.y}, Point2{box.max.x, box.min.y},
+                                   Point2{box.max.x, box.max.y}, Point2{box.min.x, box.max.y}})
+            text += fmt::format("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", decimal_text(x), decimal_text(y),
+                                decimal_text(z));
+    text += "</vertices>\n<triangles>\n";
+    constexpr std::array<std::array<int, 3>, 12> triangles{{{0, 2, 1},
+                                                            {0, 3, 2},
+                                                            {4, 5, 6},
+                                                            {4, 6, 7},
+                                                            {0, 1, 5},
+                                                            {0, 5, 4},
+                                                            {1, 2, 6},
+                                                            {1, 6, 5},
+                                                            {2, 3, 7},
+                                                            {2, 7, 6},
+                                                            {3, 0, 4},
+                                                            {3, 4, 7}}};
+    for (const auto& [a, b, c] : triangles)
+        text += fmt::format("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", a, b, c);
+    return text + "</triangles>\n</mesh>\n";
+}
+
+} // namespace lamella::package_3mf

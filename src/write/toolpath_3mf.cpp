@@ -1,0 +1,309 @@
+// One part of the package for each layer, then the model, which has the profiles and lists the layers. Layers
+// name the parts on the plate and the profiles by identifiers that are made of what the head of the file
+// says.
+
+#include "write/toolpath_3mf.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+
+#include "container/toolpath_3mf_format.hpp"
+#include "container/zip_writer.hpp"
+#include "write/byte_buffer.hpp"
+#include "write/decimal.hpp"
+#include "write/exposure_keys.hpp"
+#include "write/grid.hpp"
+#include "write/left_out.hpp"
+#include "write/package_3mf.hpp"
+#include "write/quoted.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+constexpr std::string_view xml_begin = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+constexpr std::int64_t most_coordinate = std::numeric_limits<std::int32_t>::max();
+
+/// A hash of a text (FNV-1a), from a start of one's choice.
+std::uint64_t hash_of(std::string_view text, std::uint64_t start) {
+    std::uint64_t hash = start;
+    for (const char c : text)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3;
+    return hash;
+}
+
+/// An identifier of version 8: made in a way of one's own. The same text has the same one.
+std::string uuid_of(std::string_view text) {
+    std::uint64_t high = hash_of(text, 0xCBF29CE484222325);
+    std::uint64_t low = hash_of(text, high);
+    high = (high & ~std::uint64_t{0xF000}) | 0x8000;
+    low = (low & ~(std::uint64_t{3} << 62U)) | std::uint64_t{2} << 62U;
+    return fmt::format("{:08x}-{:04x}-{:04x}-{:04x}-{:012x}", high >> 32U, high >> 16U & 0xFFFFU,
+                       high & 0xFFFFU, low >> 48U, low & 0xFFFFFFFFFFFFU);
+}
+
+/// All that the head of a file says, for identifiers of which no two files should have the same.
+std::string head_text(const LayerFileInfo& info) {
+    std::string text = fmt::format("{} {}", info.layers, info.bottom);
+    const auto add_box = [&](const Box3& box) {
+        for (const Point3& p : {box.min, box.max})
+            text += fmt::format(" {} {} {}", p.x, p.y, p.z);
+    };
+    add_box(info.box);
+    for (const PartInfo& part : info.parts) {
+        text += fmt::format(" \"{}\"", part.label);
+        add_box(part.box);
+    }
+    return text;
+}
+
+std::string attribute(std::string_view name, double value) {
+    return fmt::format(" {}=\"{}\"", name, exact_decimal_text(value));
+}
+
+/// Speeds and lengths of 0 are not allowed; they say nothing.
+std::string positive_attribute(std::string_view name, double value) {
+    return value > 0 ? attribute(name, value) : std::string();
+}
+
+/// What the extension has no attribute for is in one of ours, which others pass over.
+std::string profile_text(const std::string& uuid, const std::string& name, const Exposure& exposure) {
+    const ParameterSet& set = exposure.parameters;
+    return fmt::format(
+        "<tp:toolpathprofile uuid=\"{}\" name=\"{}\"{}{}{}{}{} l:region=\"{}\" l:kind=\"{}\" "
+        "l:contour=\"{}\" l:parameters=\"{}\"{}{}/>\n",
+        uuid, xml_escaped(name), attribute("laserpower", std::max(0.0, set.power_w)),
+        positive_attribute("laserspeed", set.speed_mm_s),
+        positive_attribute("jumpspeed", set.jump_speed_mm_s), attribute("laserfocus", set.focus_mm),
+        positive_attribute("spotradius", set.spot_mm / 2), scan_region_name(exposure.region),
+        vector_kind_name(exposure.kind), exposure.contour, xml_escaped(set.name),
+        attribute("l:markdelay", set.mark_delay_us), attribute("l:jumpdelay", set.jump_delay_us));
+}
+
+class Toolpath3mfWriter final : public LayerWriter {
+  public:
+    Toolpath3mfWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
+        : info_(info), keys_(info.parts), units_(options.units_mm), zip_(path), order_(info),
+          grid_(options.units_mm, &left_out_.rounding()), bottom_(whole_height(info.bottom)),
+          last_top_(bottom_) {
+        const std::string file = head_text(info);
+        uuid_ = uuid_of("toolpath " + file);
+        for (std::size_t part = 0; part < keys_.parts.size(); ++part)
+            item_uuids_.push_back(uuid_of(fmt::format("item {} {}", part, file)));
+        const bool any_bare = std::any_of(info.parts.begin(), info.parts.end(),
+                                          [](const PartInfo& part) { return !part.exposure; });
+        for (std::size_t i = 0; i < keys_.exposures.size() + (any_bare ? 1 : 0); ++i)
+            profile_uuids_.push_back(uuid_of(fmt::format("profile {} {}", i, file)));
+        layer_begin_ = layer_begin();
+        zip_.add("[Content_Types].xml",
+                 package_3mf::content_types("<Default Extension=\"xml\" ContentType=\"application/xml\"/>"),
+                 ZipMethod::deflated);
+        zip_.add("_rels/.rels", package_3mf::relations, ZipMethod::deflated);
+    }
+
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        order_.check_parts(parts.size());
+        const std::shared_ptr<ByteBuffer> text = buffers_->take();
+        put_layer(parts, *text);
+        auto piece = std::make_shared<package_3mf::Piece>(compression_.whole(text->view()));
+        const Layer& layer = parts.front();
+        return [this, piece, index = layer.index, z = layer.z, top = layer.top] {
+            order_.next(z);
+            const std::int64_t height = whole_height(top);
+            if (height <= last_top_)
+                throw Error(
+                    ErrorKind::usage,
+                    fmt::format("layer {} ends at z = {} mm, which is not above the one below it in units "
+                                "of {} mm; use smaller units",
+                                index, top, units_));
+            last_top_ = height;
+            const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", order_.count());
+            zip_.add_ready(name, ZipMethod::deflated, piece->in_zip());
+            layers_ += fmt::format("<tp:toolpathlayer ztop=\"{}\" path=\"/{}\"/>\n", height, name);
+            relations_ += fmt::format("<Relationship Id=\"layer{}\" Target=\"/{}\" Type=\"{}\"/>\n",
+                                      order_.count(), name, toolpath_3mf::layer_type);
+        };
+    }
+
+    void finish() override {
+        order_.end();
+        zip_.add("3D/_rels/3dmodel.model.rels",
+                 fmt::format("{}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/"
+                             "relationships\">\n{}</Relationships>\n",
+                             xml_begin, relations_),
+                 ZipMethod::deflated);
+        zip_.add("3D/3dmodel.model", model(), ZipMethod::deflated);
+        zip_.finish();
+    }
+
+    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+
+    std::vector<std::string> warnings() const override {
+        std::vector<std::string> lines = left_out_.warnings();
+        say_unexposed(info_.parts, lines);
+        return lines;
+    }
+
+  private:
+    [[nodiscard]] std::int64_t whole_height(double z) const {
+        const double units = std::nearbyint(z / units_);
+        if (!(units >= 0 && units <= static_cast<double>(most_coordinate)))
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("a height of {} mm cannot be written in units of {} mm: those of the format "
+                            "reach from 0 to {}",
+                            z, units_, most_coordinate));
+        return static_cast<std::int64_t>(units);
+    }
+
+    /// What stands before the vectors of each layer, which count parts and profiles from 1.
+    [[nodiscard]] std::string layer_begin() const {
+        std::string text = fmt::format("{}<layer xmlns=\"{}\">\n<parts>\n", xml_begin, toolpath_3mf::space);
+        for (std::size_t i = 0; i < item_uuids_.size(); ++i)
+            text += fmt::format("<part id=\"{}\" uuid=\"{}\"/>\n", i + 1, item_uuids_[i]);
+        text += "</parts>\n<profiles>\n";
+        for (std::size_t i = 0; i < profile_uuids_.size(); ++i)
+            text += fmt::format("<profile id=\"{}\" uuid=\"{}\"/>\n", i + 1, profile_uuids_[i]);
+        return text + "</profiles>\n";
+    }
+
+    void put_layer(std::span<const Layer> parts, ByteBuffer& out) const {
+        out.append(layer_begin_);
+        out.append("<segments>\n");
+        std::vector<GridPoint> scratch;
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            const Layer& layer = parts[part];
+            const auto& [of_part, exposure] = keys_.keys[part];
+            const std::string refers = fmt::format(
+                "profileid=\"{}\" partid=\"{}\"", exposure.value_or(keys_.exposures.size()) + 1, of_part + 1);
+            for (std::size_t i = 0; i < layer.contours(); ++i) {
+                const bool closed = layer.closed(i);
+                const auto points = grid_.snap(
+                    layer.contour(i), closed, closed ? ring_area(layer.contour(i)) : 0, layer.index, scratch);
+                if (!points.empty())
+                    put_segment(closed ? "loop" : "polyline", refers, points, {"<point x=\"", "\" y=\""},
+                                layer, out);
+            }
+            if (!layer.hatches.empty())
+                put_segment("hatch", refers, grid_.snap_points(layer.hatches.span(), layer.index),
+                            {"<hatch x1=\"", "\" y1=\"", "\" x2=\"", "\" y2=\""}, layer, out);
+        }
+        out.append("</segments>\n</layer>\n");
+    }
+
+    /// `before` the numbers of each element; two of them are a point.
+    static void put_segment(std::string_view type, std::string_view refers, std::span<const GridPoint> points,
+                            std::initializer_list<std::string_view> before, const Layer& layer,
+                            ByteBuffer& out) {
+        constexpr std::string_view element_end = "\"/>\n";
+        constexpr std::size_t per_point = 2 * (most_integer_digits + 12);
+        out.append(fmt::format("<segment type=\"{}\" {}>\n", type, refers));
+        char* at = out.room(points.size() * per_point);
+        const auto* text = before.begin();
+        for (const GridPoint& p : points) {
+            for (const std::int64_t value : {p.x, p.y}) {
+                if (value > most_coordinate || value < -most_coordinate)
+                    throw Error(ErrorKind::usage,
+                                fmt::format("layer {} has coordinates beyond 2^31 units; use larger ones",
+                                            layer.index));
+                at = put_integer(put_text(at, *text++), value);
+            }
+            if (text == before.end()) {
+                at = put_text(at, element_end);
+                text = before.begin();
+            }
+        }
+        out.end_at(at);
+        out.append("</segment>\n");
+    }
+
+    /// Names must differ.
+    [[nodiscard]] std::string profiles() const {
+        std::string text;
+        std::set<std::string> names;
+        for (std::size_t i = 0; i < keys_.exposures.size(); ++i) {
+            const Exposure& exposure = keys_.exposures[i];
+            std::string name = fmt::format("{} ({})", exposure.name(), exposure.parameters.name);
+            if (!names.insert(name).second)
+                name = fmt::format("{} {}", name, i + 1);
+            text += profile_text(profile_uuids_[i], name, exposure);
+        }
+        if (profile_uuids_.size() > keys_.exposures.size())
+            text += fmt::format("<tp:toolpathprofile uuid=\"{}\" name=\"no parameters\"/>\n",
+                                profile_uuids_.back());
+        return text;
+    }
+
+    [[nodiscard]] std::string model() const {
+        std::string objects;
+        std::string items;
+        for (std::size_t i = 0; i < keys_.parts.size(); ++i) {
+            const std::size_t id = i + 2;
+            objects +=
+                fmt::format("<object id=\"{}\" p:UUID=\"{}\" type=\"model\" name=\"{}\">\n{}</object>\n", id,
+                            uuid_of("object " + item_uuids_[i]), xml_escaped(keys_.parts[i]),
+                            package_3mf::box_mesh(box_of(i)));
+            items += fmt::format("<item objectid=\"{}\" p:UUID=\"{}\"/>\n", id, item_uuids_[i]);
+        }
+        return fmt::format(
+            "{}<model unit=\"millimeter\" xml:lang=\"en-US\" "
+            "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+            "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" xmlns:tp=\"{}\" "
+            "xmlns:l=\"{}\" requiredextensions=\"p tp\">\n<resources>\n"
+            "<tp:toolpathresource id=\"1\" uuid=\"{}\" unitfactor=\"{}\" toolpathtype=\"planar\">\n"
+            "<tp:toolpathprofiles>\n{}</tp:toolpathprofiles>\n"
+            "<tp:toolpathlayers zbottom=\"{}\">\n{}</tp:toolpathlayers>\n</tp:toolpathresource>\n"
+            "{}</resources>\n<build p:UUID=\"{}\" tp:toolpathid=\"1\">\n{}</build>\n</model>\n",
+            xml_begin, toolpath_3mf::space, toolpath_3mf::own_space, uuid_, exact_decimal_text(units_),
+            profiles(), bottom_, layers_, objects, uuid_of("build " + uuid_), items);
+    }
+
+    [[nodiscard]] Box3 box_of(std::size_t part) const {
+        Box3 box;
+        for (std::size_t i = 0; i < keys_.keys.size(); ++i)
+            if (keys_.keys[i].part == part && !info_.parts[i].box.empty()) {
+                box.add(info_.parts[i].box.min);
+                box.add(info_.parts[i].box.max);
+            }
+        return box.empty() ? info_.box : box;
+    }
+
+    LayerFileInfo info_;
+    ExposureKeys keys_;
+    double units_;
+    ZipWriter zip_;
+    LayerOrder order_;
+    LeftOut left_out_{{.open_chains = true, .hatches = true}};
+    WriterGrid grid_;
+    package_3mf::Compression compression_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+    std::string uuid_;
+    std::vector<std::string> item_uuids_;    ///< of the parts of keys_
+    std::vector<std::string> profile_uuids_; ///< of its exposures, then of what has no parameters
+    std::string layer_begin_;
+    std::string layers_;    ///< of the model
+    std::string relations_; ///< likewise
+    std::int64_t bottom_;
+    std::int64_t last_top_;
+};
+
+} // namespace
+
+std::unique_ptr<LayerWriter> open_toolpath_3mf(const std::string& path, const LayerFileInfo& info,
+                                               const LayerWriteOptions& options) {
+    check_units(options.units_mm);
+    return std::make_unique<Toolpath3mfWriter>(path, info, options);
+}
+
+} // namespace lamella

@@ -1,0 +1,287 @@
+// Every slice format that keeps exposures: scan vectors come back in their order, with what the format says
+// of them, and no bytes of it do more harm than an error.
+
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <lamella/lamella.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella::scan_format_cases {
+namespace {
+
+struct ScanFormat {
+    const char* name;
+    std::function<double(double)> coordinate; ///< as the format keeps it
+    std::function<ParameterSet(const ParameterSet&)> parameters;
+};
+
+double single(double v) {
+    return static_cast<double>(static_cast<float>(v)) + 0.0;
+}
+
+const std::vector<ScanFormat>& scan_formats() {
+    static const std::vector<ScanFormat> formats{
+        {.name = "ilt",
+         .coordinate = [](double v) { return single(v * 1000) * 0.001 + 0.0; },
+         .parameters =
+             [](const ParameterSet& set) {
+                 return ParameterSet{.name = {},
+                                     .power_w = set.power_w,
+                                     .speed_mm_s = set.speed_mm_s,
+                                     .jump_speed_mm_s = 0,
+                                     .focus_mm = set.focus_mm,
+                                     .spot_mm = 0,
+                                     .mark_delay_us = 0,
+                                     .jump_delay_us = 0};
+             }},
+        {.name = "ovf",
+         .coordinate = single,
+         .parameters =
+             [](const ParameterSet& set) {
+                 return ParameterSet{.name = set.name,
+                                     .power_w = single(set.power_w),
+                                     .speed_mm_s = single(set.speed_mm_s),
+                                     .jump_speed_mm_s = single(set.jump_speed_mm_s),
+                                     .focus_mm = single(set.focus_mm),
+                                     .spot_mm = 0,
+                                     .mark_delay_us = single(set.mark_delay_us),
+                                     .jump_delay_us = single(set.jump_delay_us)};
+             }},
+        {.name = "3mf-toolpath",
+         .coordinate = [](double v) { return std::nearbyint(v * 1000) * 0.001 + 0.0; },
+         .parameters =
+             [](const ParameterSet& set) {
+                 return set;
+             }},
+    };
+    return formats;
+}
+
+ScanStrategy strategy() {
+    ScanStrategy strategy;
+    strategy.contours.count = 3;
+    strategy.contours.start = StartPoint::random; // not where normal form begins
+    strategy.contours.parameters.focus_mm = 0.3;
+    strategy.hatch.distance = 0.7;
+    strategy.hatch.parameters.speed_mm_s = 833.3;
+    strategy.upskin.layers = 2;
+    strategy.upskin.hatch.distance = 0.5;
+    strategy.downskin.layers = 1;
+    return strategy;
+}
+
+/// Two rings one in the other, of which one ends early, as a tube that is closed on top.
+LayerStack cup(Point2 centre) {
+    LayerStack layers;
+    for (std::uint64_t i = 0; i < 6; ++i) {
+        LayerBuilder builder;
+        const auto add = [&](double radius, double turn) {
+            constexpr int corners = 24;
+            for (int k = 0; k < corners; ++k) {
+                const double angle = turn * 2 * std::numbers::pi * k / corners;
+                builder.add_point({centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
+            }
+            builder.end_contour(true);
+        };
+        add(5, 1);
+        if (i >= 2 && i < 5)
+            add(2.5, -1);
+        const double bottom = 0.5 + 0.05 * static_cast<double>(i);
+        layers.push_back(builder.finish(i, bottom + 0.025, bottom, bottom + 0.05));
+    }
+    return layers;
+}
+
+struct Job {
+    LayerFileInfo info;
+    std::vector<LayerStack> parts;
+};
+
+/// The scan vectors of two parts, and what is said of them.
+Job scanned() {
+    Job job;
+    job.info.parts.clear();
+    for (const auto& [label, centre] :
+         {std::pair{"left", Point2{-7, 1}}, std::pair{"right", Point2{8, -2}}}) {
+        const LayerStack layers = cup(centre);
+        const std::size_t first = job.parts.size();
+        for (const Exposure& exposure : exposures(strategy(), label)) {
+            job.info.parts.push_back({std::string(label) + ' ' + exposure.name(), {}, exposure});
+            job.parts.emplace_back();
+        }
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const std::vector<Layer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
+            const std::span above = std::span(layers).subspan(i + 1);
+            std::vector<Layer> vectors = scan(layers[i], below, above, strategy());
+            for (std::size_t k = 0; k < vectors.size(); ++k)
+                job.parts[first + k].push_back(std::move(vectors[k]));
+        }
+    }
+    job.info.layers = job.parts.front().size();
+    job.info.bottom = job.parts.front().front().bottom;
+    job.info.box.add(Point3{-20, -20, job.info.bottom});
+    job.info.box.add(Point3{20, 20, job.parts.front().back().top});
+    return job;
+}
+
+std::string written(const char* format, const Job& job, std::vector<std::string>* warnings = nullptr) {
+    const TemporaryFolder folder;
+    std::vector<std::string> said =
+        write_layers(folder.file("out"), layer_format(format, ""), job.parts, job.info);
+    if (warnings != nullptr)
+        *warnings = std::move(said);
+    return file_bytes(folder.file("out"));
+}
+
+LayerFile read(std::string_view bytes) {
+    // Exactly as long as the bytes, so that a sanitizer sees one byte too far.
+    const auto copy = std::make_unique<std::byte[]>(bytes.size());
+    std::memcpy(copy.get(), bytes.data(), bytes.size());
+    return read_layers(std::span(copy.get(), bytes.size()), "test", {}, {.threads = 1});
+}
+
+void expect_points(std::span<const Point2> found, std::span<const Point2> expected,
+                   const ScanFormat& format) {
+    ASSERT_EQ(found.size(), expected.size()) << format.name;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].x, format.coordinate(expected[i].x)) << format.name;
+        EXPECT_EQ(found[i].y, format.coordinate(expected[i].y)) << format.name;
+    }
+}
+
+TEST(ScanFormats, GiveBackVectorsInTheirOrderAndWhatIsSaidOfThem) {
+    const Job job = scanned();
+    ASSERT_EQ(job.parts.size(), 12U);
+    for (const ScanFormat& format : scan_formats()) {
+        std::vector<std::string> warnings;
+        const LayerFile back = read(written(format.name, job, &warnings));
+        EXPECT_TRUE(warnings.empty()) << warnings.front();
+        EXPECT_TRUE(back.warnings.empty()) << back.warnings.front();
+        EXPECT_EQ(back.format, format.name);
+        ASSERT_EQ(back.parts.size(), job.parts.size()) << format.name;
+        for (std::size_t part = 0; part < back.parts.size(); ++part) {
+            const LayerPart& found = back.parts[part];
+            ASSERT_TRUE(found.exposure) << format.name;
+            Exposure expected = *job.info.parts[part].exposure;
+            expected.parameters = format.parameters(expected.parameters);
+            EXPECT_EQ(found.label, job.info.parts[part].label) << format.name;
+            EXPECT_EQ(found.exposure->part, expected.part) << format.name;
+            EXPECT_EQ(found.exposure->name(), expected.name()) << format.name;
+            ParameterSet parameters = found.exposure->parameters;
+            if (expected.parameters.name.empty())
+                parameters.name.clear(); // one that the reader made up
+            EXPECT_TRUE(parameters == expected.parameters) << format.name << ", " << found.label;
+            ASSERT_EQ(found.layers.size(), job.info.layers) << format.name;
+            for (std::size_t i = 0; i < found.layers.size(); ++i) {
+                const Layer& layer = found.layers[i];
+                const Layer& original = job.parts[part][i];
+                EXPECT_NEAR(layer.bottom, original.bottom, 1e-5) << format.name;
+                EXPECT_NEAR(layer.top, original.top, 1e-5) << format.name;
+                EXPECT_EQ(layer.rings, original.rings) << format.name;
+                EXPECT_EQ(layer.offsets, original.offsets) << format.name;
+                expect_points(layer.points.span(), original.points.span(), format);
+                expect_points(layer.hatches.span(), original.hatches.span(), format);
+            }
+        }
+    }
+}
+
+TEST(ScanFormats, SayWhichPartsHaveNoParameters) {
+    Job job = scanned();
+    job.info.parts[2].exposure.reset();
+    for (const ScanFormat& format : scan_formats()) {
+        std::vector<std::string> warnings;
+        const LayerFile back = read(written(format.name, job, &warnings));
+        ASSERT_EQ(warnings.size(), 1U) << format.name;
+        EXPECT_TRUE(warnings.front().starts_with("1 part has no scan vectors")) << warnings.front();
+        EXPECT_EQ(std::count_if(back.parts.begin(), back.parts.end(),
+                                [](const LayerPart& part) { return !part.exposure; }),
+                  1)
+            << format.name;
+    }
+}
+
+TEST(ScanFormats, AreWrittenAgainAsTheyWereRead) {
+    const Job job = scanned();
+    for (const ScanFormat& format : scan_formats()) {
+        const std::string bytes = written(format.name, job);
+        const LayerFile back = read(bytes);
+        Job again{job.info, {}};
+        again.info.parts.clear();
+        again.info.bottom = back.parts.front().layers.front().bottom;
+        for (const LayerPart& part : back.parts) {
+            again.info.parts.push_back({part.label, {}, part.exposure});
+            again.parts.push_back(part.layers);
+        }
+        const LayerFile twice = read(written(format.name, again));
+        ASSERT_EQ(twice.parts.size(), back.parts.size());
+        for (std::size_t part = 0; part < back.parts.size(); ++part)
+            for (std::size_t i = 0; i < job.info.layers; ++i) {
+                const Layer& a = twice.parts[part].layers[i];
+                const Layer& b = back.parts[part].layers[i];
+                EXPECT_TRUE(same_contours(a, b)) << format.name;
+                EXPECT_TRUE(
+                    std::equal(a.hatches.begin(), a.hatches.end(), b.hatches.begin(), b.hatches.end()))
+                    << format.name;
+            }
+    }
+}
+
+// An input error, or layers of the same planes.
+void expect_harmless(std::string_view bytes) {
+    try {
+        const LayerFile file = read(bytes);
+        ASSERT_FALSE(file.parts.empty());
+        for (const LayerPart& part : file.parts) {
+            ASSERT_EQ(part.layers.size(), file.parts.front().layers.size());
+            for (const Layer& layer : part.layers) {
+                ASSERT_EQ(layer.offsets.back(), layer.points.size());
+                ASSERT_EQ(layer.hatches.size() % 2, 0U);
+            }
+        }
+    } catch (const Error& error) {
+        ASSERT_EQ(error.kind(), ErrorKind::input) << error.what();
+        ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    }
+}
+
+TEST(ScanFormats, TruncatedFilesAreErrors) {
+    for (const ScanFormat& format : scan_formats()) {
+        const std::string bytes = written(format.name, scanned());
+        for (std::size_t size = 1; size < bytes.size(); size += 1 + bytes.size() / 4000)
+            expect_harmless(std::string_view(bytes).substr(0, size));
+    }
+}
+
+TEST(ScanFormats, ChangedBytesAreErrorsOrOtherVectors) {
+    std::mt19937_64 random(11);
+    for (const ScanFormat& format : scan_formats()) {
+        const std::string bytes = written(format.name, scanned());
+        for (int i = 0; i < 1500; ++i) {
+            std::string changed = bytes;
+            // Half of them near the end, where tables are.
+            const std::size_t from =
+                i % 2 == 0 ? 0 : bytes.size() - std::min<std::size_t>(bytes.size(), 1500);
+            for (std::size_t k = 0; k <= random() % 4; ++k)
+                changed[from + random() % (changed.size() - from)] =
+                    static_cast<char>(random() % 4 == 0 ? 0xFF : random());
+            expect_harmless(changed);
+        }
+    }
+}
+
+} // namespace
+} // namespace lamella::scan_format_cases

@@ -1,0 +1,56 @@
+// Writes the scan vectors of a part in all formats that keep exposures, and the exact ones as JSON of layers,
+// into the folder given: for other readers to compare.
+
+#include "parts/shapes.hpp"
+
+#include <lamella/lamella.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace lamella;
+
+void write_samples(const std::string& folder) {
+    const Mesh mesh(make_rook());
+    const Box3 box = bounding_box(mesh);
+    const LayerStack layers = slice(mesh, plan_uniform(box.min.z, box.max.z, {.layer_height = 4}));
+    ScanStrategy strategy;
+    strategy.contours.count = 3;
+    strategy.hatch.distance = 0.6;
+    strategy.upskin.layers = 1;
+    strategy.downskin.layers = 1;
+    std::vector<LayerStack> parts;
+    LayerFileInfo info{.box = box, .layers = layers.size(), .bottom = layers.front().bottom};
+    info.parts.clear();
+    for (const Exposure& exposure : exposures(strategy, "rook")) {
+        info.parts.push_back({"rook " + exposure.name(), info.box, exposure});
+        parts.emplace_back();
+    }
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const std::vector<Layer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
+        std::vector<Layer> vectors = scan(layers[i], below, std::span(layers).subspan(i + 1), strategy);
+        for (std::size_t k = 0; k < vectors.size(); ++k)
+            parts[k].push_back(std::move(vectors[k]));
+    }
+    for (const char* format : {"json", "ilt", "ovf", "3mf-toolpath"})
+        write_layers(folder + "/rook." + format, layer_format(format, ""), parts, info);
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    try {
+        if (count != 2)
+            throw lamella::Error(lamella::ErrorKind::usage, "give a folder");
+        write_samples(arguments[1]);
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,244 @@
+"""lamella slice --scan, lamella scan and lamella strategy: scan vectors and what says how they are made."""
+
+import json
+import re
+
+from program import SOURCE, ProgramTest, binary_stl, box_triangles, main, open_box
+
+HATCHED = ["--hatch-distance", "0.5", "--contours", "2", "--skin-layers", "2"]
+
+
+class Strategy(ProgramTest):
+    def check(self, text, pattern, code=2):
+        self.write("s.toml", text)
+        for command in (["strategy", "check", "s.toml"], ["strategy", "show", "s.toml"],
+                        ["slice", "box.stl", "--strategy", "s.toml", "-o", "x.cli"]):
+            self.fail_with(code, pattern, *command)
+
+    def test_what_is_shown_is_a_strategy_that_shows_the_same(self):
+        text = self.succeed("strategy", "show").text
+        self.write("default.toml", text)
+        self.assertEqual(self.succeed("strategy", "check", "default.toml").text, "default.toml: is a strategy\n")
+        self.assertEqual(self.succeed("strategy", "show", "default.toml").text, text)
+        changed = text.replace("count = 1 ", "count = 4 ").replace('"stripes"', '"hexagons"').replace("power_w = 200.0", "power_w = 250")
+        changed = changed.replace("power_w = 200 ", "power_w = 250 ").replace("before_hatch = false", "before_hatch = true")
+        self.assertNotEqual(changed, text)
+        self.write("changed.toml", changed)
+        again = self.succeed("strategy", "show", "changed.toml").text
+        self.assertRegex(again, r"count = 4 ")
+        self.assertRegex(again, r'pattern = "hexagons"')
+        self.assertRegex(again, r"power_w = 250 ")
+        self.assertRegex(again, r"before_hatch = true")
+        self.assertEqual(self.succeed("strategy", "show", "-", stdin=again.encode()).text, again)
+
+    def test_every_key_is_shown_with_a_comment_and_is_in_the_documentation(self):
+        page = (SOURCE / "docs" / "strategies.md").read_text(encoding="utf-8")
+        keys = 0
+        for line in self.succeed("strategy", "show").text.splitlines():
+            if re.match(r"\w+ = ", line):
+                keys += 1
+                self.assertRegex(line, r"^\w+ = \S+ +# \w")
+                self.assertIn(f"`{line.split()[0]}`", page)
+        self.assertGreater(keys, 50)
+
+    def test_sets_of_parameters_are_found_by_their_names(self):
+        self.write("s.toml", '[hatch]\nparameters = "fast"\n[upskin.hatch]\nparameters = "fast"\n'
+                             '[parameters.fast]\npower_w = 300\n[parameters.contour]\nspeed_mm_s = 7\n')
+        text = self.succeed("strategy", "show", "s.toml").text
+        self.assertEqual(text.count('parameters = "fast"'), 2)
+        self.assertEqual(text.count("[parameters.fast]"), 1)
+        self.assertRegex(text, r"\[parameters.contour\]\npower_w = 120 .*\nspeed_mm_s = 7 ")
+
+    def test_what_is_wrong_is_told_with_its_line(self):
+        self.box()
+        self.check("[hatch]\ndistanze = 1\n", r's\.toml:2: \[hatch\] has no "distanze"; did you mean distance\?')
+        self.check("[hatches]\n", r's\.toml:1: a strategy has no "hatches"; did you mean hatch\?')
+        self.check("[upskin]\nborder = 1\n", r's\.toml:2: \[upskin\] has no "border"; there are layers, narrowest, overlap, hatch')
+        self.check('[hatch]\n\ndistance = "wide"\n', r's\.toml:3: hatch\.distance is "wide", but has to be a number')
+        self.check("[contours]\ncount = 1.5\n", r"s\.toml:2: contours\.count is 1\.5, but has to be a whole number")
+        self.check("[contours]\ncount = -1\n", r"s\.toml:2: contours\.count is -1, but has to be a whole number")
+        self.check("[contours]\ncount = 101\n", r"s\.toml:2: contours\.count is 101, but has to be at most 100")
+        self.check('[contours]\nbefore_hatch = "no"\n', r's\.toml:2: contours\.before_hatch is "no", but has to be true or false')
+        self.check('[hatch]\npattern = "stripe"\n', r's\.toml:2: hatch\.pattern is "stripe", .*did you mean stripes\?')
+        self.check("[hatch]\nangle_degrees = 1\ndistance = -0.1\n", r"s\.toml:3: hatch\.distance is -0\.1, but has to be above 0")
+        self.check("[hatch]\ncell = 0.1\n", r"s\.toml:1: hatch\.overlap is 0\.1, but has to be .*less than half of cell, 0\.05")
+        self.check("[upskin.hatch]\nborder = -1\n", r"s\.toml:2: upskin\.hatch\.border is -1, but has to be 0 or more")
+        self.check("[parameters.hatch]\npower_w = 1\nspeed_mm_s = 0\n",
+                   r"s\.toml:3: parameters\.hatch\.speed_mm_s is 0, but has to be above 0")
+        self.check("hatch = 3\n", r"s\.toml:1: hatch is 3, but has to be a table: \[hatch\]")
+        self.check('[hatch]\nparameters = "hach"\n', r's\.toml:2: hatch\.parameters is "hach", but there is no \[parameters\.hach\]; did')
+        self.check("[parameters.hach]\npower_w = 1\n", r"s\.toml:1: \[parameters\.hach\] is used nowhere; did you mean hatch\?")
+        self.check("[hatch\n", r"s\.toml:1: expected TOML")
+        self.check("[hatch]\ndistance = 1\ndistance = 2\n", r"s\.toml:3: expected TOML")
+        self.fail_with(3, r"missing\.toml", "strategy", "check", "missing.toml")
+        self.fail_with(3, r"missing\.toml", "slice", "box.stl", "--strategy", "missing.toml", "-o", "x.cli")
+        self.fail_with(2, "needs FILE", "strategy", "check")
+        self.fail_with(2, "none of show, check", "strategy", "shown")
+
+
+class Scan(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("part.stl", binary_stl(box_triangles(10, 6, 4)))
+
+    def stats(self, *options):
+        return self.succeed("slice", "part.stl", "--layer-height", "1", "--stats", "-", *options).json()
+
+    def test_a_job_of_vectors_is_read_back(self):
+        result = self.succeed("slice", "part.stl", "--label", "bracket", "--layer-height", "1", "-o", "job.cli", "--scan", *HATCHED)
+        self.assertRegex(result.text, r"(?m)^scan     [\d,]+ vectors, [\d.]+ mm marked, [\d.]+ mm jumped, [\d.]+ s, [\d.]+ J$")
+        self.assertEqual(result.err, "")
+        info = self.succeed("info", "job.cli").text
+        self.assertIn("bracket core contour 1", info)
+        self.succeed("convert", "job.cli", "job.json")
+        parts = json.loads(self.bytes_of("job.json"))
+        labels = [part["label"] for part in parts["parts"]]
+        self.assertEqual(labels, [f"bracket {name}" for name in ("downskin hatch", "core hatch", "upskin hatch", "core contour 2",
+                                                                 "core contour 1")])
+        # Two layers below and two above are skin, and there are four.
+        lines = {label: sum(len(layer["parts"][i].get("hatches", [])) // 4 for layer in parts["layers"])
+                 for i, label in enumerate(labels)}
+        self.assertEqual(lines["bracket core hatch"], 0)
+        self.assertGreater(lines["bracket downskin hatch"], 50)
+        self.assertGreater(lines["bracket upskin hatch"], 50)
+
+    def test_figures(self):
+        plain = self.stats()
+        self.assertNotIn("scan", plain)
+        self.assertEqual(plain["seconds"]["scan"], 0)
+        stats = self.stats("--scan", *HATCHED)
+        for key in ("points", "contours", "volume_mm3"):
+            self.assertEqual(stats[key], plain[key])
+        scan = stats["scan"]
+        self.assertEqual(scan["contour_vectors"], 2 * plain["points"])
+        self.assertEqual(list(scan["regions"]), ["core", "upskin", "downskin"])
+        self.assertAlmostEqual(scan["energy_j_mm3"], scan["energy_j"] / 240)
+        self.assertEqual(scan["strategy"]["hatch"]["distance"], 0.5)
+        self.assertEqual(scan["strategy"]["upskin"]["layers"], 2)
+        for key in ("contour_vectors", "hatch_vectors"):
+            self.assertEqual(sum(region[key] for region in scan["regions"].values()), scan[key])
+            self.assertEqual(sum(layer["scan"][key] for layer in stats["layers"]), scan[key])
+        for key in ("marked_mm", "jumped_mm", "build_seconds", "energy_j"):
+            self.assertAlmostEqual(sum(region[key] for region in scan["regions"].values()), scan[key])
+            self.assertAlmostEqual(sum(layer["scan"][key] for layer in stats["layers"]), scan[key])
+            self.assertGreater(scan[key], 0)
+        # Contours of 9.9 and 9.7 mm by 5.9 and 5.7 mm, at 120 W and 500 mm/s.
+        contours = self.stats("--scan", "--contours", "2", "--shortest", "100")["scan"]
+        self.assertAlmostEqual(contours["marked_mm"], 4 * 2 * (9.9 + 5.9 + 9.7 + 5.7), places=6)
+        self.assertAlmostEqual(contours["energy_j"], contours["marked_mm"] / 500 * 120, places=6)
+
+    def test_options_go_before_the_file(self):
+        self.write("s.toml", "[hatch]\ndistance = 0.3\nshortest = 0.7\n[upskin]\nlayers = 5\n")
+        strategy = self.stats("--strategy", "s.toml", "--hatch-distance", "0.4", "--pattern", "lines")["scan"]["strategy"]
+        self.assertEqual(strategy["hatch"]["shortest"], 0.7)
+        self.assertEqual(strategy["upskin"]["layers"], 5)
+        for hatch in (strategy["hatch"], strategy["upskin"]["hatch"], strategy["downskin"]["hatch"]):
+            self.assertEqual((hatch["distance"], hatch["pattern"]), (0.4, "lines"))
+        changed = self.stats("--scan", "--contours", "3", "--beam-offset", "0.2", "--contour-distance", "0.3", "--cell-size", "2",
+                             "--hatch-angle", "10", "--hatch-turn", "-5", "--hatch-border", "0.4", "--shortest", "0.6",
+                             "--skin-layers", "7")["scan"]["strategy"]
+        contours, hatch = changed["contours"], changed["hatch"]
+        self.assertEqual((contours["count"], contours["beam_offset"], contours["distance"]), (3, 0.2, 0.3))
+        self.assertEqual([hatch[key] for key in ("cell", "angle_degrees", "turn_degrees", "border", "shortest")], [2, 10, -5, 0.4, 0.6])
+        self.assertEqual((changed["upskin"]["layers"], changed["downskin"]["layers"]), (7, 7))
+
+    def test_options_that_make_no_sense(self):
+        self.fail_with(2, "--hatch-distance goes with --scan or --strategy", "slice", "part.stl", "-o", "x.cli", "--hatch-distance", "1")
+        for option, value in {"--hatch-distance": "-1", "--beam-offset": "-1", "--contour-distance": "0", "--contours": "101",
+                              "--cell-size": "0", "--hatch-border": "-1", "--shortest": "-0.1", "--skin-layers": "1001"}.items():
+            self.fail_with(2, f"{option} is {value}, but has to be", "slice", "part.stl", "-o", "x.cli", "--scan", option, value)
+        self.fail_with(2, "--pattern: \"stripe\" is none of .*did you mean stripes", "slice", "part.stl", "-o", "x.cli", "--scan",
+                       "--pattern", "stripe")
+        self.fail_with(2, "--contours: ", "slice", "part.stl", "-o", "x.cli", "--scan", "--contours", "-1")
+        self.fail_with(2, "less than half of --cell-size, 0.05", "slice", "part.stl", "-o", "x.cli", "--scan", "--cell-size", "0.1")
+
+    def test_the_same_bytes_for_any_division(self):
+        self.succeed("make", "sphere", "--size", "12", "--detail", "3", "-o", "ball.stl")
+        options = ["--layer-height", "0.5", "--scan", *HATCHED]
+        self.succeed("slice", "ball.stl", "-o", "whole.cli", *options, "--threads", "1")
+        self.succeed("slice", "ball.stl", "-o", "threads.cli", *options, "--threads", "4")
+        self.assertEqual(self.bytes_of("threads.cli"), self.bytes_of("whole.cli"))
+        shards = [f"shard.{i}.cli" for i in (1, 2, 3)]
+        for i, name in enumerate(shards, 1):
+            self.succeed("slice", "ball.stl", "-o", name, *options, "--shard", f"{i}/3", "--resume")
+        self.succeed("merge", "merged.cli", *shards)
+        self.assertEqual(self.bytes_of("merged.cli"), self.bytes_of("whole.cli"))
+        self.path("parts").mkdir()
+        self.path("ball.stl").rename(self.path("parts/ball.stl"))
+        self.succeed("slice", "--batch", "parts", "-o", "out", "--format", "cli", *options)
+        self.assertEqual(self.bytes_of("out/ball.cli"), self.bytes_of("whole.cli"))
+
+    def test_a_finished_shard_is_sliced_again_where_its_strategy_is_another(self):
+        command = ["slice", "part.stl", "-o", "a.cli", "--shard", "1/2", "--resume", "--layer-height", "1", "--strategy", "s.toml"]
+        self.write("s.toml", "[hatch]\ndistance = 0.3\n")
+        self.assertIn("sliced", self.succeed(*command).text)
+        self.write("s.toml", "# the same in other words\n[hatch]\ndistance = 0.30\n")
+        self.assertIn("is finished", self.succeed(*command).text)
+        self.write("s.toml", "[hatch]\ndistance = 0.4\n")
+        self.assertIn("sliced", self.succeed(*command).text)
+
+    def test_chosen_layers_have_the_vectors_of_the_whole(self):
+        for name, layers in (("whole.npz", ":"), ("few.npz", "1:3")):
+            self.succeed("slice", "part.stl", "-o", name, "--layer-height", "1", "--layers", layers, "--scan", *HATCHED)
+            self.succeed("convert", name, f"{name}.json")
+        whole, few = (json.loads(self.bytes_of(f"{name}.npz.json"))["layers"] for name in ("whole", "few"))
+        self.assertEqual(few, whole[1:3])
+
+    def test_what_a_format_has_no_place_for_is_counted(self):
+        for name in ("job.slc", "job.3mf", "job.svg", "job.dxf", "job.geojson"):
+            result = self.succeed("slice", "part.stl", "-o", name, "--layer-height", "2", "--scan")
+            self.assertRegex(result.err, rf"(?m)^lamella: warning: {name}: \d+ hatch lines were left out, the lowest at z = 1 mm: the "
+                                         "format has no place for such$")
+            self.fail_with(4, "hatch lines were left out", "slice", "part.stl", "-o", f"x{name}", "--layer-height", "2", "--scan",
+                           "--strict")
+
+    # ---------------------------------------------------------------------------------- layers that are there
+
+    def test_layers_that_are_there_have_the_vectors_of_slicing(self):
+        self.succeed("slice", "part.stl", "part.stl", "--translate", "20,0,0", "-o", "layers.npz", "--layer-height", "1")
+        self.succeed("slice", "part.stl", "part.stl", "--translate", "20,0,0", "-o", "sliced.json", "--layer-height", "1", "--scan", *HATCHED)
+        result = self.succeed("scan", "layers.npz", "-o", "scanned.json", "--stats", "stats.json", *HATCHED)
+        self.assertRegex(result.text, r"scanned\.json: 4 layers from layers\.npz \(npz\) as json, .*\n  [\d,]+ vectors, ")
+        self.assertEqual(json.loads(self.bytes_of("scanned.json"))["layers"], json.loads(self.bytes_of("sliced.json"))["layers"])
+        stats = json.loads(self.bytes_of("stats.json"))
+        sliced = self.stats("part.stl", "--translate", "20,0,0", "--scan", *HATCHED)
+        for key in ("hatch_vectors", "jumped_mm", "energy_j", "energy_j_mm3", "regions", "strategy"):
+            self.assertEqual(stats["scan"][key], sliced["scan"][key])
+        self.assertEqual([layer["scan"] for layer in stats["layers"]], [layer["scan"] for layer in sliced["layers"]])
+
+    def test_what_no_vectors_are_made_of_is_counted(self):
+        self.succeed("slice", "part.stl", "-o", "hatched.json", "--scan", "--layer-height", "2")
+        self.assertRegex(self.succeed("scan", "hatched.json", "-o", "again.cli").err, r"\d+ hatch lines left out: layers are hatched anew")
+        self.fail_with(4, "hatched anew", "scan", "hatched.json", "-o", "x.cli", "--strict")
+        self.write("open.stl", binary_stl(open_box(3, 4, 5)))
+        self.succeed("slice", "open.stl", "-o", "open.json", "--layer-height", "1")
+        self.assertRegex(self.succeed("scan", "open.json", "-o", "open.cli").err, "5 open contours left out")
+
+    def test_jobs_of_machines_keep_what_is_exposed(self):
+        for name, other in (("job.ilt", "job.ovf"), ("job.ovf", "job.ilt")):
+            options = ["--layer-height", "1", "--scan", *HATCHED, "--skin-layers", "1"]
+            self.assertEqual(self.succeed("slice", "part.stl", "-o", name, *options).err, "")
+            self.succeed("convert", name, f"from_{other}", "--strict")
+            self.succeed("convert", f"from_{other}", "again.json")
+            self.succeed("convert", name, "once.json")
+            again, once = (json.loads(self.bytes_of(f"{kind}.json")) for kind in ("again", "once"))
+            self.assertEqual(len(again["parts"]), len(once["parts"]))
+            shards = [f"{i}.{name}" for i in (1, 2)]
+            for i, shard in enumerate(shards, 1):
+                self.succeed("slice", "part.stl", "-o", shard, *options, "--shard", f"{i}/2")
+            self.succeed("merge", f"merged.{name}", *shards)
+            self.succeed("convert", f"merged.{name}", "merged.json")
+            self.assertEqual(json.loads(self.bytes_of("merged.json"))["layers"], once["layers"])
+            self.fail_with(3, "holds scan vectors already", "scan", name, "-o", "x.cli")
+
+    def test_scanning_says_what_is_missing(self):
+        self.fail_with(2, "needs FILE", "scan", "-o", "x.cli")
+        self.succeed("slice", "part.stl", "-o", "layers.cli", "--layer-height", "1")
+        self.fail_with(2, "where should the vectors go", "scan", "layers.cli")
+        self.fail_with(3, "missing.cli", "scan", "missing.cli", "-o", "x.cli")
+        self.fail_with(2, "--hatch-distance is 0, but has to be above 0", "scan", "layers.cli", "-o", "x.cli", "--hatch-distance", "0")
+        self.fail_with(2, "overwrite", "scan", "layers.cli", "-o", "layers.cli")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,246 @@
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/merge.hpp"
+#include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+#include "expect_same_result.hpp"
+#include "parts/shapes.hpp"
+#include "temporary_folder.hpp"
+#include "thread_processes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+// Jobs that write scan vectors in the place of contours.
+
+namespace lamella::scan_job_cases {
+namespace {
+
+class ScanJob : public testing::Test {
+  protected:
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
+    [[nodiscard]] std::string content(const std::string& name) const { return file_bytes(path(name)); }
+
+    /// Of a torus: skins below, above, and on none of both.
+    [[nodiscard]] FileJob job(const std::string& output) const {
+        if (folder_.entries().empty())
+            write_stl(path("part.stl"), make_torus(12, 4, 60, 30));
+        FileJob job;
+        job.inputs = {{.path = path("part.stl")}};
+        job.layering.cut = UniformLayers{.layer_height = 0.5};
+        job.layer_statistics = true;
+        ScanStrategy strategy;
+        strategy.contours.count = 2;
+        strategy.hatch.distance = 0.4;
+        strategy.upskin.layers = 2;
+        strategy.upskin.hatch.distance = 0.3;
+        strategy.downskin.layers = 3;
+        job.scan = strategy;
+        job.output = path(output);
+        return job;
+    }
+
+    /// The layers of a slice file, part by part.
+    [[nodiscard]] std::vector<LayerPart> parts_of(const std::string& name) const {
+        return read_layers(path(name)).parts;
+    }
+
+    TemporaryFolder folder_;
+};
+
+void expect_same_vectors(const Layer& one, const Layer& other) {
+    EXPECT_EQ(one.offsets, other.offsets);
+    EXPECT_TRUE(std::equal(one.points.begin(), one.points.end(), other.points.begin(), other.points.end()));
+    EXPECT_TRUE(
+        std::equal(one.hatches.begin(), one.hatches.end(), other.hatches.begin(), other.hatches.end()));
+}
+
+TEST_F(ScanJob, WritesWhatScanMakesOfEachLayerAndItsNeighbours) {
+    const FileJob scanned = job("job.npz");
+    const FileResult result = slice_file(scanned, {.threads = 3});
+    const LayerStack layers = slice(read_mesh(path("part.stl")).mesh(),
+                                    plan_uniform(result.box.min.z, result.box.max.z, {.layer_height = 0.5}));
+    const std::vector<LayerPart> written = parts_of("job.npz");
+    const std::vector<Exposure> each = exposures(*scanned.scan, "part");
+    ASSERT_EQ(written.size(), each.size());
+    std::vector<ScanFigures> sums(each.size());
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        LayerStack below;
+        LayerStack above;
+        for (std::size_t k = 1; k <= 3 && k <= i; ++k)
+            below.push_back(layers[i - k]);
+        for (std::size_t k = 1; k <= 2 && i + k < layers.size(); ++k)
+            above.push_back(layers[i + k]);
+        const std::vector<Layer> vectors = scan(layers[i], below, above, *scanned.scan);
+        std::optional<Point2> beam;
+        for (std::size_t e = 0; e < each.size(); ++e) {
+            SCOPED_TRACE(testing::Message() << "layer " << i << ", " << each[e].name());
+            const ScanFigures figures = measure_vectors(vectors[e], each[e].parameters, beam);
+            EXPECT_EQ(result.layers[i].scan[e].vectors, figures.vectors);
+            EXPECT_EQ(result.layers[i].scan[e].jumped_mm, figures.jumped_mm);
+            sums[e] += figures;
+            const Layer& read = written[e].layers[i];
+            EXPECT_EQ(read.index, layers[i].index);
+            EXPECT_TRUE(std::equal(read.hatches.begin(), read.hatches.end(), vectors[e].hatches.begin(),
+                                   vectors[e].hatches.end()));
+            EXPECT_EQ(read.rings, vectors[e].rings);
+            EXPECT_EQ(read.points.size(), vectors[e].points.size());
+        }
+    }
+    ASSERT_EQ(result.exposures.size(), each.size());
+    for (std::size_t e = 0; e < each.size(); ++e) {
+        EXPECT_EQ(written[e].label, "part " + each[e].name());
+        EXPECT_EQ(result.exposures[e].exposure.name(), each[e].name());
+        EXPECT_GT(result.exposures[e].figures.vectors, 0U);
+        EXPECT_EQ(result.exposures[e].figures.vectors, sums[e].vectors);
+        EXPECT_EQ(result.exposures[e].figures.marked_mm, sums[e].marked_mm);
+        EXPECT_EQ(result.exposures[e].figures.build_seconds, sums[e].build_seconds);
+        EXPECT_EQ(result.exposures[e].figures.energy_j, sums[e].energy_j);
+    }
+}
+
+TEST_F(ScanJob, LeavesTheFiguresOfTheLayersAsTheyAre) {
+    FileJob scanned = job("job.cli");
+    const FileResult vectors = slice_file(scanned);
+    scanned.scan.reset();
+    const FileResult contours = slice_file(scanned);
+    EXPECT_EQ(vectors.report.points, contours.report.points);
+    EXPECT_EQ(vectors.volume_mm3, contours.volume_mm3);
+    ASSERT_EQ(vectors.layers.size(), contours.layers.size());
+    for (std::size_t i = 0; i < contours.layers.size(); ++i)
+        EXPECT_EQ(vectors.layers[i].hash, contours.layers[i].hash);
+    EXPECT_TRUE(contours.exposures.empty());
+    EXPECT_TRUE(contours.layers.front().scan.empty());
+}
+
+TEST_F(ScanJob, HasTheBytesOfOneThreadWithAnyNumberOfThreadsAndProcesses) {
+    for (const std::string name : {"job.cli", "job.npz"}) { // written by all processes, by one of them
+        FileJob scanned = job(name);
+        scanned.inputs.front().copies = name == "job.npz" ? 2 : 1;
+        const FileResult one = slice_file(scanned, {.threads = 1});
+        const std::string expected = content(name);
+        const auto expect_the_same = [&](const FileResult& other) {
+            test::expect_same(one, other);
+            EXPECT_EQ(content(name), expected);
+        };
+        expect_the_same(slice_file(scanned, {.threads = 5}));
+        for (const std::size_t processes : {2, 3, 40}) {
+            SCOPED_TRACE(testing::Message() << name << " by " << processes);
+            std::vector<FileResult> results(processes);
+            test::run_processes(processes, [&](Communicator& own) {
+                results[own.process()] = slice_file(scanned, {.threads = 2}, own);
+            });
+            for (const FileResult& many : results)
+                expect_the_same(many);
+        }
+    }
+}
+
+TEST_F(ScanJob, HasTheSameBytesInLittleMemory) {
+    FileJob scanned = job("job.cli");
+    write_stl(path("part.stl"), make_torus(12, 4, 300, 150));
+    scanned.layering.cut = UniformLayers{.layer_height = 1};
+    const FileResult whole = slice_file(scanned, {.threads = 2});
+    const std::string expected = content("job.cli");
+    scanned.max_memory = std::uint64_t{45} << 20;
+    const FileResult pieces = slice_file(scanned, {.threads = 2});
+    EXPECT_GT(pieces.slabs, 1U);
+    test::expect_same(whole, pieces);
+    EXPECT_EQ(content("job.cli"), expected);
+}
+
+TEST_F(ScanJob, HasTheSameBytesInShards) {
+    FileJob scanned = job("whole.cli");
+    static_cast<void>(slice_file(scanned));
+    for (const std::uint32_t count : {2U, 5U}) {
+        std::vector<std::string> shards;
+        for (std::uint32_t i = 1; i <= count; ++i) {
+            FileJob shard = job("shard" + std::to_string(i) + ".cli");
+            shard.shard = Shard{i, count};
+            static_cast<void>(slice_file(shard));
+            shards.push_back(shard.output);
+        }
+        static_cast<void>(merge_layer_files(shards, path("merged.cli")));
+        EXPECT_EQ(content("merged.cli"), content("whole.cli"));
+    }
+}
+
+TEST_F(ScanJob, GivesChosenLayersTheVectorsTheyHaveInTheWhole) {
+    static_cast<void>(slice_file(job("whole.npz")));
+    const std::vector<LayerPart> whole = parts_of("whole.npz");
+    FileJob few = job("few.npz");
+    few.layering.only.index_range = {{2, 9}};
+    const FileResult result = slice_file(few);
+    EXPECT_EQ(result.planned_layers, 7U);
+    EXPECT_EQ(result.shard, (PlaneRange{0, 7}));
+    EXPECT_EQ(result.layers.size(), 7U);
+    few.output = path("by_height.npz");
+    few.layering.only = {.z_range = {{-2.9, 0.5}}};
+    static_cast<void>(slice_file(few));
+    for (const std::string name : {"few.npz", "by_height.npz"}) {
+        const std::vector<LayerPart> chosen = parts_of(name);
+        ASSERT_EQ(chosen.size(), whole.size());
+        for (std::size_t part = 0; part < whole.size(); ++part) {
+            ASSERT_EQ(chosen[part].layers.size(), 7U);
+            for (std::size_t i = 0; i < 7; ++i) {
+                SCOPED_TRACE(testing::Message() << name << ": part " << part << ", layer " << i);
+                EXPECT_EQ(chosen[part].layers[i].index, 2 + i);
+                expect_same_vectors(chosen[part].layers[i], whole[part].layers[2 + i]);
+            }
+        }
+    }
+}
+
+TEST_F(ScanJob, RefusesAnImpossibleStrategyBeforeItReads) {
+    FileJob scanned = job("job.cli");
+    scanned.inputs.front().path = path("missing.stl");
+    scanned.scan->hatch.distance = 0;
+    EXPECT_EQ(test::common_failure(1, [&](Communicator&) { static_cast<void>(slice_file(scanned)); }).kind(),
+              ErrorKind::usage);
+}
+
+// ---------------------------------------------------------------------------------- layers that are there
+
+TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
+    FileJob scanned = job("sliced.cli");
+    scanned.inputs.front().copies = 2;
+    const FileResult sliced = slice_file(scanned);
+    const FileJob plain = [&] {
+        FileJob job = scanned;
+        job.scan.reset();
+        job.output = path("layers.npz");
+        return job;
+    }();
+    static_cast<void>(slice_file(plain));
+    const LayerFile layers = read_layers(path("layers.npz"));
+    LayerFileInfo info{
+        .box = sliced.box, .layers = sliced.layers.size(), .bottom = sliced.bottom, .parts = {}};
+    std::vector<LayerStack> stacks;
+    for (const LayerPart& part : layers.parts) {
+        info.parts.push_back({.label = part.label});
+        stacks.push_back(part.layers);
+    }
+    for (const unsigned threads : {1U, 4U}) {
+        const ScanResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, info,
+                                              *scanned.scan, {}, {.threads = threads});
+        EXPECT_EQ(content("scanned.cli"), content("sliced.cli"));
+        EXPECT_EQ(result.bytes, sliced.bytes);
+        ASSERT_EQ(result.layers.size(), sliced.layers.size());
+        for (std::size_t e = 0; e < result.exposures.size(); ++e) {
+            EXPECT_EQ(result.exposures[e].figures.vectors, sliced.exposures[e].figures.vectors);
+            EXPECT_EQ(result.exposures[e].figures.jumped_mm, sliced.exposures[e].figures.jumped_mm);
+            EXPECT_EQ(result.layers[3][e].energy_j, sliced.layers[3].scan[e].energy_j);
+        }
+    }
+}
+
+} // namespace
+} // namespace lamella::scan_job_cases

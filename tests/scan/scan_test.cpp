@@ -1,0 +1,258 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/polygon/boolean.hpp"
+#include "lamella/scan/scan.hpp"
+
+#include "fixtures/layers.hpp"
+#include "fixtures/rounds.hpp"
+#include "scan/random_layers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace lamella::scan_cases {
+namespace {
+
+using test::contours;
+using test::layer_of;
+using test::normal_layer;
+using test::Random;
+using test::rectangle;
+using test::reversed;
+using test::rounds_within_reason;
+
+double distance_to(const Layer& outline, const Point2& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t r = 0; r < outline.rings; ++r)
+        for (std::size_t i = 0; i < outline.contour(r).size(); ++i) {
+            const Point2& a = outline.contour(r)[i];
+            const Point2& b = outline.contour(r)[(i + 1) % outline.contour(r).size()];
+            const Point2 way{b.x - a.x, b.y - a.y};
+            const double square = way.x * way.x + way.y * way.y;
+            const double along = square == 0 ? 0 : ((p.x - a.x) * way.x + (p.y - a.y) * way.y) / square;
+            const double t = std::clamp(along, 0.0, 1.0);
+            least = std::min(least, std::hypot(a.x + t * way.x - p.x, a.y + t * way.y - p.y));
+        }
+    return least;
+}
+
+double marked(const Layer& vectors) {
+    std::optional<Point2> beam;
+    return measure_vectors(vectors, {}, beam).marked_mm;
+}
+
+TEST(Scan, GivesALayerForEachExposureWithTheHeightsOfItsOwn) {
+    ScanStrategy strategy;
+    strategy.contours.count = 3;
+    Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
+    layer.index = 7;
+    layer.z = 0.225;
+    layer.bottom = 0.21;
+    layer.top = 0.24;
+    const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
+    const std::vector<Exposure> expected = exposures(strategy, "part");
+    ASSERT_EQ(vectors.size(), expected.size());
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+        EXPECT_EQ(vectors[i].index, 7U);
+        EXPECT_EQ(vectors[i].z, 0.225);
+        EXPECT_EQ(vectors[i].bottom, 0.21);
+        EXPECT_EQ(vectors[i].top, 0.24);
+        const bool is_hatch = expected[i].kind == VectorKind::hatch;
+        EXPECT_EQ(vectors[i].hatches.empty(), !is_hatch);
+        EXPECT_EQ(vectors[i].rings, is_hatch ? 0U : 1U);
+    }
+    EXPECT_NEAR(measure(vectors[1]).perimeter_mm, 4 * (10 - 2 * 0.25), 1e-12); // the innermost
+    EXPECT_NEAR(measure(vectors[3]).perimeter_mm, 4 * (10 - 2 * 0.05), 1e-12);
+}
+
+TEST(Scan, KeepsItsDistancesToTheOutline) {
+    Random random(5);
+    ScanStrategy strategy;
+    strategy.contours.count = 2;
+    strategy.contours.beam_offset = 0.3;
+    strategy.contours.distance = 0.2;
+    strategy.hatch.border = 0.25;
+    strategy.hatch.shortest = 0;
+    for (int round = 0; round < rounds_within_reason(300); ++round) {
+        const Layer layer = test::random_material(random, 16);
+        const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
+        const double slack = 1e-6;
+        for (const Point2& p : vectors[0].hatches)
+            EXPECT_GE(distance_to(layer, p), 0.75 - slack) << round;
+        for (const Point2& p : vectors[1].points)
+            EXPECT_GE(distance_to(layer, p), 0.5 - slack) << round;
+        for (const Point2& p : vectors[2].points)
+            EXPECT_GE(distance_to(layer, p), 0.3 - slack) << round;
+    }
+}
+
+TEST(Scan, HatchesTheOutlineItselfWhereNothingLiesBetween) {
+    ScanStrategy strategy;
+    strategy.contours.count = 0;
+    strategy.hatch.border = 0;
+    strategy.hatch.pattern = HatchPattern::lines;
+    strategy.hatch.distance = 1;
+    // Bodies that overlap count once.
+    const Layer layer = normal_layer({rectangle(0, 0, 6, 4), rectangle(3, 0, 9, 4)});
+    EXPECT_NEAR(marked(scan(layer, {}, {}, strategy).front()), 4 * 9, 1e-6);
+}
+
+// A stack of random layers: with the same lines in all regions, all together cover what the layer has, and
+// each what it should.
+TEST(Scan, RegionsAreDisjointAndMakeUpTheLayer) {
+    Random random(6);
+    ScanStrategy strategy;
+    strategy.contours.count = 0;
+    for (SkinRule* const skin : {&strategy.upskin, &strategy.downskin}) {
+        skin->overlap = 0;
+        skin->narrowest = 0;
+        skin->hatch = strategy.hatch;
+    }
+    for (HatchRule* const rule : {&strategy.hatch, &strategy.upskin.hatch, &strategy.downskin.hatch}) {
+        rule->pattern = HatchPattern::lines;
+        rule->distance = 0.21;
+        rule->border = 0;
+        rule->shortest = 0;
+        rule->angle_degrees = 11;
+    }
+    for (int round = 0; round < rounds_within_reason(200); ++round) {
+        std::vector<Layer> stack;
+        for (int i = 0; i < 5; ++i)
+            stack.push_back(test::random_material(random, 16));
+        const std::vector<Layer> below{stack[1], stack[0]};
+        const std::vector<Layer> above{stack[3], stack[4]};
+        strategy.upskin.layers = 2;
+        strategy.downskin.layers = 2;
+        const std::vector<Layer> regions = scan(stack[2], below, above, strategy);
+        ASSERT_EQ(regions.size(), 3U);
+        ScanStrategy plain = strategy;
+        plain.upskin.layers = plain.downskin.layers = 0;
+        const auto hatched = [&](const Layer& layer) {
+            return marked(scan(layer, {}, {}, plain).front());
+        };
+        EXPECT_NEAR(marked(regions[0]) + marked(regions[1]) + marked(regions[2]), hatched(stack[2]), 1e-5)
+            << round;
+        const auto cut = [](const Layer& a, const Layer& b) {
+            return combine(a, b, BooleanOperation::intersect);
+        };
+        EXPECT_NEAR(marked(regions[0]),
+                    hatched(combine(stack[2], cut(stack[1], stack[0]), BooleanOperation::subtract)), 1e-5);
+        EXPECT_NEAR(marked(regions[1]),
+                    hatched(cut(cut(cut(stack[2], stack[0]), cut(stack[1], stack[3])), stack[4])), 1e-5);
+    }
+}
+
+TEST(Scan, WhereThePartEndsAllIsSkin) {
+    ScanStrategy strategy;
+    strategy.upskin.layers = 2;
+    strategy.downskin.layers = 3;
+    const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
+    const std::vector<Layer> same(3, layer);
+    const auto count = [&](std::size_t below, std::size_t above) {
+        std::vector<bool> some;
+        for (const Layer& vectors :
+             scan(layer, std::span(same).first(below), std::span(same).first(above), strategy))
+            some.push_back(!vectors.hatches.empty());
+        return some;
+    };
+    EXPECT_EQ(count(3, 2), (std::vector<bool>{false, true, false, false})); // the last one is the contour
+    EXPECT_EQ(count(2, 2), (std::vector<bool>{true, false, false, false}));
+    EXPECT_EQ(count(3, 1), (std::vector<bool>{false, false, true, false}));
+    EXPECT_EQ(count(0, 0), (std::vector<bool>{true, false, false, false})); // what hangs is the worse
+}
+
+TEST(Scan, SkinsReachIntoTheCoreByTheOverlap) {
+    ScanStrategy strategy;
+    strategy.contours.count = 0;
+    strategy.upskin.layers = 1;
+    strategy.upskin.overlap = 0.5;
+    for (HatchRule* const rule : {&strategy.hatch, &strategy.upskin.hatch}) {
+        rule->pattern = HatchPattern::lines;
+        rule->distance = 1;
+        rule->border = 0;
+    }
+    const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
+    const std::vector<Layer> above{normal_layer({rectangle(0, 0, 4, 10)})};
+    const std::vector<Layer> vectors = scan(layer, {}, above, strategy);
+    EXPECT_NEAR(marked(vectors[0]), 40, 1e-6);
+    EXPECT_NEAR(marked(vectors[1]), 65, 1e-6);
+}
+
+TEST(Scan, StripsTooNarrowAreNoSkin) {
+    ScanStrategy strategy;
+    strategy.upskin.layers = 1;
+    strategy.upskin.narrowest = 0.05;
+    const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
+    const auto skin = [&](double width) {
+        const std::vector<Layer> above{normal_layer({rectangle(0, 0, 10 - width, 10)})};
+        return scan(layer, {}, above, strategy)[1].hatches.size();
+    };
+    EXPECT_EQ(skin(0), 0U);
+    EXPECT_EQ(skin(1e-12), 0U);
+    EXPECT_EQ(skin(0.04), 0U);
+    EXPECT_GT(skin(0.3), 0U);
+}
+
+TEST(Scan, OfNothingIsNothing) {
+    for (const Layer& vectors : scan(Layer{}, {}, {}, ScanStrategy{})) {
+        EXPECT_EQ(vectors.contours(), 0U);
+        EXPECT_TRUE(vectors.hatches.empty());
+    }
+    for (const Layer& vectors : scan(layer_of({{{1, 1}}}, {{{0, 0}, {1, 0}}}), {}, {}, ScanStrategy{}))
+        EXPECT_TRUE(vectors.points.empty() && vectors.hatches.empty());
+}
+
+TEST(Scan, DoesNotDependOnTheOrderOfRings) {
+    Random random(8);
+    ScanStrategy strategy;
+    strategy.contours.start = StartPoint::random;
+    strategy.hatch.pattern = HatchPattern::chessboard;
+    strategy.hatch.order = IslandOrder::random;
+    for (int round = 0; round < rounds_within_reason(100); ++round) {
+        std::vector<test::Contour> rings = contours(test::random_rings(random, 16));
+        const std::vector<Layer> once = scan(normal_layer(rings), {}, {}, strategy);
+        std::reverse(rings.begin(), rings.end());
+        const std::vector<Layer> again = scan(normal_layer(rings), {}, {}, strategy);
+        for (std::size_t i = 0; i < once.size(); ++i) {
+            EXPECT_TRUE(same_contours(once[i], again[i]));
+            EXPECT_TRUE(std::equal(once[i].hatches.begin(), once[i].hatches.end(), again[i].hatches.begin(),
+                                   again[i].hatches.end()));
+        }
+    }
+}
+
+TEST(Scan, RefusesAStrategyThatIsNotRight) {
+    ScanStrategy strategy;
+    strategy.hatch.distance = 0;
+    EXPECT_THROW(static_cast<void>(scan(Layer{}, {}, {}, strategy)), Error);
+    strategy.hatch.distance = 1e-9;
+    EXPECT_THROW(static_cast<void>(scan(normal_layer({rectangle(0, 0, 9, 9)}), {}, {}, strategy)), Error);
+}
+
+TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
+    Layer vectors = layer_of({rectangle(0, 0, 10, 10)}, {{{20, 0}, {23, 4}}});
+    vectors.hatches = PointArray(std::vector<Point2>{{23, 4}, {23, 14}, {33, 14}, {33, 4}});
+    const ParameterSet parameters{.power_w = 100,
+                                  .speed_mm_s = 500,
+                                  .jump_speed_mm_s = 5000,
+                                  .mark_delay_us = 200,
+                                  .jump_delay_us = 300};
+    std::optional<Point2> beam;
+    const ScanFigures figures = measure_vectors(vectors, parameters, beam);
+    EXPECT_EQ(figures.vectors, 4U + 1U + 2U);
+    EXPECT_DOUBLE_EQ(figures.marked_mm, 40 + 5 + 20);
+    EXPECT_DOUBLE_EQ(figures.jumped_mm, 20 + 10); // the first hatch begins where the chain ends
+    EXPECT_DOUBLE_EQ(figures.build_seconds, 65.0 / 500 + 30.0 / 5000 + 3 * 200e-6 + 2 * 300e-6);
+    EXPECT_DOUBLE_EQ(figures.energy_j, 100 * 65.0 / 500);
+    EXPECT_EQ(beam, (Point2{33, 4}));
+    EXPECT_DOUBLE_EQ(measure_vectors(layer_of({}, {{{33, 14}, {33, 15}}}), parameters, beam).jumped_mm, 10);
+}
+
+} // namespace
+} // namespace lamella::scan_cases

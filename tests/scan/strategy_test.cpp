@@ -1,0 +1,130 @@
+#include "lamella/core/error.hpp"
+#include "lamella/scan/strategy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace lamella::strategy_cases {
+namespace {
+
+TEST(Strategy, IsRightAsItIsPreset) {
+    EXPECT_NO_THROW(check_strategy({}));
+}
+
+TEST(Strategy, RefusesValuesOutOfRangeAndNamesTheirField) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    struct Bad {
+        std::string field;
+        std::function<void(ScanStrategy&)> spoil;
+    };
+    const std::vector<Bad> all{
+        {"`hatch.distance`",
+         [](ScanStrategy& s) {
+             s.hatch.distance = 0;
+         }},
+        {"`hatch.distance`",
+         [](ScanStrategy& s) {
+             s.hatch.distance = -0.1;
+         }},
+        {"`hatch.distance`",
+         [](ScanStrategy& s) {
+             s.hatch.distance = nan;
+         }},
+        {"`hatch.angle_degrees`",
+         [](ScanStrategy& s) {
+             s.hatch.angle_degrees = infinite;
+         }},
+        {"`hatch.turn_degrees`",
+         [](ScanStrategy& s) {
+             s.hatch.turn_degrees = nan;
+         }},
+        {"`hatch.border`",
+         [](ScanStrategy& s) {
+             s.hatch.border = -1;
+         }},
+        {"`hatch.shortest`",
+         [](ScanStrategy& s) {
+             s.hatch.shortest = -1;
+         }},
+        {"`hatch.cell`",
+         [](ScanStrategy& s) {
+             s.hatch.cell = 0;
+         }},
+        {"`hatch.overlap`",
+         [](ScanStrategy& s) {
+             s.hatch.overlap = s.hatch.cell / 2;
+         }},
+        {"`hatch.speed_mm_s`",
+         [](ScanStrategy& s) {
+             s.hatch.parameters.speed_mm_s = 0;
+         }},
+        {"`upskin.layers`",
+         [](ScanStrategy& s) {
+             s.upskin.layers = most_skin_layers + 1;
+         }},
+        {"`downskin.overlap`",
+         [](ScanStrategy& s) {
+             s.downskin.overlap = -1;
+         }},
+        {"`downskin.hatch.distance`",
+         [](ScanStrategy& s) {
+             s.downskin.hatch.distance = 0;
+         }},
+        {"`contours.count`",
+         [](ScanStrategy& s) {
+             s.contours.count = most_contours + 1;
+         }},
+        {"`contours.distance`",
+         [](ScanStrategy& s) {
+             s.contours.distance = 0;
+         }},
+        {"`contours.beam_offset`",
+         [](ScanStrategy& s) {
+             s.contours.beam_offset = -0.1;
+         }},
+        {"`contours.power_w`",
+         [](ScanStrategy& s) {
+             s.contours.parameters.power_w = infinite;
+         }},
+    };
+    for (const Bad& bad : all) {
+        ScanStrategy strategy;
+        bad.spoil(strategy);
+        try {
+            check_strategy(strategy);
+            ADD_FAILURE() << bad.field;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_NE(std::string(error.what()).find(bad.field), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(Strategy, TellsWhatIsExposedInItsOrder) {
+    ScanStrategy strategy;
+    const auto names = [&] {
+        std::string all;
+        for (const Exposure& exposure : exposures(strategy, "bracket")) {
+            EXPECT_EQ(exposure.part, "bracket");
+            all += (all.empty() ? "" : ", ") + exposure.name();
+        }
+        return all;
+    };
+    EXPECT_EQ(names(), "core hatch, core contour 1");
+    strategy.contours.count = 2;
+    EXPECT_EQ(names(), "core hatch, core contour 2, core contour 1");
+    strategy.contours.order = ContourOrder::outside_in;
+    strategy.contours.before_hatch = true;
+    strategy.upskin.layers = strategy.downskin.layers = 3;
+    EXPECT_EQ(names(), "core contour 1, core contour 2, downskin hatch, core hatch, upskin hatch");
+    strategy.contours.count = 0;
+    EXPECT_EQ(names(), "downskin hatch, core hatch, upskin hatch");
+}
+
+} // namespace
+} // namespace lamella::strategy_cases
