@@ -1,6 +1,7 @@
 #include "polygon/moved_rings.hpp"
 
 #include "polygon/clipping_grid.hpp"
+#include "polygon/swallowtails.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -122,11 +123,7 @@ class RingMover {
         meetings_.resize(sides_.size());
         if (corners_.shape != OffsetCorner::bevel)
             find_rows();
-        for (std::size_t i = 0; i < sides_.size(); ++i)
-            if (ends_[i] == SideEnd::meeting)
-                out.push_back(meetings_[i]);
-            else if (ends_[i] == SideEnd::at_corner)
-                turn_from(i, out);
+        put_ends(out);
     }
 
   private:
@@ -186,10 +183,7 @@ class RingMover {
         while (first < n && goes_on(first))
             ++first;
         if (first == n) { // all around: from the longest side to itself
-            first = 0;
-            for (std::size_t i = 1; i < n; ++i)
-                if (sides_[i].length > sides_[first].length)
-                    first = i;
+            first = longest_side();
             shorten_row(first, n + 1);
             return;
         }
@@ -278,6 +272,32 @@ class RingMover {
                     return false;
             }
         return true;
+    }
+
+    /// From the longest side on: there, no loop is to be cut off.
+    void put_ends(std::vector<Point2>& out) {
+        ring_.clear();
+        corner_points_.clear();
+        std::size_t i = longest_side();
+        for (std::size_t k = 0; k < sides_.size(); ++k, i = after(i)) {
+            ends_points_.clear();
+            if (ends_[i] == SideEnd::meeting)
+                ends_points_.push_back(meetings_[i]);
+            else if (ends_[i] == SideEnd::at_corner)
+                turn_from(i, ends_points_);
+            for (const Point2& p : ends_points_)
+                ring_.push_back({p, k});
+            corner_points_.push_back(sides_[after(i)].from);
+        }
+        add_without_swallowtails(ring_, corner_points_, distance_, out);
+    }
+
+    [[nodiscard]] std::size_t longest_side() const noexcept {
+        const auto shorter = [](const MovedSide& a, const MovedSide& b) {
+            return a.length < b.length;
+        };
+        return static_cast<std::size_t>(std::max_element(sides_.begin(), sides_.end(), shorter) -
+                                        sides_.begin());
     }
 
     /// Puts what follows the moved side i, up to the beginning of the next one.
@@ -373,6 +393,9 @@ class RingMover {
     std::vector<SideEnd> ends_;
     std::vector<Point2> meetings_; ///< for sides that end in one
     std::vector<RowSide> row_;
+    std::vector<MovedPoint> ring_;
+    std::vector<Point2> corner_points_;
+    std::vector<Point2> ends_points_; ///< of one side
 };
 
 } // namespace
