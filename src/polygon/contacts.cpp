@@ -91,7 +91,8 @@ class ContactSearch {
   private:
     /// False when it would take too long.
     bool search(const ChainGrid& grid) {
-        patience_ = 64 * (grid.pieces().size() + all_.all().size()) + 4096;
+        // Long chains side by side, as those of a ring and the same ring moved, are gone along once.
+        patience_ = 64 * (grid.pieces().size() + all_.all().size()) + 8 * layer_.points.size() + 4096;
         for (const Chain& piece : grid.pieces())
             if (ChainGrid::whole_ring(piece))
                 look_into(piece.ring);
