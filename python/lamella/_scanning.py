@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._errors import InputError, UsageError
-from ._lamella import Exposure, Layer, ParameterSet, ScanFigures, ScanStrategy
+from ._lamella import ContourRule, Exposure, HatchRule, Layer, ParameterSet, ScanFigures, ScanStrategy
 
 StrategyLike = Union[ScanStrategy, Mapping[str, Any], "os.PathLike[str]", str, None]
 
@@ -79,7 +79,7 @@ def scan(
     return _scan(each, as_strategy("strategy", strategy), check.label("part", part))
 
 
-def _scan(layers: Iterator[Layer], strategy: ScanStrategy, part: str) -> Iterator[ScanLayer]:
+def _scan(layers: Iterator[Layer], strategy: ScanStrategy, part: bytes) -> Iterator[ScanLayer]:
     exposures = tuple(_lamella.exposures(strategy, part))
     below: Deque[Layer] = deque(maxlen=strategy.downskin.layers)
     coming: Deque[Layer] = deque(islice(layers, 1 + strategy.upskin.layers))
@@ -126,7 +126,9 @@ def _toml(path: str) -> Dict[str, Any]:
 def _from_tables(name: str, tables: Mapping[str, Any]) -> ScanStrategy:
     """The tables of a strategy file, of which any may be missing."""
     strategy = ScanStrategy()
-    rules = [strategy.contours, strategy.hatch, strategy.upskin.hatch, strategy.downskin.hatch]
+    rules: List[Union[ContourRule, HatchRule]] = [
+        strategy.contours, strategy.hatch, strategy.upskin.hatch, strategy.downskin.hatch
+    ]  # fmt: skip
     sets = {rule.parameters.name: ParameterSet(rule.parameters) for rule in rules}
     parameters = tables.get("parameters", {})
     for label, table in _items(f"{name}: parameters", parameters):

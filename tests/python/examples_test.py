@@ -58,9 +58,9 @@ def test_area_over_height(rook, tmp_path):
 def test_scan_vectors_are_drawn(bodies, tmp_path):
     picture = tmp_path / "scan.png"
     path = bodies("box", "--size", "20,30,10")
-    (lines,) = numbers(run("plot_scan.py", path, 5, picture).partition("50, ")[2])
-    (layer,) = lamella.scan(lamella.slice(path, layer_height=0.1)[50:51])
-    assert lines == len(layer.vectors)
+    number, lines = numbers(run("plot_scan.py", path, 5, picture).rpartition(": layer")[2])
+    (layer,) = lamella.scan([lamella.slice(path, layer_height=0.1)[int(number)]])
+    assert number in (49, 50) and lines == len(layer.vectors)
     assert imread(picture).std() > 0
 
 
