@@ -65,7 +65,7 @@ class Reading {
 
     Configuration all(const TomlTable& table) const {
         Configuration found;
-        for (const auto& [key, value] : table.entries) {
+        for (const auto& [key, value] : table) {
             if (key == inputs_key && has_own_options())
                 found.inputs = inputs(value);
             else
@@ -105,7 +105,7 @@ class Reading {
 
     ConfiguredInput input(const TomlValue& table) const {
         ConfiguredInput found;
-        for (const auto& [key, value] : table.as<TomlTable>()->entries) {
+        for (const auto& [key, value] : *table.as<TomlTable>()) {
             if (key == path_key) {
                 const auto* const path = value.as<std::string>();
                 found.path = path != nullptr ? *path : "";

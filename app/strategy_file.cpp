@@ -168,10 +168,12 @@ class StrategyReading {
     template <class Rule>
     void read_fields(const std::string& path, const TomlTable& table, Rule& rule,
                      std::span<const StrategyField<Rule>> fields, const Others& others) {
-        for (const auto& [key, value] : table.entries) {
+        for (const auto& entry : table) {
+            const std::string& key = entry.key;
+            const TomlValue& value = entry.value;
             const std::string name = path + key;
-            const auto is_it = [&, wanted = std::string_view(key)](const auto& one) {
-                return one.name == wanted;
+            const auto is_it = [&](const auto& one) {
+                return one.name == key;
             };
             const auto other =
                 std::find_if(others.begin(), others.end(), [&](const auto& one) { return one.first == key; });
@@ -233,12 +235,12 @@ class StrategyReading {
     }
 
     void read_sets(const TomlValue& value) {
-        for (const auto& [name, inner] : table_of(value, std::string(parameters_key)).entries) {
+        for (const auto& [name, inner] : table_of(value, std::string(parameters_key))) {
             const std::string path = fmt::format("{}.{}", parameters_key, name);
             Set& set = sets_.try_emplace(name, named(name)).first->second;
             set.origin = {inner.place, path};
             read_fields(path + ".", table_of(inner, path), set.parameters, parameter_fields(), {});
-            for (const auto& [key, unused] : inner.as<TomlTable>()->entries)
+            for (const auto& [key, unused] : *inner.as<TomlTable>())
                 set.fields[key] = origins_[fmt::format("{}.{}", path, key)];
         }
     }

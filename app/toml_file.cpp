@@ -25,7 +25,7 @@ class Conversion {
     TomlTable table(const toml::table& table) const {
         TomlTable found;
         for (const auto& [key, node] : table)
-            found.entries.emplace_back(std::string(key.str()), value(key.source(), node));
+            found.push_back({std::string(key.str()), value(key.source(), node)});
         return found;
     }
 

@@ -5,18 +5,15 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
 namespace lamella::app {
 
+struct TomlEntry;
 struct TomlValue;
-
-struct TomlTable {
-    /// Keys and their values, ordered by key.
-    std::vector<std::pair<std::string, TomlValue>> entries = {};
-};
+/// Ordered by key.
+using TomlTable = std::vector<TomlEntry>;
 using TomlList = std::vector<TomlValue>;
 
 struct TomlValue {
@@ -28,6 +25,11 @@ struct TomlValue {
     [[nodiscard]] const Kind* as() const noexcept {
         return std::get_if<Kind>(&value);
     }
+};
+
+struct TomlEntry {
+    std::string key;
+    TomlValue value;
 };
 
 /// Reads a file; "-" is standard input. Throws Error{usage} with the line for what is no TOML, and
