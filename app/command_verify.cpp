@@ -8,6 +8,7 @@
 #include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "scan_options.hpp"
 
 #include <fmt/format.h>
 
@@ -24,6 +25,8 @@ struct VerifyArguments {
     std::string slice_at;
     bool json = false;
     PlacementOptions placement;
+    bool scan = false;
+    ScanArguments scanning;
     ReadLimits limits;
     RunOptions run;
 };
@@ -37,17 +40,11 @@ void place_cuts(LayerStack& layers, SliceAt at) {
                                         : layer.bottom + (layer.top - layer.bottom) / 2;
 }
 
-Json verification_json(const std::string& path, const Verification& found) {
-    Json object{{"path", path},
-                {"ok", found.ok()},
-                {"layers", found.layers},
-                {"contours", found.contours},
-                {"open_chains", found.open_chains},
-                {"crossings", found.crossings},
-                {"misoriented", found.misoriented},
-                {"overlapping", found.overlapping},
-                {"volume_mm3", found.volume_mm3},
-                {"max_area_error_mm2", nullptr}};
+Json verification_json(const Verification& found) {
+    Json object{{"layers", found.layers},           {"contours", found.contours},
+                {"open_chains", found.open_chains}, {"crossings", found.crossings},
+                {"misoriented", found.misoriented}, {"overlapping", found.overlapping},
+                {"volume_mm3", found.volume_mm3},   {"max_area_error_mm2", nullptr}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
@@ -60,8 +57,8 @@ Json verification_json(const std::string& path, const Verification& found) {
     return object;
 }
 
-std::string verification_text(const std::string& path, const std::string& mesh, const Verification& found) {
-    std::string text = fmt::format("{}: {}\n", one_line(path), found.ok() ? "ok" : "NOT ok");
+std::string verification_text(const std::string& mesh, const Verification& found) {
+    std::string text;
     for (const std::string& finding : found.findings)
         text += fmt::format("  {}\n", finding);
     text += fmt::format("  {}, {}, {}, volume {} mm3\n", counted(found.layers, "layer"),
@@ -78,6 +75,46 @@ std::string verification_text(const std::string& path, const std::string& mesh, 
     return text;
 }
 
+Json vectors_json(const VectorVerification& found) {
+    return {{"ok", found.ok()},
+            {"layers", found.layers},
+            {"contour_vectors", found.contour_vectors},
+            {"hatch_vectors", found.hatch_vectors},
+            {"open_chains", found.open_chains},
+            {"crossings", found.crossings},
+            {"misoriented", found.misoriented},
+            {"outside", found.outside},
+            {"too_short", found.too_short},
+            {"miscovered", found.miscovered},
+            {"unbounded", found.unbounded},
+            {"cover", found.cover ? Json(*found.cover) : Json()}};
+}
+
+std::string vectors_text(const std::string& mesh, bool strategy, const VectorVerification& found) {
+    std::string text;
+    for (const std::string& finding : found.findings)
+        text += fmt::format("  {}\n", finding);
+    text += fmt::format("  {}, {} along contours and {} of hatches\n", counted(found.layers, "layer"),
+                        counted(found.contour_vectors, "vector"), grouped(found.hatch_vectors));
+    if (found.cover)
+        text += fmt::format("  lines times their distance cover {:.2f} % of what they are to fill\n",
+                            100 * *found.cover);
+    if (found.ok())
+        text += fmt::format("  all vectors lie within {}{}\n",
+                            mesh.empty() ? "the outermost contours of their part" : one_line(mesh),
+                            strategy ? ", as far from its edges as the strategy says"
+                                     : "; --scan or --strategy FILE would check their distance from its "
+                                       "edges and what they cover, too");
+    return text;
+}
+
+/// The parts with scan vectors, or those without.
+LayerFile parts_of(const LayerFile& file, bool vectors) {
+    LayerFile some = file;
+    std::erase_if(some.parts, [&](const LayerPart& part) { return part.exposure.has_value() != vectors; });
+    return some;
+}
+
 int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (arguments.mesh.empty() && arguments.placement.given())
         throw Error(ErrorKind::usage,
@@ -88,14 +125,17 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
-    VerifyOptions options{.mesh = {}, .rule = file.rule, .rounding = file.rounding};
+    std::optional<ScanStrategy> strategy;
+    if (arguments.scan || arguments.scanning.given())
+        strategy = arguments.scanning.strategy();
+    PlaneRule rule = file.rule;
     if (!arguments.slice_at.empty()) {
         const SliceAt at = slice_at_of(arguments.slice_at);
         for (LayerPart& part : file.parts)
             place_cuts(part.layers, at);
-        options.rule = at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
+        rule = at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
     }
-    Mesh mesh;
+    std::optional<Mesh> mesh;
     if (!arguments.mesh.empty()) {
         const std::array inputs{
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
@@ -103,12 +143,37 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         for (const std::string& warning : plate.files.front().warnings)
             context.messages.warn(warning);
         mesh = joined(plate, execution);
-        options.mesh = mesh;
     }
-    const Verification found = verify(file.merged(), options, execution);
-    context.messages.result(arguments.json ? json_text(verification_json(file.path, found))
-                                           : verification_text(file.path, arguments.mesh, found));
-    if (!found.ok())
+
+    const LayerFile plain = parts_of(file, false);
+    const LayerFile vectors = parts_of(file, true);
+    if (strategy && vectors.parts.empty())
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{}: holds no scan vectors; a strategy says nothing of its contours", file.path));
+    bool ok = true;
+    Json object{{"path", file.path}, {"ok", true}};
+    std::string text;
+    if (!plain.parts.empty()) {
+        const Verification found =
+            verify(plain.merged(), {.mesh = mesh, .rule = rule, .rounding = file.rounding}, execution);
+        ok = found.ok();
+        object.update(verification_json(found));
+        text += verification_text(arguments.mesh, found);
+    }
+    if (!vectors.parts.empty()) {
+        const VectorVerification found = verify_vectors(
+            vectors.parts, {.mesh = mesh, .rule = rule, .rounding = file.rounding, .strategy = strategy},
+            execution);
+        ok = ok && found.ok();
+        object["vectors"] = vectors_json(found);
+        text += vectors_text(arguments.mesh, strategy.has_value(), found);
+    }
+    object["ok"] = ok;
+    context.messages.result(arguments.json
+                                ? json_text(object)
+                                : fmt::format("{}: {}\n{}", one_line(file.path), ok ? "ok" : "NOT ok", text));
+    if (!ok)
         throw Error(ErrorKind::defect, fmt::format("{}: the check failed", file.path));
     return 0;
 }
@@ -119,14 +184,19 @@ Command verify_command() {
     const auto arguments = std::make_shared<VerifyArguments>();
     return {
         .name = "verify",
-        .summary = "check a slice file: closed, oriented, no crossings, areas",
+        .summary = "check a slice file: closed, oriented, no crossings, areas; scan vectors",
         .description =
             "Checks the layers of a slice file: every contour closed, outer contours counter-clockwise and "
             "holes "
             "clockwise by their nesting, no contour crossing another or itself. With --mesh the area of "
             "every layer is "
-            "compared with the section of that mesh, computed straight from its triangles. Exit code 4 says "
-            "that the check failed.",
+            "compared with the section of that mesh, computed straight from its triangles. Of scan vectors, "
+            "those "
+            "of every contour are checked so, and all have to lie within the mesh, or without one within the "
+            "outermost contour of their part; with the strategy by which they were made, as far from its "
+            "edges as "
+            "that says, none shorter than the shortest, and enough of them to fill it. Exit code 4 says that "
+            "the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =
@@ -141,12 +211,18 @@ Command verify_command() {
                             slice_at_names(), arguments->slice_at),
                      flag("json", "print JSON", arguments->json)}},
                    placement_options(arguments->placement),
+                   scan_options(
+                       arguments->scanning,
+                       {flag("scan", "hold scan vectors against a strategy, the one that is there by default",
+                             arguments->scan)}),
                    run_options(arguments->run,
                                {include_option(arguments->limits), max_triangles_option(arguments->limits),
                                 max_memory_option(arguments->limits, "each of the files takes")}),
                    common_options(true)},
         .examples = {{"lamella verify part.cli", "is the file sound in itself?"},
-                     {"lamella verify part.cli --mesh part.stl --rotate-x 90", "and true to its mesh?"}},
+                     {"lamella verify part.cli --mesh part.stl --rotate-x 90", "and true to its mesh?"},
+                     {"lamella verify job.ilt --mesh part.stl --strategy 316l.toml",
+                      "are scan vectors where the strategy says, and enough of them?"}},
         .run = [arguments](const Context& context) {
             return run_verify(*arguments, context);
         }};

@@ -18,6 +18,8 @@ struct ScanArguments {
     /// What options say, with their names; in the order in which they were given.
     std::vector<std::pair<std::string, std::function<void(ScanStrategy&)>>> changes = {};
 
+    [[nodiscard]] bool given() const noexcept { return !file.empty() || !changes.empty(); }
+
     /// Reads the file. Throws what read_strategy throws, and Error{usage} that names the option for a value
     /// out of range.
     [[nodiscard]] ScanStrategy strategy() const;

@@ -5,8 +5,6 @@
 #include "core/stopwatch.hpp"
 #include "pipeline/plane_scan.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -19,9 +17,8 @@ LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& stra
     LayerFileInfo exposed = info;
     exposed.parts.clear();
     for (const PartInfo& part : info.parts)
-        for (Exposure& exposure : exposures(strategy, part.label))
-            exposed.parts.push_back(
-                {fmt::format("{} {}", part.label, exposure.name()), part.box, std::move(exposure)});
+        for (const Exposure& exposure : exposures(strategy, part.label))
+            exposed.parts.push_back({exposure.label(), part.box, exposure});
     return exposed;
 }
 

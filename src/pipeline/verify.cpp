@@ -1,100 +1,20 @@
 #include "lamella/pipeline/verify.hpp"
 
 #include "lamella/contour/measure.hpp"
-#include "lamella/polygon/crossings.hpp"
-#include "lamella/polygon/nesting.hpp"
 
 #include "core/executor.hpp"
+#include "pipeline/layer_check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 namespace lamella {
 
 namespace {
-
-/// How often something occurs in a layer, and where first.
-struct Occurrences {
-    std::uint64_t count = 0;
-    Point2 first;
-
-    void add(std::uint64_t n, const Point2& at) {
-        if (count == 0)
-            first = at;
-        count += n;
-    }
-};
-
-struct LayerCheck {
-    LayerMeasure measure;
-    Occurrences open_chains;
-    OpenGaps open_gaps;
-    Occurrences crossings;
-    Occurrences misoriented;
-    Occurrences overlapping;
-};
-
-double largest_coordinate(std::span<const Point2> points) {
-    double largest = 0;
-    for (const Point2& p : points)
-        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    return largest;
-}
-
-/// Whether a ring is so thin that rounding its points may have turned it over.
-bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) {
-    const double largest = largest_coordinate(ring);
-    const double moved =
-        std::sqrt(0.5) * rounding.step_at(largest) + 4 * std::numeric_limits<double>::epsilon() * largest;
-    return std::abs(ring_area(ring)) <= contour_length(ring, true) * moved;
-}
-
-LayerCheck check(const Layer& layer, const Rounding& rounding) {
-    LayerCheck result;
-    result.measure = measure(layer);
-    for (std::size_t i = layer.rings; i < layer.contours(); ++i)
-        if (!layer.contour(i).empty())
-            result.open_chains.add(1, layer.contour(i).front());
-    result.open_gaps = open_gaps(layer);
-    const Crossings crossings = find_crossings(layer, 1);
-    if (crossings.count > 0)
-        result.crossings.add(crossings.count, crossings.first.front().at);
-    const std::vector<RingKind> kinds = nesting(layer).kind;
-    for (std::size_t i = 0; i < kinds.size(); ++i) {
-        if (kinds[i] != RingKind::misoriented && kinds[i] != RingKind::overlapping)
-            continue;
-        if (!orientation_is_lost(layer.contour(i), rounding))
-            (kinds[i] == RingKind::misoriented ? result.misoriented : result.overlapping)
-                .add(1, layer.contour(i).front());
-    }
-    return result;
-}
-
-std::string where(const Layer& layer) {
-    return fmt::format("layer {} (z {:.7g} mm)", layer.index, layer.z);
-}
-
-/// The total over all layers of one kind of finding; text(total, first place) makes a line of it.
-template <class Text>
-std::uint64_t summed(std::span<const Layer> layers, std::span<const LayerCheck> checks,
-                     Occurrences LayerCheck::*kind, const Text& text, std::vector<std::string>& findings) {
-    std::uint64_t total = 0;
-    std::string place;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const Occurrences& found = checks[i].*kind;
-        if (total == 0 && found.count > 0)
-            place = fmt::format("{} at ({:.7g}, {:.7g})", where(layers[i]), found.first.x, found.first.y);
-        total += found.count;
-    }
-    if (total > 0)
-        findings.push_back(text(total, place));
-    return total;
-}
 
 const char* plural(std::uint64_t n) {
     return n == 1 ? "" : "s";
@@ -124,48 +44,20 @@ struct SectionArea {
 
 std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const VerifyOptions& options,
                                            const Execution& execution) {
-    std::map<double, double> moved_by; // z to how far it may have been moved
-    for (const Layer& layer : layers) {
-        double& most = moved_by[layer.z];
-        most = std::max(most, moved_cut(layer, options.rounding));
+    std::vector<SectionArea> result(layers.size());
+    for (const double direction : {0.0, -1.0, 1.0}) {
+        if (direction != 0 && options.rounding == Rounding{})
+            break;
+        const MovedCuts cuts(layers, options.rounding, options.rule, direction);
+        const std::vector<double> areas = section_areas(*options.mesh, cuts.plan, execution);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const double area = areas[cuts.plane[i]];
+            if (direction == 0)
+                result[i] = {area, area, area};
+            result[i].least = std::min(result[i].least, area);
+            result[i].greatest = std::max(result[i].greatest, area);
+        }
     }
-    const std::vector<std::pair<double, double>> z(moved_by.begin(), moved_by.end());
-
-    const auto areas_at = [&](double direction) {
-        Plan plan;
-        plan.rule = options.rule;
-        std::vector<std::size_t> plane_of(z.size());
-        for (std::size_t i = 0; i < z.size(); ++i) {
-            const double shifted = z[i].first + direction * z[i].second; // may round to the one before
-            if (plan.layers.empty() || shifted > plan.layers.back().z)
-                plan.layers.push_back({plan.layers.size(), shifted, shifted, shifted});
-            plane_of[i] = plan.layers.size() - 1;
-        }
-        const std::vector<double> of_planes = section_areas(*options.mesh, plan, execution);
-        std::vector<double> result;
-        for (const std::size_t plane : plane_of)
-            result.push_back(of_planes[plane]);
-        return result;
-    };
-    std::vector<SectionArea> areas(z.size());
-    const std::vector<double> nominal = areas_at(0);
-    for (std::size_t i = 0; i < z.size(); ++i)
-        areas[i] = {nominal[i], nominal[i], nominal[i]};
-    if (options.rounding != Rounding{})
-        for (const double direction : {-1.0, 1.0}) {
-            const std::vector<double> shifted = areas_at(direction);
-            for (std::size_t i = 0; i < z.size(); ++i) {
-                areas[i].least = std::min(areas[i].least, shifted[i]);
-                areas[i].greatest = std::max(areas[i].greatest, shifted[i]);
-            }
-        }
-
-    std::vector<SectionArea> result;
-    for (const Layer& layer : layers)
-        result.push_back(areas[static_cast<std::size_t>(
-            std::lower_bound(z.begin(), z.end(), layer.z,
-                             [](const auto& at, double value) { return at.first < value; }) -
-            z.begin())]);
     return result;
 }
 
@@ -226,7 +118,7 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     ProgressMeter progress(execution, Stage::polygon, layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            checks[i] = check(layers[i], options.rounding);
+            checks[i] = check_layer(layers[i], options.rounding);
             progress.add(1);
         }
     });
@@ -241,26 +133,26 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
         if (checks[i].open_gaps.count > 0)
             result.open_layers.push_back({layers[i].index, layers[i].z, checks[i].open_gaps});
     }
-    const auto total = [&](Occurrences LayerCheck::*kind, const auto& text) {
-        return summed(layers, checks, kind, text, result.findings);
-    };
-    result.open_chains = total(&LayerCheck::open_chains, [](std::uint64_t n, const std::string& place) {
-        return fmt::format("{} contour{} not closed, the first in {}", n, n == 1 ? " is" : "s are", place);
-    });
+    ContourFindings found;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        found.add(layers[i], checks[i]);
+    result.open_chains = found.open_chains.total;
+    result.crossings = found.crossings.total;
+    result.misoriented = found.misoriented.total;
+    result.overlapping = found.overlapping.total;
+    if (result.open_chains > 0)
+        result.findings.push_back(open_chains_text(found.open_chains));
     if (!result.open_layers.empty())
         result.findings.push_back(gaps_text(result.open_layers));
-    result.crossings = total(&LayerCheck::crossings, [](std::uint64_t n, const std::string& place) {
-        return fmt::format("{} crossing{} of contours, the first in {}", n, plural(n), place);
-    });
-    result.misoriented = total(&LayerCheck::misoriented, [](std::uint64_t n, const std::string& place) {
-        return fmt::format("{} ring{} the wrong way round, the first in {}", n, n == 1 ? " runs" : "s run",
-                           place);
-    });
-    result.overlapping = total(&LayerCheck::overlapping, [](std::uint64_t n, const std::string& place) {
-        return fmt::format("{} ring{} within material: bodies that overlap, or holes that run the wrong way "
-                           "round; the first in {}",
-                           n, n == 1 ? " lies" : "s lie", place);
-    });
+    if (result.crossings > 0)
+        result.findings.push_back(crossings_text(found.crossings));
+    if (result.misoriented > 0)
+        result.findings.push_back(misoriented_text(found.misoriented));
+    if (result.overlapping > 0)
+        result.findings.push_back(fmt::format(
+            "{} ring{} within material: bodies that overlap, or holes that run the wrong way "
+            "round; the first in {}",
+            result.overlapping, result.overlapping == 1 ? " lies" : "s lie", found.overlapping.place));
     if (options.mesh)
         compare_areas(layers, checks, options, execution, result);
     return result;

@@ -59,10 +59,7 @@ bool is_common_layer(std::string_view bytes) {
 
 LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
                             const Execution& execution) {
-    const auto no_exposures = [](std::string_view) {
-        return std::nullopt;
-    };
-    return read_common_layer(bytes, name, no_exposures, limits, execution);
+    return read_common_layer(bytes, name, labelled_exposure, limits, execution);
 }
 
 LayerFile read_common_layer(std::string_view bytes, const std::string& name,

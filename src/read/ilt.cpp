@@ -33,14 +33,7 @@ namespace {
 struct Section {
     std::string name;
     std::size_t line;
-    ParameterSet parameters{.name = {},
-                            .power_w = 0,
-                            .speed_mm_s = 0,
-                            .jump_speed_mm_s = 0,
-                            .focus_mm = 0,
-                            .spot_mm = 0,
-                            .mark_delay_us = 0,
-                            .jump_delay_us = 0};
+    ParameterSet parameters = unknown_parameters();
 };
 
 /// Lines such as "[file.cli]" and, for that file, "LaserPower = 200.0 watt". Other lines say nothing here.
@@ -101,32 +94,13 @@ Exposure named_exposure(std::string_view name) {
     return exposure;
 }
 
-/// What a label such as "bracket core contour 2" says: part, region, kind and number.
-std::optional<Exposure> labelled_exposure(std::string_view label) {
-    Exposure exposure;
-    if (const std::size_t blank = label.rfind(' '); blank != std::string_view::npos)
-        std::from_chars(label.data() + blank + 1, label.data() + label.size(), exposure.contour);
-    for (const ScanRegion region :
-         {ScanRegion::core, ScanRegion::upskin, ScanRegion::downskin, ScanRegion::support}) {
-        for (const VectorKind kind : {VectorKind::contour, VectorKind::hatch}) {
-            exposure.region = region;
-            exposure.kind = kind;
-            const std::string name = ' ' + exposure.name();
-            if (!label.ends_with(name))
-                continue;
-            exposure.part = label.substr(0, label.size() - name.size());
-            return exposure;
-        }
-    }
-    return std::nullopt;
-}
-
-/// Of the parts of a file in the archive. Files without a speed hold no scan vectors that could be executed.
+/// Of the parts of a file in the archive. What neither has a speed nor is called scan vectors is none.
 std::optional<Exposure> exposure_of(const Section& section, std::string_view label) {
-    if (!(section.parameters.speed_mm_s > 0))
-        return std::nullopt;
-    Exposure exposure = labelled_exposure(label).value_or(named_exposure(section.name));
-    exposure.parameters = section.parameters;
+    std::optional<Exposure> exposure = labelled_exposure(label);
+    if (!exposure && section.parameters.speed_mm_s > 0)
+        exposure = named_exposure(section.name);
+    if (exposure)
+        exposure->parameters = section.parameters;
     return exposure;
 }
 

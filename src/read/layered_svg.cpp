@@ -185,8 +185,10 @@ class SvgReader {
             make_room(file_.parts, line);
             file_.parts.emplace_back();
         }
-        if (std::string& label = file_.parts[part_].label; label.empty())
-            label = attributes.find("data-lamella-label");
+        if (LayerPart& drawn = file_.parts[part_]; drawn.label.empty()) {
+            drawn.label = attributes.find("data-lamella-label");
+            drawn.exposure = labelled_exposure(drawn.label);
+        }
     }
 
     void add_points(const XmlAttributes& attributes, bool closed, std::size_t line) {

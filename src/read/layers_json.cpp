@@ -86,7 +86,7 @@ class LayersJsonReader {
                     text_.skip();
             });
             make_room(file_.parts);
-            file_.parts.push_back({std::move(label), {}});
+            file_.parts.push_back({label, {}, labelled_exposure(label)});
         });
     }
 

@@ -236,8 +236,10 @@ class NpzReader {
         if (labels.size() > most_parts || labels.size() > zip_bytes() + 1)
             labels.fail(fmt::format("{} parts", labels.size()), "so many are not possible");
         limits_.make_room(file_.parts, labels.size(), [] { return std::string_view("array 'labels'"); });
-        for (std::uint64_t i = 0; i < labels.size(); ++i)
-            file_.parts.push_back({labels.text(i), {}});
+        for (std::uint64_t i = 0; i < labels.size(); ++i) {
+            const std::string label = labels.text(i);
+            file_.parts.push_back({label, {}, labelled_exposure(label)});
+        }
         check_part_planes(file_, z.size(), zip_bytes());
         read_rule();
 

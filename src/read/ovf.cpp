@@ -153,14 +153,7 @@ class OvfReader {
     }
 
     static ParameterSet read_parameters(ProtobufReader fields) {
-        ParameterSet set{.name = {},
-                         .power_w = 0,
-                         .speed_mm_s = 0,
-                         .jump_speed_mm_s = 0,
-                         .focus_mm = 0,
-                         .spot_mm = 0,
-                         .mark_delay_us = 0,
-                         .jump_delay_us = 0};
+        ParameterSet set = unknown_parameters();
         while (fields.next()) {
             switch (fields.field()) {
             case ovf::marking::power_w:
@@ -339,7 +332,7 @@ class OvfReader {
             LayerPart part{label == labels_.end() ? std::string() : printable(label->second, most_text), {}};
             part.exposure = exposure_of(kind, part.label);
             if (part.exposure)
-                part.label = fmt::format("{} {}", part.label, part.exposure->name());
+                part.label = part.exposure->label();
             file_.parts.push_back(std::move(part));
         }
         for (RawLayer& layer : layers_) {

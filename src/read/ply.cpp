@@ -133,9 +133,8 @@ MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const Ply
         } else if (face_rows.hold(row)) {
             read_face(face, places, words, piece);
         } else {
-            const auto other =
-                std::upper_bound(element_rows.begin(), element_rows.end(), row,
-                                 [](auto value, const Rows& one) { return value < one.end; });
+            const auto other = std::upper_bound(element_rows.begin(), element_rows.end(), row,
+                                                [](auto value, const Rows& one) { return value < one.end; });
             for (const PlyProperty& property : header.elements[other - element_rows.begin()].properties)
                 skip_value(property, words);
         }

@@ -458,7 +458,7 @@ class ToolpathReader {
             exposure.kind = kind.hatches ? VectorKind::hatch : VectorKind::contour;
             exposure.contour = kind.hatches ? 0 : 1;
         }
-        part.label = fmt::format("{} {}", label, exposure.name());
+        part.label = exposure.label();
         return part;
     }
 

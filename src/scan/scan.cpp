@@ -44,12 +44,6 @@ class Insets {
     }
 
   private:
-    static double contour_depth(const ContourRule& rule, std::uint32_t number) noexcept {
-        return rule.beam_offset + (number - 1) * rule.distance;
-    }
-    static double hatch_depth(const ContourRule& contours, const HatchRule& rule) noexcept {
-        return (contours.count == 0 ? 0 : contour_depth(contours, contours.count)) + rule.border;
-    }
     void want(double depth) {
         if (std::find(distances_.begin(), distances_.end(), -depth) == distances_.end())
             distances_.push_back(-depth);
@@ -194,8 +188,11 @@ ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters
         jump(vectors.hatches[i]);
         mark(vectors.hatches[i + 1]);
     }
-    const double marking = figures.marked_mm / parameters.speed_mm_s;
-    figures.build_seconds = marking + figures.jumped_mm / parameters.jump_speed_mm_s +
+    const auto seconds = [](double length, double speed) {
+        return speed > 0 ? length / speed : 0;
+    };
+    const double marking = seconds(figures.marked_mm, parameters.speed_mm_s);
+    figures.build_seconds = marking + seconds(figures.jumped_mm, parameters.jump_speed_mm_s) +
                             1e-6 * (static_cast<double>(marks) * parameters.mark_delay_us +
                                     static_cast<double>(jumps) * parameters.jump_delay_us);
     figures.energy_j = parameters.power_w * marking;

@@ -99,6 +99,14 @@ std::string_view contour_order_name(ContourOrder order) noexcept {
     return order == ContourOrder::inside_out ? "inside-out" : "outside-in";
 }
 
+double contour_depth(const ContourRule& rule, std::uint32_t number) noexcept {
+    return rule.beam_offset + (number - 1) * rule.distance;
+}
+
+double hatch_depth(const ContourRule& contours, const HatchRule& rule) noexcept {
+    return (contours.count == 0 ? 0 : contour_depth(contours, contours.count)) + rule.border;
+}
+
 void check_strategy(const ScanStrategy& strategy) {
     const ContourRule& contours = strategy.contours;
     if (contours.count > most_contours)

@@ -192,7 +192,7 @@ class IltWriter final : public LayerWriter {
         for (const std::size_t part : sections_[section].parts) {
             PartInfo known = info.parts[part];
             if (known.exposure)
-                known.label = fmt::format("{} {}", known.exposure->part, known.exposure->name());
+                known.label = known.exposure->label();
             part_info.parts.push_back(std::move(known));
         }
         entry.writer = open_common_layer_binary({}, part_info, options);

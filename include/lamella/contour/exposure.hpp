@@ -5,6 +5,7 @@
 #include "lamella/core/api.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,6 +46,9 @@ struct ParameterSet {
     friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };
 
+/// Those of vectors that nothing is known of but where they are: without a name, all 0.
+[[nodiscard]] ParameterSet unknown_parameters();
+
 /// What the vectors of one part on one layer have in common that a machine executes in one go. Slice files
 /// have it as a part of their own: layers with rings and chains for contours, with hatches for a hatch.
 struct Exposure {
@@ -56,6 +60,12 @@ struct Exposure {
 
     /// Such as "core contour 1" and "upskin hatch".
     [[nodiscard]] std::string name() const;
+    /// The part and the name: "bracket core contour 1".
+    [[nodiscard]] std::string label() const;
 };
+
+/// What a label says, the other way round: for formats that have nothing else to say it with. Its parameters
+/// are unknown.
+[[nodiscard]] std::optional<Exposure> labelled_exposure(std::string_view label);
 
 } // namespace lamella

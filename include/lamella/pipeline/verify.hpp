@@ -1,11 +1,14 @@
 #pragma once
 
-// Is a stack of layers right? Closed, oriented, without crossings, and of the area of its mesh.
+// Is a stack of layers right? Closed, oriented, without crossings, and of the area of its mesh. And are scan
+// vectors: within the material, as far from its edges as they should be, and enough of them to fill it.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/scan/strategy.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include <cstdint>
@@ -66,5 +69,54 @@ struct Verification {
 /// number of threads.
 [[nodiscard]] Verification verify(std::span<const Layer> layers, const VerifyOptions& options = {},
                                   const Execution& execution = {});
+
+/// What scan vectors are held against.
+struct VectorVerifyOptions {
+    /// The vectors lie within its section at the z of the layer. Without a mesh, within the outermost contour
+    /// of their part.
+    std::optional<Mesh> mesh = {};
+    PlaneRule rule = PlaneRule::section_above; ///< as VerifyOptions::rule
+    Rounding rounding = {};                    ///< of coordinates and heights: vectors may be off by so much
+    /// By which the vectors were made. With it they are to be as far from the edges of the material as it
+    /// says, no hatch line shorter than `shortest`, and lines times their distance are to be the area that
+    /// they fill.
+    std::optional<ScanStrategy> strategy = {};
+};
+
+struct VectorVerification {
+    std::uint64_t layers = 0;
+    std::uint64_t contour_vectors = 0;
+    std::uint64_t hatch_vectors = 0;
+    // Of contours, those of each exposure by themselves.
+    std::uint64_t open_chains = 0;
+    std::uint64_t crossings = 0;
+    std::uint64_t misoriented = 0; ///< rings within material of their own exposure among them
+    /// Vectors that leave the material, or are nearer to its edges than the strategy says.
+    std::uint64_t outside = 0;
+    std::uint64_t too_short = 0; ///< hatch lines
+    /// Planes of a part, of all parts with a mesh, whose lines cover more or less than they are to fill. What
+    /// may be off: along the edges of that half a distance, as wide a strip as the shortest line is long, and
+    /// what stripes, islands and skins overlap.
+    std::uint64_t miscovered = 0;
+    /// What lines cover by what they are to fill, of all layers; where there is a strategy.
+    std::optional<double> cover;
+    /// Vectors of which nothing tells where the material is: neither a mesh nor an outer contour, or an open
+    /// one.
+    std::uint64_t unbounded = 0;
+    /// One line for each kind of finding, with the first layer and place where it occurs.
+    std::vector<std::string> findings;
+
+    [[nodiscard]] bool ok() const noexcept {
+        return open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 && too_short == 0 &&
+               miscovered == 0;
+    }
+};
+
+/// Checks the parts of a file that have an exposure; the others do not count. All have the same planes.
+/// O(n log n) for n points and vectors of a layer, beside what slicing and offsets take. Parallel over
+/// layers; the same result for any number of threads. Throws what `slice` and `offset` throw.
+[[nodiscard]] VectorVerification verify_vectors(std::span<const LayerPart> parts,
+                                                const VectorVerifyOptions& options = {},
+                                                const Execution& execution = {});
 
 } // namespace lamella

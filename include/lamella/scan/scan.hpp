@@ -46,7 +46,7 @@ struct ScanFigures {
 };
 
 /// Of vectors executed one after the other with one parameter set, from where the beam was before, and that
-/// is moved to where it ends. O(vectors).
+/// is moved to where it ends. What is done at an unknown speed, 0, takes no time. O(vectors).
 [[nodiscard]] ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
                                           std::optional<Point2>& beam);
 

@@ -92,6 +92,11 @@ struct ScanStrategy {
     std::uint64_t seed = 1;
 };
 
+/// How far inside of the outline of the part a contour is, of those counted from 1 at the outermost one.
+[[nodiscard]] double contour_depth(const ContourRule& rule, std::uint32_t number) noexcept;
+/// How far inside of it lines end.
+[[nodiscard]] double hatch_depth(const ContourRule& contours, const HatchRule& rule) noexcept;
+
 /// Throws Error{usage} that names the field for values out of range.
 void check_strategy(const ScanStrategy& strategy);
 

@@ -1,0 +1,80 @@
+#pragma once
+
+// What is wrong with layers, and where first.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/open_gaps.hpp"
+#include "lamella/contour/rounding.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/slicing/plan.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+/// How often something occurs in a layer, and where first.
+struct Occurrences {
+    std::uint64_t count = 0;
+    Point2 first;
+
+    void add(std::uint64_t n, const Point2& at) {
+        if (count == 0)
+            first = at;
+        count += n;
+    }
+};
+
+struct LayerCheck {
+    LayerMeasure measure;
+    Occurrences open_chains;
+    OpenGaps open_gaps;
+    Occurrences crossings;
+    Occurrences misoriented;
+    Occurrences overlapping;
+};
+
+[[nodiscard]] LayerCheck check_layer(const Layer& layer, const Rounding& rounding);
+
+/// "layer 12 (z 0.375 mm)"
+[[nodiscard]] std::string where(const Layer& layer);
+
+[[nodiscard]] double largest_coordinate(std::span<const Point2> points) noexcept;
+
+/// Of one kind of finding, in the order of the layers.
+struct Finding {
+    std::uint64_t total = 0;
+    std::string place; ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
+
+    void add(const Layer& layer, const Occurrences& found);
+    void add(const Finding& other);
+};
+
+/// What findings say of the contours of layers.
+struct ContourFindings {
+    Finding open_chains;
+    Finding crossings;
+    Finding misoriented;
+    Finding overlapping;
+
+    void add(const Layer& layer, const LayerCheck& found);
+    void add(const ContourFindings& other);
+};
+[[nodiscard]] std::string open_chains_text(const Finding& finding);
+[[nodiscard]] std::string crossings_text(const Finding& finding);
+[[nodiscard]] std::string misoriented_text(const Finding& finding);
+
+/// The cuts of layers, each as far above (1) or below (-1) its own as a format may have moved it, or where
+/// they are (0).
+struct MovedCuts {
+    MovedCuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, double direction);
+
+    Plan plan;
+    std::vector<std::size_t> plane; ///< of each layer
+};
+
+} // namespace lamella

@@ -1,0 +1,377 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/pipeline/verify.hpp"
+#include "lamella/polygon/boolean.hpp"
+#include "lamella/polygon/offset.hpp"
+
+#include "contour/distance.hpp"
+#include "core/executor.hpp"
+#include "pipeline/layer_check.hpp"
+#include "polygon/edge_tree.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+/// Exposures whose vectors fill the same material.
+struct Group {
+    std::vector<const LayerPart*> exposures;
+    const LayerPart* outermost = nullptr; ///< of its contours
+};
+
+std::vector<Group> groups_of(std::span<const LayerPart> parts, bool all_together) {
+    std::map<std::string, Group> groups;
+    for (const LayerPart& part : parts) {
+        if (!part.exposure)
+            continue;
+        Group& group = groups[all_together ? std::string() : part.exposure->part];
+        group.exposures.push_back(&part);
+        if (part.exposure->kind == VectorKind::contour &&
+            (group.outermost == nullptr || part.exposure->contour < group.outermost->exposure->contour))
+            group.outermost = &part;
+    }
+    std::vector<Group> result;
+    for (auto& [name, group] : groups)
+        result.push_back(std::move(group));
+    return result;
+}
+
+const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexcept {
+    return region == ScanRegion::upskin     ? strategy.upskin.hatch
+           : region == ScanRegion::downskin ? strategy.downskin.hatch
+                                            : strategy.hatch;
+}
+
+/// How far inside of the outline of the part the vectors of an exposure are to be.
+double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
+    return exposure.kind == VectorKind::contour
+               ? contour_depth(strategy.contours, std::max(1U, exposure.contour))
+               : hatch_depth(strategy.contours, hatch_of(strategy, exposure.region));
+}
+
+/// What is wrong with the vectors of a plane.
+struct PlaneCheck {
+    ContourFindings contours;
+    Occurrences outside;
+    Occurrences too_short;
+    Occurrences miscovered;
+    std::uint64_t contour_vectors = 0;
+    std::uint64_t hatch_vectors = 0;
+    std::uint64_t unbounded = 0;
+    double covered_mm2 = 0;
+    double filled_mm2 = 0; ///< what was to be covered
+};
+
+/// Where the material of a plane is known to be, and where it may be: a format may have moved the cut.
+struct Bounds {
+    std::vector<Layer> sections; ///< the first where the file says
+    double depth = 0;            ///< of their outlines inside of that of the part
+};
+
+/// By how much what lines cover may be off from the area that they fill.
+class Slack {
+  public:
+    /// A line may end, or begin, half a distance beside the edge of the area; what is narrower than the
+    /// shortest line has none. Stripes and islands overlap, and leave out what is too short of each of them.
+    void add(const HatchRule& rule) {
+        const bool cells = rule.pattern != HatchPattern::lines && rule.pattern != HatchPattern::meander;
+        strip_less_ = std::max(strip_less_, rule.distance / 2 + rule.shortest);
+        strip_more_ = std::max(strip_more_, rule.distance / 2 + (cells ? rule.overlap : 0));
+        if (!cells)
+            return;
+        const double longer = 1 + rule.overlap / rule.cell;
+        share_more_ = std::max(share_more_, longer * longer - 1);
+        share_less_ = std::max(share_less_, (rule.shortest / rule.cell) * (rule.shortest / rule.cell));
+    }
+    [[nodiscard]] double less(const LayerMeasure& area) const noexcept {
+        return strip_less_ * area.perimeter_mm + share_less_ * area.area_mm2;
+    }
+    [[nodiscard]] double more(const LayerMeasure& area) const noexcept {
+        return strip_more_ * area.perimeter_mm + share_more_ * area.area_mm2;
+    }
+
+  private:
+    double strip_less_ = 0;
+    double strip_more_ = 0;
+    double share_less_ = 0;
+    double share_more_ = 0;
+};
+
+double length_of(const PointArray& hatches) {
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
+        length += distance(hatches[i], hatches[i + 1]);
+    return length;
+}
+
+class VectorCheck {
+  public:
+    VectorCheck(const VectorVerifyOptions& options, double tolerance)
+        : options_(options), tolerance_(tolerance) {}
+
+    void check(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
+        std::uint64_t all = 0;
+        for (const LayerPart* const part : group.exposures) {
+            const Layer& vectors = part->layers[plane];
+            if (part->exposure->kind == VectorKind::contour)
+                found.contours.add(vectors, of_one_exposure(vectors));
+            std::uint64_t of_contours = 0;
+            for (std::size_t i = 0; i < vectors.contours(); ++i)
+                of_contours += vectors.contour(i).size() - (vectors.closed(i) ? 0 : 1);
+            found.contour_vectors += of_contours;
+            found.hatch_vectors += vectors.hatches.size() / 2;
+            all += of_contours + vectors.hatches.size() / 2;
+            if (options_.strategy)
+                find_short(vectors, hatch_of(*options_.strategy, part->exposure->region), found.too_short);
+        }
+        if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0) {
+            found.unbounded += all;
+            return;
+        }
+        find_outside(group, plane, bounds, found.outside);
+        if (options_.strategy)
+            measure_cover(group, plane, bounds, found);
+    }
+
+  private:
+    /// Contours of one number neither cross nor lie within one another's material.
+    [[nodiscard]] LayerCheck of_one_exposure(const Layer& vectors) const {
+        LayerCheck found = check_layer(vectors, options_.rounding);
+        found.misoriented.add(found.overlapping.count, found.overlapping.first);
+        return found;
+    }
+
+    void find_short(const Layer& vectors, const HatchRule& rule, Occurrences& too_short) const {
+        for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
+            const Point2& a = vectors.hatches[i];
+            const Point2& b = vectors.hatches[i + 1];
+            if (distance(a, b) < rule.shortest - 2 * tolerance_)
+                too_short.add(1, a);
+        }
+    }
+
+    void find_outside(const Group& group, std::size_t plane, const Bounds& bounds,
+                      Occurrences& outside) const {
+        // Grown a little, so that what lies on an edge lies within.
+        Layer material = bounds.sections.front();
+        for (std::size_t i = 1; i < bounds.sections.size(); ++i)
+            material = combine(material, bounds.sections[i], BooleanOperation::unite);
+        const double grown = 2 * tolerance_;
+        const EdgeTree edges(offset(material, grown));
+        for (const LayerPart* const part : group.exposures) {
+            if (part == group.outermost && !options_.mesh)
+                continue;
+            const double depth =
+                options_.strategy ? depth_of(*part->exposure, *options_.strategy) - bounds.depth : 0;
+            Followed followed(edges, std::max(0.0, depth) + grown - tolerance_, outside);
+            const Layer& vectors = part->layers[plane];
+            for (std::size_t i = 0; i < vectors.contours(); ++i) {
+                const auto contour = vectors.contour(i);
+                for (std::size_t k = 1; k < contour.size(); ++k)
+                    followed.mark(contour[k - 1], contour[k]);
+                if (vectors.closed(i))
+                    followed.mark(contour.back(), contour.front());
+            }
+            for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
+                followed.mark(vectors.hatches[i], vectors.hatches[i + 1]);
+        }
+    }
+
+    /// A beam on its way: whether it is within the material has to be found out where a jump leads across an
+    /// edge.
+    class Followed {
+      public:
+        Followed(const EdgeTree& edges, double distance, Occurrences& outside)
+            : edges_(edges), squared_(distance * distance), outside_(outside) {}
+
+        void mark(const Point2& from, const Point2& to) {
+            if (!known_ || (from != at_ && edges_.distance_squared(segment_between(at_, from), 0) == 0))
+                inside_ = edges_.winding(from) > 0;
+            const double nearest = edges_.distance_squared(segment_between(from, to), squared_ / 2);
+            if (!inside_ || nearest < squared_)
+                outside_.add(1, from);
+            known_ = nearest > 0;
+            at_ = to;
+        }
+
+      private:
+        const EdgeTree& edges_;
+        double squared_;
+        Occurrences& outside_;
+        bool known_ = false;
+        bool inside_ = false; ///< at at_
+        Point2 at_;
+    };
+
+    void measure_cover(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
+        const ScanStrategy& strategy = *options_.strategy;
+        Slack slack;
+        double covered = 0;
+        double of_skins = 0; // which lie over the core by their overlap
+        double shallow = std::numeric_limits<double>::infinity();
+        double deep = -shallow;
+        for (const LayerPart* const part : group.exposures) {
+            const Exposure& exposure = *part->exposure;
+            if (exposure.kind != VectorKind::hatch)
+                continue;
+            const HatchRule& rule = hatch_of(strategy, exposure.region);
+            slack.add(rule);
+            const double area = length_of(part->layers[plane].hatches) * rule.distance;
+            covered += area;
+            if (exposure.region == ScanRegion::upskin || exposure.region == ScanRegion::downskin)
+                of_skins += area;
+            shallow = std::min(shallow, depth_of(exposure, strategy) - bounds.depth);
+            deep = std::max(deep, depth_of(exposure, strategy) - bounds.depth);
+        }
+        if (shallow > deep)
+            return; // no hatches
+        const Layer& section = bounds.sections.front();
+        const LayerMeasure nominal = measure(offset(section, -shallow));
+        double least = nominal.area_mm2;
+        double greatest = nominal.area_mm2;
+        for (const Layer& moved : bounds.sections) {
+            least = std::min(least, measure(offset(moved, -deep)).area_mm2);
+            greatest = std::max(greatest, measure(offset(moved, -shallow)).area_mm2);
+        }
+        least -= slack.less(nominal) + of_skins;
+        greatest += slack.more(nominal) + of_skins;
+        if (covered < least || covered > greatest)
+            found.miscovered.add(1, section.points.empty() ? Point2{} : section.points[0]);
+        found.covered_mm2 += covered;
+        found.filled_mm2 += nominal.area_mm2;
+    }
+
+    const VectorVerifyOptions& options_;
+    double tolerance_; ///< by which vectors, and contours that stand for material, may be off
+};
+
+/// The sections of a mesh for each plane, the first where the layer is, others where the format may have
+/// moved the cut from.
+std::vector<std::vector<Layer>> sections_of(std::span<const Layer> planes, const VectorVerifyOptions& options,
+                                            const Execution& execution) {
+    std::vector<std::vector<Layer>> result(planes.size());
+    for (const double direction : {0.0, -1.0, 1.0}) {
+        if (direction != 0 && options.rounding == Rounding{})
+            break;
+        const MovedCuts cuts(planes, options.rounding, options.rule, direction);
+        const LayerStack sections = slice(*options.mesh, cuts.plan, execution);
+        for (std::size_t i = 0; i < planes.size(); ++i)
+            result[i].push_back(sections[cuts.plane[i]]);
+    }
+    return result;
+}
+
+std::string counted_vectors(const Finding& finding, const char* one, const char* many) {
+    return fmt::format("{} {}; the first in {}", finding.total, finding.total == 1 ? one : many,
+                       finding.place);
+}
+
+} // namespace
+
+VectorVerification verify_vectors(std::span<const LayerPart> parts, const VectorVerifyOptions& options,
+                                  const Execution& execution) {
+    const std::vector<Group> groups = groups_of(parts, options.mesh.has_value());
+    VectorVerification result;
+    if (groups.empty())
+        return result;
+    const LayerStack& planes = groups.front().exposures.front()->layers;
+    result.layers = planes.size();
+    std::vector<std::vector<Layer>> sections;
+    if (options.mesh)
+        sections = sections_of(planes, options, execution);
+
+    double largest = 0;
+    for (const Group& group : groups)
+        for (const LayerPart* const part : group.exposures)
+            for (const Layer& layer : part->layers)
+                largest = std::max({largest, largest_coordinate(layer.points.span()),
+                                    largest_coordinate(layer.hatches.span())});
+    // Ends of lines and points of contours, each moved along both axes; and what arithmetic moves.
+    const double tolerance = std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest;
+
+    const VectorCheck vectors(options, tolerance);
+    std::vector<PlaneCheck> checks(planes.size());
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::polygon, planes.size());
+    executor.for_chunks(planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            for (const Group& group : groups) {
+                Bounds bounds;
+                if (options.mesh)
+                    bounds.sections = sections[i];
+                else if (group.outermost != nullptr)
+                    bounds = {{group.outermost->layers[i]},
+                              options.strategy ? depth_of(*group.outermost->exposure, *options.strategy) : 0};
+                vectors.check(group, i, bounds, checks[i]);
+            }
+            progress.add(1);
+        }
+    });
+    progress.finish();
+
+    ContourFindings contours;
+    Finding outside;
+    Finding too_short;
+    Finding miscovered;
+    double covered = 0;
+    double filled = 0;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        const PlaneCheck& check = checks[i];
+        contours.add(check.contours);
+        outside.add(planes[i], check.outside);
+        too_short.add(planes[i], check.too_short);
+        miscovered.add(planes[i], check.miscovered);
+        result.contour_vectors += check.contour_vectors;
+        result.hatch_vectors += check.hatch_vectors;
+        result.unbounded += check.unbounded;
+        covered += check.covered_mm2;
+        filled += check.filled_mm2;
+    }
+    result.open_chains = contours.open_chains.total;
+    result.crossings = contours.crossings.total;
+    result.misoriented = contours.misoriented.total;
+    result.outside = outside.total;
+    result.too_short = too_short.total;
+    result.miscovered = miscovered.total;
+    if (options.strategy && filled > 0)
+        result.cover = covered / filled;
+
+    const auto tell = [&](std::uint64_t total, const auto& text) {
+        if (total > 0)
+            result.findings.push_back(text());
+    };
+    tell(result.open_chains, [&] { return open_chains_text(contours.open_chains); });
+    tell(result.crossings, [&] { return crossings_text(contours.crossings); });
+    tell(result.misoriented, [&] { return misoriented_text(contours.misoriented); });
+    tell(result.outside, [&] {
+        return options.strategy
+                   ? counted_vectors(
+                         outside,
+                         "vector is nearer to the edge of the material than the strategy says, or outside",
+                         "vectors are nearer to the edge of the material than the strategy says, or outside")
+                   : counted_vectors(outside, "vector leaves the material", "vectors leave the material");
+    });
+    tell(result.too_short, [&] {
+        return counted_vectors(too_short, "hatch line is shorter than the strategy says",
+                               "hatch lines are shorter than the strategy says");
+    });
+    tell(result.miscovered, [&] {
+        return counted_vectors(miscovered, "layer has lines that cover more or less than they should fill",
+                               "layers have lines that cover more or less than they should fill");
+    });
+    if (result.unbounded > 0)
+        result.findings.push_back(fmt::format(
+            "of {} vector{} nothing tells where the material is: no closed contour is around them",
+            result.unbounded, result.unbounded == 1 ? "" : "s"));
+    return result;
+}
+
+} // namespace lamella

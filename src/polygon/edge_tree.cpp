@@ -1,0 +1,177 @@
+#include "polygon/edge_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lamella {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t edges_of_leaf = 8;
+
+double squared(double dx, double dy) noexcept {
+    return dx * dx + dy * dy;
+}
+
+double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexcept {
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    const double length = squared(dx, dy);
+    const double along = length > 0 ? ((p.x - a.x) * dx + (p.y - a.y) * dy) / length : 0;
+    const double t = std::clamp(along, 0.0, 1.0);
+    return squared(p.x - (a.x + t * dx), p.y - (a.y + t * dy));
+}
+
+bool meet(const Segment& s, const Point2& a, const Point2& b) noexcept {
+    const Segment t = segment_between(a, b);
+    const bool apart = side(s, a) * side(s, b) > 0 || side(t, s.lo) * side(t, s.hi) > 0;
+    return !apart && Box2::of(s.lo, s.hi).meets(Box2::of(a, b));
+}
+
+/// How far boxes are apart along an axis.
+double gap(double least, double most, double other_least, double other_most) noexcept {
+    return std::max({other_least - most, 0.0, least - other_most});
+}
+
+double distance_squared(const Box2& a, const Box2& b) noexcept {
+    return squared(gap(a.x0, a.x1, b.x0, b.x1), gap(a.y0, a.y1, b.y0, b.y1));
+}
+
+/// At least how far a box is from the line of a segment, of a slanting one above all, whose own box says
+/// little.
+class LineBand {
+  public:
+    explicit LineBand(const Segment& s) noexcept : through_(s.lo) {
+        const double length = std::sqrt(squared(s.hi.x - s.lo.x, s.hi.y - s.lo.y));
+        if (length > 0)
+            normal_ = {(s.lo.y - s.hi.y) / length, (s.hi.x - s.lo.x) / length};
+    }
+    [[nodiscard]] double distance_squared(const Box2& box) const noexcept {
+        const double middle = normal_.x * ((box.x0 + box.x1) / 2 - through_.x) +
+                              normal_.y * ((box.y0 + box.y1) / 2 - through_.y);
+        const double half = (std::abs(normal_.x) * box.width() + std::abs(normal_.y) * box.height()) / 2;
+        const double apart = std::max(0.0, std::abs(middle) - half);
+        return apart * apart;
+    }
+
+  private:
+    Point2 through_;
+    Point2 normal_{0, 0};
+};
+
+} // namespace
+
+EdgeTree::EdgeTree(const Layer& layer) {
+    edges_.reserve(layer.points.size());
+    for (std::size_t i = 0; i < layer.contours(); ++i) {
+        const auto contour = layer.contour(i);
+        for (std::size_t k = 1; k < contour.size(); ++k)
+            edges_.push_back({contour[k - 1], contour[k]});
+        if (layer.closed(i) || contour.size() == 1)
+            edges_.push_back({contour.back(), contour.front()});
+    }
+    if (!edges_.empty())
+        build(0, edges_.size());
+}
+
+void EdgeTree::build(std::size_t begin, std::size_t end) {
+    const std::size_t at = nodes_.size();
+    Box2 box = Box2::of(edges_[begin].a, edges_[begin].b);
+    for (std::size_t i = begin + 1; i < end; ++i)
+        box.add(Box2::of(edges_[i].a, edges_[i].b));
+    nodes_.push_back({box, begin, end, 0});
+    if (end - begin <= edges_of_leaf)
+        return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto place = [&](std::size_t i) {
+        return edges_.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    const bool along_x = box.width() >= box.height();
+    std::nth_element(place(begin), place(middle), place(end), [&](const Edge& s, const Edge& t) {
+        return along_x ? s.a.x + s.b.x < t.a.x + t.b.x : s.a.y + s.b.y < t.a.y + t.b.y;
+    });
+    build(begin, middle);
+    nodes_[at].right = nodes_.size();
+    build(middle, end);
+}
+
+template <class OfBox, class OfEdge>
+void EdgeTree::search(std::size_t at, double enough, const OfBox& of_box, const OfEdge& of_edge,
+                      double& best) const {
+    const Node& node = nodes_[at];
+    if (node.right == 0) {
+        for (std::size_t i = node.begin; i < node.end; ++i)
+            best = std::min(best, of_edge(edges_[i]));
+        return;
+    }
+    std::size_t near = at + 1;
+    std::size_t far = node.right;
+    double to_near = of_box(nodes_[near].box);
+    double to_far = of_box(nodes_[far].box);
+    if (to_far < to_near) {
+        std::swap(near, far);
+        std::swap(to_near, to_far);
+    }
+    if (to_near < best)
+        search(near, enough, of_box, of_edge, best);
+    if (best > enough && to_far < best)
+        search(far, enough, of_box, of_edge, best);
+}
+
+double EdgeTree::distance_squared(const Point2& p, double enough) const {
+    double best = infinity;
+    const Box2 own = Box2::of(p);
+    if (!empty())
+        search(
+            0, enough, [&](const Box2& box) { return lamella::distance_squared(own, box); },
+            [&](const Edge& edge) { return lamella::distance_squared(p, edge.a, edge.b); }, best);
+    return best;
+}
+
+double EdgeTree::distance_squared(const Segment& s, double enough) const {
+    double best = infinity;
+    const Box2 own = Box2::of(s.lo, s.hi);
+    const LineBand band(s);
+    if (!empty())
+        search(
+            0, enough,
+            [&](const Box2& box) {
+                return std::max(lamella::distance_squared(own, box), band.distance_squared(box));
+            },
+            [&](const Edge& edge) {
+                return meet(s, edge.a, edge.b) ? 0
+                                               : std::min({lamella::distance_squared(s.lo, edge.a, edge.b),
+                                                           lamella::distance_squared(s.hi, edge.a, edge.b),
+                                                           lamella::distance_squared(edge.a, s.lo, s.hi),
+                                                           lamella::distance_squared(edge.b, s.lo, s.hi)});
+            },
+            best);
+    return best;
+}
+
+std::int64_t EdgeTree::winding(const Point2& p) const {
+    return empty() ? 0 : winding_below(0, p);
+}
+
+std::int64_t EdgeTree::winding_below(std::size_t at, const Point2& p) const {
+    const Node& node = nodes_[at];
+    if (node.box.y0 > p.y || node.box.y1 <= p.y || node.box.x1 < p.x)
+        return 0;
+    if (node.right != 0)
+        return winding_below(at + 1, p) + winding_below(node.right, p);
+    std::int64_t around = 0;
+    for (std::size_t i = node.begin; i < node.end; ++i) {
+        const Edge& edge = edges_[i];
+        if ((edge.a.y > p.y) == (edge.b.y > p.y))
+            continue;
+        const int step = edge.b.y > edge.a.y ? 1 : -1;
+        if (orientation(edge.a, edge.b, p) == step) // p is to the left of it
+            around += step;
+    }
+    return around;
+}
+
+} // namespace lamella

@@ -1,0 +1,234 @@
+#include "lamella/pipeline/verify.hpp"
+#include "lamella/scan/scan.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "fixtures/layers.hpp"
+#include "fixtures/meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+using test::box_mesh;
+using test::layer_of;
+using test::rectangle;
+
+/// The vectors of layers, as a file has them.
+std::vector<LayerPart> scanned(const LayerStack& layers, const ScanStrategy& strategy,
+                               const std::string& part) {
+    std::vector<LayerPart> parts;
+    for (const Exposure& exposure : exposures(strategy, part))
+        parts.push_back({exposure.label(), {}, exposure});
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        std::vector<Layer> below(layers.begin(), layers.begin() + static_cast<std::ptrdiff_t>(i));
+        std::reverse(below.begin(), below.end());
+        const std::vector<Layer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, layers.end());
+        std::vector<Layer> vectors = scan(layers[i], below, above, strategy);
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            parts[k].layers.push_back(std::move(vectors[k]));
+    }
+    return parts;
+}
+
+/// A block of 20 x 10 x 1 mm in ten layers.
+class VerifyVectors : public testing::Test {
+  protected:
+    VerifyVectors() {
+        strategy_.contours.count = 2;
+        strategy_.upskin.layers = 2;
+        strategy_.downskin.layers = 2;
+        plan_ = plan_uniform(0, 1, {.layer_height = 0.1});
+        parts_ = scanned(slice(mesh_, plan_), strategy_, "block");
+    }
+
+    /// With the mesh and the strategy, with one of them, with none.
+    VectorVerification with_all() const {
+        return verify_vectors(parts_, {.mesh = mesh_, .strategy = strategy_});
+    }
+    VectorVerification with_strategy() const { return verify_vectors(parts_, {.strategy = strategy_}); }
+    VectorVerification with_mesh() const { return verify_vectors(parts_, {.mesh = mesh_}); }
+    VectorVerification with_nothing() const { return verify_vectors(parts_); }
+
+    LayerPart& part(const std::string& name) {
+        for (LayerPart& part : parts_)
+            if (part.exposure->name() == name)
+                return part;
+        throw std::out_of_range(name);
+    }
+    /// Changes the hatches of a layer.
+    template <class Change>
+    void change_hatches(const std::string& name, std::size_t layer, const Change& change) {
+        Layer& vectors = part(name).layers[layer];
+        std::vector<Point2> points(vectors.hatches.begin(), vectors.hatches.end());
+        change(points);
+        vectors.hatches = PointArray(std::move(points));
+    }
+
+    Mesh mesh_ = box_mesh({0, 0, 0}, {20, 10, 1});
+    Plan plan_;
+    ScanStrategy strategy_;
+    std::vector<LayerPart> parts_;
+};
+
+TEST_F(VerifyVectors, FindsNothingInWhatScanMakes) {
+    for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::meander, HatchPattern::stripes,
+                                       HatchPattern::chessboard, HatchPattern::hexagons}) {
+        for (HatchRule* const rule : {&strategy_.hatch, &strategy_.upskin.hatch, &strategy_.downskin.hatch})
+            rule->pattern = pattern;
+        parts_ = scanned(slice(mesh_, plan_), strategy_, "block");
+        for (const VectorVerification& found : {with_all(), with_strategy(), with_mesh(), with_nothing()}) {
+            EXPECT_TRUE(found.ok());
+            EXPECT_EQ(found.findings, std::vector<std::string>());
+            EXPECT_EQ(found.layers, 10U);
+            EXPECT_EQ(found.contour_vectors, 160U) << "the diagonals of sides are followed, too";
+            EXPECT_GT(found.hatch_vectors, 1000U);
+            EXPECT_EQ(found.unbounded, 0U);
+        }
+        EXPECT_NEAR(*with_all().cover, 1, 0.15);
+        EXPECT_NEAR(*with_all().cover, *with_strategy().cover, 1e-9);
+        EXPECT_FALSE(with_mesh().cover);
+    }
+}
+
+TEST_F(VerifyVectors, IsTheSameForAnyNumberOfThreads) {
+    change_hatches("core hatch", 5, [](std::vector<Point2>& points) { points[0].x += 100; });
+    const VectorVerification one = verify_vectors(parts_, {.mesh = mesh_}, {.threads = 1});
+    const VectorVerification four = verify_vectors(parts_, {.mesh = mesh_}, {.threads = 4});
+    EXPECT_EQ(one.findings, four.findings);
+    EXPECT_EQ(one.outside, four.outside);
+}
+
+TEST_F(VerifyVectors, FindsVectorsThatLeaveTheMaterial) {
+    change_hatches("core hatch", 5, [](std::vector<Point2>& points) { points[0].x = 21; });
+    for (const VectorVerification& found : {with_all(), with_strategy(), with_mesh(), with_nothing()}) {
+        EXPECT_FALSE(found.ok());
+        EXPECT_EQ(found.outside, 1U);
+        ASSERT_FALSE(found.findings.empty());
+        EXPECT_NE(found.findings.front().find("layer 5 (z 0.55 mm)"), std::string::npos)
+            << found.findings.front();
+    }
+}
+
+TEST_F(VerifyVectors, FindsVectorsThatLieOutsideAsAWhole) {
+    change_hatches("core hatch", 5, [](std::vector<Point2>& points) {
+        for (std::size_t i = 0; i < 6; ++i)
+            points[i].x += 100;
+    });
+    for (const VectorVerification& found : {with_all(), with_strategy(), with_mesh(), with_nothing()})
+        EXPECT_EQ(found.outside, 3U);
+}
+
+TEST_F(VerifyVectors, FindsVectorsWithinHoles) {
+    const Mesh hollow =
+        TriangleSoup(test::joined({test::box_triangles({0, 0, 0}, {20, 10, 1}),
+                                   test::flipped(test::box_triangles({5, 3, 0}, {8, 6, 1}))}));
+    EXPECT_GT(verify_vectors(parts_, {.mesh = hollow}).outside, 100U);
+}
+
+TEST_F(VerifyVectors, HoldsDistancesAgainstTheStrategy) {
+    change_hatches("core hatch", 4, [&](std::vector<Point2>& points) {
+        points.push_back({1, 0.16}); // the border is at 0.2
+        points.push_back({3, 0.16});
+    });
+    EXPECT_EQ(with_all().outside, 1U);
+    EXPECT_EQ(with_strategy().outside, 1U);
+    EXPECT_TRUE(with_mesh().ok());
+    EXPECT_EQ(with_nothing().outside, 0U);
+}
+
+TEST_F(VerifyVectors, ContoursHaveTheirDistance) {
+    std::swap(part("core contour 1").layers[3], part("core contour 2").layers[3]);
+    EXPECT_EQ(with_all().outside, 8U);
+    EXPECT_TRUE(with_mesh().ok());
+    EXPECT_FALSE(with_nothing().ok()) << "the second one lies around the first one";
+}
+
+TEST_F(VerifyVectors, FindsLinesThatAreTooShort) {
+    change_hatches("core hatch", 4, [](std::vector<Point2>& points) {
+        points.push_back({5, 5});
+        points.push_back({5.09, 5});
+    });
+    EXPECT_EQ(with_all().too_short, 1U);
+    EXPECT_EQ(with_strategy().too_short, 1U);
+    EXPECT_TRUE(with_mesh().ok());
+}
+
+TEST_F(VerifyVectors, FindsWhatIsNotFilledAndWhatIsFilledTwice) {
+    const std::vector<LayerPart> sound = parts_;
+    change_hatches("core hatch", 4,
+                   [](std::vector<Point2>& points) { points.resize(points.size() / 2 & ~1U); });
+    EXPECT_EQ(with_all().miscovered, 1U);
+    EXPECT_EQ(with_strategy().miscovered, 1U);
+    EXPECT_LT(*with_all().cover, 1.0);
+    EXPECT_TRUE(with_mesh().ok());
+
+    parts_ = sound;
+    change_hatches("core hatch", 4, [](std::vector<Point2>& points) {
+        const std::vector<Point2> again = points;
+        points.insert(points.end(), again.begin(), again.end());
+    });
+    EXPECT_EQ(with_all().miscovered, 1U);
+
+    parts_ = sound;
+    change_hatches("upskin hatch", 9, [](std::vector<Point2>& points) { points.clear(); });
+    EXPECT_EQ(with_all().miscovered, 1U) << "a skin is missing";
+}
+
+TEST_F(VerifyVectors, FindsWhatIsWrongWithContours) {
+    Layer& vectors = part("core contour 1").layers[2];
+    vectors = layer_of({rectangle(1, 1, 9, 9), rectangle(2, 2, 8, 8)}, {{{2, 3}, {4, 3}}});
+    const VectorVerification found = with_mesh();
+    EXPECT_EQ(found.open_chains, 1U);
+    EXPECT_EQ(found.misoriented, 1U);
+    EXPECT_FALSE(found.ok());
+}
+
+TEST_F(VerifyVectors, SaysWhereNothingTellsOfTheMaterial) {
+    std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::contour; });
+    const VectorVerification found = with_nothing();
+    EXPECT_TRUE(found.ok());
+    EXPECT_EQ(found.unbounded, found.hatch_vectors);
+    EXPECT_EQ(found.findings.size(), 1U);
+    EXPECT_EQ(with_all().unbounded, 0U);
+    EXPECT_TRUE(with_all().ok());
+}
+
+TEST_F(VerifyVectors, GrantsTheRoundingOfTheFormat) {
+    const auto rounded = [](const Point2& p) {
+        return Point2{std::round(p.x * 100) / 100, std::round(p.y * 100) / 100};
+    };
+    for (LayerPart& part : parts_)
+        for (Layer& layer : part.layers) {
+            std::vector<Point2> hatches;
+            for (const Point2& p : layer.hatches)
+                hatches.push_back(rounded(p));
+            layer.hatches = PointArray(std::move(hatches));
+        }
+    EXPECT_FALSE(with_all().ok());
+    EXPECT_TRUE(
+        verify_vectors(parts_, {.mesh = mesh_, .rounding = {.step_mm = 0.01}, .strategy = strategy_}).ok());
+}
+
+TEST_F(VerifyVectors, TellsPartsApart) {
+    const LayerStack other = slice(box_mesh({30, 0, 0}, {50, 10, 1}), plan_);
+    for (LayerPart& part : scanned(other, strategy_, "other"))
+        parts_.push_back(std::move(part));
+    EXPECT_TRUE(with_strategy().ok());
+    change_hatches("core hatch", 5, [](std::vector<Point2>& points) { // into the other part
+        points[0].x += 30;
+        points[1].x += 30;
+    });
+    EXPECT_EQ(with_strategy().outside, 1U);
+}
+
+} // namespace
+} // namespace lamella
