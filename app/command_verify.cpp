@@ -184,7 +184,7 @@ Command verify_command() {
     const auto arguments = std::make_shared<VerifyArguments>();
     return {
         .name = "verify",
-        .summary = "check a slice file: closed, oriented, no crossings, areas; scan vectors",
+        .summary = "check a slice file: closed, oriented, areas; scan vectors",
         .description =
             "Checks the layers of a slice file: every contour closed, outer contours counter-clockwise and "
             "holes "
@@ -221,8 +221,8 @@ Command verify_command() {
                    common_options(true)},
         .examples = {{"lamella verify part.cli", "is the file sound in itself?"},
                      {"lamella verify part.cli --mesh part.stl --rotate-x 90", "and true to its mesh?"},
-                     {"lamella verify job.ilt --mesh part.stl --strategy 316l.toml",
-                      "are scan vectors where the strategy says, and enough of them?"}},
+                     {"lamella verify job.ilt --mesh part.stl --scan",
+                      "are scan vectors where they should be?"}},
         .run = [arguments](const Context& context) {
             return run_verify(*arguments, context);
         }};

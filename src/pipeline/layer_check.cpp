@@ -55,7 +55,7 @@ std::string where(const Layer& layer) {
     return fmt::format("layer {} (z {:.7g} mm)", layer.index, layer.z);
 }
 
-void Finding::add(const Layer& layer, const Occurrences& found) {
+void Finding::add(const Layer& layer, const FaultCount& found) {
     if (total == 0 && found.count > 0)
         place = fmt::format("{} at ({:.7g}, {:.7g})", where(layer), found.first.x, found.first.y);
     total += found.count;

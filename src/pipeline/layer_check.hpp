@@ -18,7 +18,7 @@
 namespace lamella {
 
 /// How often something occurs in a layer, and where first.
-struct Occurrences {
+struct FaultCount {
     std::uint64_t count = 0;
     Point2 first;
 
@@ -31,11 +31,11 @@ struct Occurrences {
 
 struct LayerCheck {
     LayerMeasure measure;
-    Occurrences open_chains;
+    FaultCount open_chains;
     OpenGaps open_gaps;
-    Occurrences crossings;
-    Occurrences misoriented;
-    Occurrences overlapping;
+    FaultCount crossings;
+    FaultCount misoriented;
+    FaultCount overlapping;
 };
 
 [[nodiscard]] LayerCheck check_layer(const Layer& layer, const Rounding& rounding);
@@ -50,7 +50,7 @@ struct Finding {
     std::uint64_t total = 0;
     std::string place; ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
 
-    void add(const Layer& layer, const Occurrences& found);
+    void add(const Layer& layer, const FaultCount& found);
     void add(const Finding& other);
 };
 

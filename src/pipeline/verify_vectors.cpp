@@ -60,9 +60,9 @@ double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept
 /// What is wrong with the vectors of a plane.
 struct PlaneCheck {
     ContourFindings contours;
-    Occurrences outside;
-    Occurrences too_short;
-    Occurrences miscovered;
+    FaultCount outside;
+    FaultCount too_short;
+    FaultCount miscovered;
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
     std::uint64_t unbounded = 0;
@@ -149,7 +149,7 @@ class VectorCheck {
         return found;
     }
 
-    void find_short(const Layer& vectors, const HatchRule& rule, Occurrences& too_short) const {
+    void find_short(const Layer& vectors, const HatchRule& rule, FaultCount& too_short) const {
         for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
             const Point2& a = vectors.hatches[i];
             const Point2& b = vectors.hatches[i + 1];
@@ -159,7 +159,7 @@ class VectorCheck {
     }
 
     void find_outside(const Group& group, std::size_t plane, const Bounds& bounds,
-                      Occurrences& outside) const {
+                      FaultCount& outside) const {
         // Grown a little, so that what lies on an edge lies within.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
@@ -189,7 +189,7 @@ class VectorCheck {
     /// edge.
     class Followed {
       public:
-        Followed(const EdgeTree& edges, double distance, Occurrences& outside)
+        Followed(const EdgeTree& edges, double distance, FaultCount& outside)
             : edges_(edges), squared_(distance * distance), outside_(outside) {}
 
         void mark(const Point2& from, const Point2& to) {
@@ -205,7 +205,7 @@ class VectorCheck {
       private:
         const EdgeTree& edges_;
         double squared_;
-        Occurrences& outside_;
+        FaultCount& outside_;
         bool known_ = false;
         bool inside_ = false; ///< at at_
         Point2 at_;

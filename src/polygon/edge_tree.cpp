@@ -9,7 +9,7 @@ namespace lamella {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double far_away = std::numeric_limits<double>::infinity();
 constexpr std::size_t edges_of_leaf = 8;
 
 double squared(double dx, double dy) noexcept {
@@ -122,7 +122,7 @@ void EdgeTree::search(std::size_t at, double enough, const OfBox& of_box, const 
 }
 
 double EdgeTree::distance_squared(const Point2& p, double enough) const {
-    double best = infinity;
+    double best = far_away;
     const Box2 own = Box2::of(p);
     if (!empty())
         search(
@@ -132,7 +132,7 @@ double EdgeTree::distance_squared(const Point2& p, double enough) const {
 }
 
 double EdgeTree::distance_squared(const Segment& s, double enough) const {
-    double best = infinity;
+    double best = far_away;
     const Box2 own = Box2::of(s.lo, s.hi);
     const LineBand band(s);
     if (!empty())

@@ -207,7 +207,10 @@ class Scan(ProgramTest):
         self.assertEqual([layer["scan"] for layer in stats["layers"]], [layer["scan"] for layer in sliced["layers"]])
 
     def test_what_no_vectors_are_made_of_is_counted(self):
-        self.succeed("slice", "part.stl", "-o", "hatched.json", "--scan", "--layer-height", "2")
+        self.succeed("slice", "part.stl", "-o", "vectors.json", "--scan", "--layer-height", "2")
+        self.fail_with(3, r"holds scan vectors already \(part core hatch\)", "scan", "vectors.json", "-o", "x.cli")
+        # Hatches of files that call them otherwise.
+        self.write("hatched.json", self.bytes_of("vectors.json").replace(b"part core", b"hatched"))
         self.assertRegex(self.succeed("scan", "hatched.json", "-o", "again.cli").err, r"\d+ hatch lines left out: layers are hatched anew")
         self.fail_with(4, "hatched anew", "scan", "hatched.json", "-o", "x.cli", "--strict")
         self.write("open.stl", binary_stl(open_box(3, 4, 5)))

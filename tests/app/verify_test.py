@@ -20,6 +20,55 @@ SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)]
 SMALL = [(2, 2), (4, 2), (4, 4), (2, 4), (2, 2)]
 
 
+class Vectors(ProgramTest):
+    OPTIONS = ["--layer-height", "0.5", "--contours", "2", "--skin-layers", "2"]
+
+    def verify(self, *arguments, code=0):
+        result = self.run_program("verify", "--json", *arguments)
+        self.assertEqual(result.code, code, result.err)
+        found = result.json()
+        self.assertEqual(list(found), ["path", "ok", "vectors"])
+        self.assertEqual(found["ok"], code == 0)
+        return found["vectors"]
+
+    def setUp(self):
+        super().setUp()
+        self.succeed("make", "rook", "-o", "rook.stl")
+
+    def test_what_was_scanned_is_right_in_every_format(self):
+        counts = set()
+        for extension in ["cli", "json", "npz", "ilt", "ovf"]:
+            with self.subTest(extension):
+                job = f"job.{extension}"
+                self.succeed("slice", "rook.stl", "--scan", *self.OPTIONS, "-o", job)
+                found = self.verify(job, "--mesh", "rook.stl", "--scan", *self.OPTIONS[2:])
+                counts.add((found["contour_vectors"], found["hatch_vectors"]))
+                self.assertAlmostEqual(found["cover"], 1.03, delta=0.03)  # stripes overlap
+                self.assertIsNone(self.verify(job)["cover"])
+        self.assertEqual(len(counts), 1)
+
+    def test_every_pattern_fills_its_region(self):
+        for pattern in ["lines", "meander", "chessboard", "hexagons"]:
+            with self.subTest(pattern):
+                options = ["--pattern", pattern, "--skin-layers", "2"]
+                self.succeed("slice", "rook.stl", "--layer-height", "1", "--scan", *options, "-o", "job.cli")
+                self.verify("job.cli", "--mesh", "rook.stl", "--scan", *options)
+
+    def test_another_strategy_or_mesh_is_noticed(self):
+        self.succeed("slice", "rook.stl", "--scan", *self.OPTIONS, "-o", "job.ilt")
+        right = ["--mesh", "rook.stl", "--scan", *self.OPTIONS[2:]]
+        self.assertGreater(self.verify("job.ilt", *right, "--hatch-border", "0.1", code=4)["outside"], 1000)
+        self.assertGreater(self.verify("job.ilt", *right, "--shortest", "0.3", code=4)["too_short"], 10)
+        self.assertGreater(self.verify("job.ilt", *right, "--hatch-distance", "0.05", code=4)["miscovered"], 10)
+        self.assertGreater(self.verify("job.ilt", *right, "--rotate-x", "180", code=4)["outside"], 1000)
+        text = self.run_program("verify", "job.ilt", *right, "--hatch-border", "0.1").text
+        self.assertRegex(text, r"(?m)^  [\d]+ vectors are nearer to the edge of the material than the strategy says.*; the first in layer 0 ")
+
+    def test_layers_know_no_strategy(self):
+        self.succeed("slice", "rook.stl", "--layer-height", "1", "-o", "rook.cli")
+        self.fail_with(2, r"rook\.cli: holds no scan vectors", "verify", "rook.cli", "--contours", "2")
+
+
 class Verify(ProgramTest):
     def verify(self, *arguments, code=0, **keywords):
         result = self.run_program("verify", "--json", *arguments, **keywords)
