@@ -5,6 +5,7 @@
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
+#include "scan/alongside.hpp"
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
 
@@ -80,7 +81,14 @@ class Skin {
             return;
         }
         grown_ = rule.narrowest;
+        // Walls that are steep enough leave nothing open, from layer to layer.
+        const Layer* nearer = &layer;
+        bool steep = true;
         for (const Layer& neighbour : neighbours.first(rule.layers)) {
+            steep = steep && run_alongside(*nearer, neighbour, grown_ / rule.layers);
+            nearer = &neighbour;
+            if (steep)
+                continue;
             const Layer open = without(layer, offset(neighbour, grown_));
             open_ = open_.rings == 0  ? open
                     : open.rings == 0 ? open_

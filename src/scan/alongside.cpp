@@ -1,0 +1,117 @@
+#include "scan/alongside.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace lamella {
+
+namespace {
+
+double squared_distance(const Point2& p, const Point2& q) noexcept {
+    return (q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y);
+}
+
+/// Of the way from one point to another the place next to p.
+Point2 nearest_on(const Point2& from, const Point2& to, const Point2& p) noexcept {
+    const double length = squared_distance(from, to);
+    const double along = (p.x - from.x) * (to.x - from.x) + (p.y - from.y) * (to.y - from.y);
+    if (!(along > 0))
+        return from;
+    if (along >= length)
+        return to;
+    return {from.x + along / length * (to.x - from.x), from.y + along / length * (to.y - from.y)};
+}
+
+/// A ring that is followed once around, from a point of it.
+class Follower {
+  public:
+    /// From a place on the edge that begins with a corner.
+    Follower(std::span<const Point2> ring, std::size_t corner, const Point2& from)
+        : ring_(ring), start_(from), at_(from), next_(corner + 1) {}
+
+    [[nodiscard]] bool over() const noexcept { return left_ == 0; }
+    [[nodiscard]] const Point2& at() const noexcept { return at_; }
+    [[nodiscard]] const Point2& next() const noexcept {
+        return left_ == 1 ? start_ : ring_[next_ < ring_.size() ? next_ : next_ - ring_.size()];
+    }
+    void step() noexcept {
+        at_ = next();
+        ++next_;
+        --left_;
+    }
+    void move_to(const Point2& p) noexcept { at_ = p; }
+
+  private:
+    std::span<const Point2> ring_;
+    Point2 start_;
+    Point2 at_;
+    std::size_t next_;                    ///< the corner that comes, in the ring and again from its beginning
+    std::size_t left_ = ring_.size() + 1; ///< corners, and the way back to the start
+};
+
+/// Where on a ring the other one, which begins at p, can begin: the corner before that place.
+std::size_t nearest_edge(std::span<const Point2> ring, const Point2& p, Point2& place) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Point2 there = nearest_on(ring[i], ring[i + 1 < ring.size() ? i + 1 : 0], p);
+        if (i == 0 || squared_distance(p, there) < squared_distance(p, place)) {
+            nearest = i;
+            place = there;
+        }
+    }
+    return nearest;
+}
+
+bool run_alongside(std::span<const Point2> a, std::span<const Point2> b, double squared) {
+    if (a.empty() || b.empty())
+        return a.empty() && b.empty();
+    Point2 place = b.front();
+    const std::size_t corner = place == a.front() ? 0 : nearest_edge(b, a.front(), place);
+    if (squared_distance(a.front(), place) > squared)
+        return false;
+    Follower first(a, 0, a.front());
+    Follower second(b, corner, place);
+    // To the next corner of one of them, or of both: whichever leaves them nearest to each other.
+    while (!first.over() || !second.over()) {
+        const bool both = !first.over() && !second.over();
+        if (both && first.next() != second.next()) {
+            const Point2 of_first = nearest_on(first.at(), first.next(), second.next());
+            const Point2 of_second = nearest_on(second.at(), second.next(), first.next());
+            const double first_steps = squared_distance(first.next(), of_second);
+            const double second_steps = squared_distance(of_first, second.next());
+            const double both_step = squared_distance(first.next(), second.next());
+            if (both_step <= std::min(first_steps, second_steps)) {
+                first.step();
+                second.step();
+            } else if (first_steps <= second_steps) {
+                first.step();
+                second.move_to(of_second);
+            } else {
+                first.move_to(of_first);
+                second.step();
+            }
+        } else {
+            if (!first.over())
+                first.step();
+            if (!second.over())
+                second.step();
+        }
+        if (squared_distance(first.at(), second.at()) > squared)
+            return false;
+    }
+    return true;
+}
+
+} // namespace
+
+bool run_alongside(const Layer& a, const Layer& b, double within) {
+    if (a.rings != b.rings)
+        return false;
+    for (std::size_t i = 0; i < a.rings; ++i)
+        if (!run_alongside(a.contour(i), b.contour(i), within * within))
+            return false;
+    return true;
+}
+
+} // namespace lamella
