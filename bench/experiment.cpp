@@ -1,18 +1,23 @@
 #include "experiment.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <regex>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 
 namespace lamella::bench {
@@ -78,6 +83,30 @@ double processor_seconds() {
     timespec used{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
     return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+Cost cost_of_copying(const std::string& path) {
+    const int from = open(path.c_str(), O_RDONLY);
+    struct stat status {};
+    fstat(from, &status);
+    const auto bytes = static_cast<std::size_t>(status.st_size);
+    auto* data = static_cast<char*>(mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_POPULATE, from, 0));
+    const std::string copy = path + ".copy";
+    const Cost cost = cost_of([&] {
+        const int to = open(copy.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        for (std::size_t done = 0; done < bytes;) {
+            const ssize_t n =
+                write(to, data + done, std::min<std::size_t>(bytes - done, std::size_t{1} << 22));
+            if (n <= 0)
+                throw std::runtime_error("the copy failed");
+            done += static_cast<std::size_t>(n);
+        }
+        close(to);
+    });
+    munmap(data, bytes);
+    close(from);
+    std::filesystem::remove(copy);
+    return cost;
 }
 
 Cost least(std::span<const Cost> costs) {

@@ -38,6 +38,9 @@ Cost cost_of(const Work& work) {
     return {seconds_since(start), processor_seconds() - used};
 }
 
+/// What a copy of a file takes as a program makes it that has the bytes in memory already.
+[[nodiscard]] Cost cost_of_copying(const std::string& path);
+
 /// The least of several, for each figure: what others on the machine do only adds.
 [[nodiscard]] Cost least(std::span<const Cost> costs);
 

@@ -7,11 +7,7 @@
 #include "experiment.hpp"
 #include "parts.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -41,31 +37,6 @@ void into_file(const Part& part, const LayerFormat& format, const std::string& p
     writer->finish();
 }
 
-/// A copy as a program makes it that has the bytes in memory already.
-Cost copy_of(const std::string& path) {
-    const int from = open(path.c_str(), O_RDONLY);
-    struct stat status {};
-    fstat(from, &status);
-    const auto bytes = static_cast<std::size_t>(status.st_size);
-    auto* data = static_cast<char*>(mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_POPULATE, from, 0));
-    const std::string copy = path + ".copy";
-    const Cost cost = cost_of([&] {
-        const int to = open(copy.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        for (std::size_t done = 0; done < bytes;) {
-            const ssize_t n =
-                write(to, data + done, std::min<std::size_t>(bytes - done, std::size_t{1} << 22));
-            if (n <= 0)
-                throw std::runtime_error("the copy failed");
-            done += static_cast<std::size_t>(n);
-        }
-        close(to);
-    });
-    munmap(data, bytes);
-    close(from);
-    std::filesystem::remove(copy);
-    return cost;
-}
-
 struct Steps {
     Cost slicing; ///< into memory, on as many threads as there are
     Cost writing; ///< by one thread
@@ -87,7 +58,7 @@ Steps steps_of(const Part& part, const LayerFormat& format, const std::string& p
             writer->prepare(layer)();
         writer->finish();
     });
-    steps.copying = copy_of(path);
+    steps.copying = cost_of_copying(path);
     return steps;
 }
 

@@ -1,7 +1,8 @@
 // How many hatch lines a second, and what do scan vectors of a whole part cost against slicing it? Beside the
 // way that open tools of this field go: parallel lines across the layer, all clipped by its contours in one
 // call of Clipper. The lines' total length must be Clipper's; the vectors of all patterns must cover as much
-// as plain lines do.
+// as plain lines do. And what does a whole job take, from mesh to a binary file, against copying that file?
+// What it holds must be what verify_vectors asks for.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <span>
@@ -156,6 +158,33 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     return job;
 }
 
+/// From the STL file to a file of vectors, and a copy of that; on one thread.
+struct FileCost {
+    Cost job;
+    Cost copy;
+    double megabytes = 0;
+};
+
+FileCost file_of(const Part& part, const ScanStrategy& strategy, const std::string& path) {
+    FileJob job{.inputs = {{.path = part.path}}, .output = path};
+    job.layering.cut = UniformLayers{.layer_height = part.layer_height};
+    job.scan = strategy;
+    FileCost cost;
+    FileResult result;
+    cost.job = cost_of([&] { result = slice_file(job, {.threads = 1}); });
+    cost.copy = cost_of_copying(path);
+    cost.megabytes = static_cast<double>(result.bytes) / 1e6;
+    return cost;
+}
+
+bool is_right(const Part& part, const ScanStrategy& strategy, const std::string& path) {
+    const LayerFile file = read_layers(path);
+    return verify_vectors(
+               file.parts,
+               {.mesh = read_mesh(part.path).mesh, .rounding = file.rounding, .strategy = strategy})
+        .ok();
+}
+
 int report(int argc, char** argv) {
     const Options options(argc, argv, "scan [--rounds 3]");
     const int rounds = options.rounds();
@@ -218,7 +247,29 @@ int report(int argc, char** argv) {
                   fmt::format("{:.1f}", (median(full) - median(plain)) / unit),
                   fmt::format("{:.2f}", static_cast<double>(last.vectors) / 1e6)});
     }
-    std::cout << jobs.text();
+    std::cout << jobs.text() << '\n';
+
+    Table files(
+        {"part, with skins, to binary cli", "MB", "job CPU s", "copy CPU s", "job / copy", "checked"});
+    const std::string path = (std::filesystem::temp_directory_path() / "lamella_bench_scan.cli").string();
+    for (const Part& part : parts) {
+        std::vector<Cost> job;
+        std::vector<Cost> copy;
+        FileCost last;
+        for (int round = 0; round < rounds; ++round) {
+            std::filesystem::remove(path);
+            last = measure_in_child<FileCost>([&] { return file_of(part, skins, path); }).result;
+            job.push_back(last.job);
+            copy.push_back(last.copy);
+        }
+        const bool right = is_right(part, skins, path);
+        all_right = all_right && right;
+        files.add({part.name, fmt::format("{:.1f}", last.megabytes), fmt::format("{:.3f}", least(job).cpu_s),
+                   fmt::format("{:.3f}", least(copy).cpu_s),
+                   fmt::format("{:.1f}", least(job).cpu_s / least(copy).cpu_s), right ? "yes" : "WRONG"});
+    }
+    std::filesystem::remove(path);
+    std::cout << files.text();
     return all_right ? 0 : 1;
 }
 
