@@ -138,41 +138,49 @@ Cost cost_of(const Picture& picture) {
     return {base64_size(picture.bytes.size()), picture.shown};
 }
 
-constexpr std::uint64_t most_shares = 4; // for one layer
+constexpr std::uint64_t most_shares = 4; // of those that are thinned out, for one layer
 
 /// Hands out the bytes of a page: an equal share for each layer, and from what layers below have left of
-/// theirs so much more that it makes four shares at most; of scan vectors as much as there is: all vectors of
-/// every tenth layer tell more than all layers without their hatches.
+/// theirs so much more that it makes four shares at most.
+///
+/// Of scan vectors a layer may have all that is left, but only as a whole; else it takes a quarter of its
+/// share, and those above it may have the rest. For all vectors of every tenth layer tell more than all
+/// layers without their hatches.
 class Budget {
   public:
     Budget(const PageOptions& options, std::uint64_t layers, bool vectors)
-        : share_{options.budget_bytes / std::max<std::uint64_t>(1, layers), options.layer_points},
-          most_bytes_(vectors ? options.budget_bytes : most_shares * share_.bytes) {}
+        : bytes_(options.budget_bytes / std::max<std::uint64_t>(1, layers)), thinned_{vectors ? bytes_ / 4
+                                                                                              : bytes_,
+                                                                                      options.layer_points},
+          vectors_(vectors) {}
 
-    [[nodiscard]] const Cost& share() const noexcept { return share_; }
+    /// What a layer that is thinned out shall cost.
+    [[nodiscard]] const Cost& thinned() const noexcept { return thinned_; }
 
     /// Of the pictures of the next layer, the finest first, the first that it can pay for; else the last.
     const Picture& choose(const std::vector<Picture>& pictures) {
-        const Cost most{std::min(saved_bytes_ + share_.bytes, most_bytes_), share_.points};
+        const std::uint64_t left = saved_bytes_ + bytes_;
+        const Cost most{vectors_ ? left : std::min(left, most_shares * bytes_), thinned_.points};
         const auto fitting = std::find_if(pictures.begin(), pictures.end(), [&](const Picture& picture) {
-            return cost_of(picture).within(most);
+            const bool whole = &picture == &pictures.front();
+            return cost_of(picture).within(vectors_ && !whole ? thinned_ : most);
         });
         const Picture& chosen = fitting == pictures.end() ? pictures.back() : *fitting;
-        saved_bytes_ += share_.bytes;
-        saved_bytes_ -= std::min(saved_bytes_, cost_of(chosen).bytes);
+        saved_bytes_ = left - std::min(left, cost_of(chosen).bytes);
         return chosen;
     }
 
   private:
-    Cost share_;
-    std::uint64_t most_bytes_; ///< for one layer
+    std::uint64_t bytes_; ///< the share of a layer
+    Cost thinned_;
+    bool vectors_;
     std::uint64_t saved_bytes_ = 0;
 };
 
 /// The same plane, all of it first, each with less detail than the one before, until one costs no more than
-/// the share, or little is gained and it costs no more than four.
+/// `thinned`, or little is gained and it costs no more than four times as much.
 std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const PartInfo> infos,
-                                 std::span<const Point2> places, const PageGrid& grid, const Cost& share) {
+                                 std::span<const Point2> places, const PageGrid& grid, const Cost& thinned) {
     const auto picture = [&](std::span<const Layer> layers, double tolerance) {
         Picture made{.bytes = {}, .tolerance_mm = tolerance};
         made.bytes = deflated(layer_numbers(layers, infos, places, grid, made.shown).view());
@@ -182,9 +190,9 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     };
     std::vector<Picture> pictures{picture(parts, 0)};
     Thinning thinning(parts, grid.step_mm);
-    const Cost most{most_shares * share.bytes, share.points};
+    const Cost most{most_shares * thinned.bytes, thinned.points};
     bool saves = true;
-    for (Cost cost = cost_of(pictures.back()); !cost.within(share) && !thinning.at_end();) {
+    for (Cost cost = cost_of(pictures.back()); !cost.within(thinned) && !thinning.at_end();) {
         if (!saves && cost.within(most))
             break; // what is left is many small rings: better a larger page than a crude one
         thinning.coarsen();
@@ -296,7 +304,7 @@ class PageWriter final : public LayerPageWriter {
             .index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top, .measure = {}};
         std::vector<Point2> places;
         look_at(parts, parts_, facts, places);
-        return [this, facts, pictures = pictures_of(parts, parts_, places, grid_, budget_.share())] {
+        return [this, facts, pictures = pictures_of(parts, parts_, places, grid_, budget_.thinned())] {
             order_.next(facts.z);
             write(facts, pictures);
         };
