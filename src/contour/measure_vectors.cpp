@@ -50,8 +50,11 @@ ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters
         jump(vectors.hatches[i]);
         mark(vectors.hatches[i + 1]);
     }
-    const double marking = figures.marked_mm / parameters.speed_mm_s;
-    figures.build_seconds = marking + figures.jumped_mm / parameters.jump_speed_mm_s +
+    const auto seconds = [](double mm, double speed_mm_s) {
+        return speed_mm_s > 0 ? mm / speed_mm_s : 0;
+    };
+    const double marking = seconds(figures.marked_mm, parameters.speed_mm_s);
+    figures.build_seconds = marking + seconds(figures.jumped_mm, parameters.jump_speed_mm_s) +
                             1e-6 * (static_cast<double>(marks) * parameters.mark_delay_us +
                                     static_cast<double>(jumps) * parameters.jump_delay_us);
     figures.energy_j = parameters.power_w * marking;

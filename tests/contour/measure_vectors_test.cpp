@@ -32,5 +32,18 @@ TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
     EXPECT_DOUBLE_EQ(measure_vectors(layer_of({}, {{{33, 14}, {33, 15}}}), parameters, beam).jumped_mm, 10);
 }
 
+TEST(MeasureVectors, CountsNoTimeForSpeedsThatNobodyTold) {
+    const Layer vectors = layer_of({rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 10)});
+    std::optional<Point2> beam;
+    ParameterSet parameters{
+        .power_w = 100, .speed_mm_s = 500, .jump_speed_mm_s = 0, .mark_delay_us = 0, .jump_delay_us = 0};
+    EXPECT_DOUBLE_EQ(measure_vectors(vectors, parameters, beam).build_seconds, 80.0 / 500);
+    parameters.speed_mm_s = 0;
+    const ScanFigures figures = measure_vectors(vectors, parameters, beam);
+    EXPECT_EQ(figures.build_seconds, 0);
+    EXPECT_EQ(figures.energy_j, 0);
+    EXPECT_DOUBLE_EQ(figures.marked_mm, 80);
+}
+
 } // namespace
 } // namespace lamella

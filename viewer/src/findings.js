@@ -94,8 +94,19 @@ export function findings(page) {
         `(${count(sum(table.hatches_shown))} of ${count(sum(table.hatches))} lines are there). All figures are of all vectors.`,
       layer: bare[0],
     });
+  const untold = untoldSpeeds(head);
+  if (untold !== '') found.push({ tone: 'plain', text: `The file does not tell ${untold}.` });
   found.push(accuracy(head, table));
   return found;
+}
+
+/** What of the times is missing, since speeds are. */
+function untoldSpeeds({ parts }) {
+  const missing = (name) => parts.some(({ exposure }) => exposure && !(exposure.parameters[name] > 0));
+  return [
+    ...(missing('speed_mm_s') ? ['all speeds of the beam: what is marked at these counts neither for time nor for energy'] : []),
+    ...(missing('jump_speed_mm_s') ? ['how fast the beam jumps: times are without jumps'] : []),
+  ].join(', nor ');
 }
 
 function accuracy(head, table) {

@@ -119,7 +119,8 @@ test('only what differs stands out', () => {
 });
 
 /** A page of scan vectors alone. */
-const scanPageOf = (layers) => pageOf(layers, undefined, [{ exposure: { part: 'a', region: 'core', kind: 'hatch' } }]);
+const scanPageOf = (layers, parameters = { speed_mm_s: 500, jump_speed_mm_s: 5000 }) =>
+  pageOf(layers, undefined, [{ exposure: { part: 'a', region: 'core', kind: 'hatch', parameters } }]);
 
 test('of scan vectors their time is told, and nothing of material', () => {
   const page = scanPageOf([
@@ -135,6 +136,9 @@ test('of scan vectors their time is told, and nothing of material', () => {
   const texts = findings(page).map(({ text }) => text);
   assert.match(texts[0], /^No contour crosses itself/);
   assert.match(texts[1], /^1 layer with nothing in it, the lowest at z = 2\.5 mm/);
+  assert.ok(!texts.some((text) => text.includes('does not tell')));
+  const untold = findings(scanPageOf([{}], { speed_mm_s: 500, jump_speed_mm_s: 0 })).map(({ text }) => text);
+  assert.ok(untold.includes('The file does not tell how fast the beam jumps: times are without jumps.'));
   assert.deepEqual(remarkableLayers(page).map(({ text }) => text), ['longest time, 50 s', 'most vectors, 300']);
 });
 

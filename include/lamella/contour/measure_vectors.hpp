@@ -24,7 +24,8 @@ struct ScanFigures {
 };
 
 /// Of vectors executed one after the other with one parameter set, from where the beam was before, and that
-/// is moved to where it ends. O(vectors).
+/// is moved to where it ends. Some files do not tell all speeds, and have 0 instead: what goes at such a
+/// speed counts as if it took no time. O(vectors).
 [[nodiscard]] ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
                                           std::optional<Point2>& beam);
 

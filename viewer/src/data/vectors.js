@@ -39,7 +39,8 @@ function timed(vectors, parts) {
   let now = 0;
   let i = 0;
   let delay = 0; // after the run of lines that goes on
-  const length = (k) => Math.hypot(lines[k + 2] - lines[k], lines[k + 3] - lines[k + 1]);
+  /** For the way at numbers k of `lines`; none where nobody told the speed. */
+  const secondsOf = (k, speed) => (speed > 0 ? Math.hypot(lines[k + 2] - lines[k], lines[k + 3] - lines[k + 1]) / speed : 0);
   const endRun = () => {
     now += delay;
     if (i > 0) seconds[i - 1] = now;
@@ -54,8 +55,8 @@ function timed(vectors, parts) {
         endRun();
         delay = 1e-6 * mark_delay_us;
       }
-      if (jumps) now += length(4 * i - 2) / jump_speed_mm_s + 1e-6 * jump_delay_us;
-      now += length(4 * i) / speed_mm_s;
+      if (jumps) now += secondsOf(4 * i - 2, jump_speed_mm_s) + 1e-6 * jump_delay_us;
+      now += secondsOf(4 * i, speed_mm_s);
       seconds[i] = now;
     }
   });
