@@ -1,6 +1,7 @@
 #include "scanning.hpp"
 
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/measure_vectors.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"

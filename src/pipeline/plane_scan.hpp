@@ -3,6 +3,7 @@
 // One plane of a plate and its neighbours become scan vectors.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/measure_vectors.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 

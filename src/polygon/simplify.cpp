@@ -235,7 +235,7 @@ Layer simplify_each(const Layer& layer, double tolerance) {
     Layer result = thinned.layer();
     while (refine_turned(thinned, result, layer))
         result = thinned.layer();
-    return normal_form(std::move(result));
+    return result;
 }
 
 Layer simplify(const Layer& layer, double tolerance) {

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -150,61 +149,6 @@ std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below, std::s
         vectors.hatches = hatch(filled, rule(exposure.region), strategy.seed);
     }
     return result;
-}
-
-ScanFigures& ScanFigures::operator+=(const ScanFigures& other) noexcept {
-    vectors += other.vectors;
-    marked_mm += other.marked_mm;
-    jumped_mm += other.jumped_mm;
-    build_seconds += other.build_seconds;
-    energy_j += other.energy_j;
-    return *this;
-}
-
-ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
-                            std::optional<Point2>& beam) {
-    ScanFigures figures;
-    std::uint64_t marks = 0; // runs of lines without a jump
-    std::uint64_t jumps = 0;
-    const auto distance = [](const Point2& a, const Point2& b) {
-        return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-    };
-    const auto jump = [&](const Point2& to) {
-        if (beam && *beam == to && marks > 0)
-            return;
-        if (beam && *beam != to) {
-            figures.jumped_mm += distance(*beam, to);
-            ++jumps;
-        }
-        beam = to;
-        ++marks;
-    };
-    const auto mark = [&](const Point2& to) {
-        figures.marked_mm += distance(*beam, to);
-        ++figures.vectors;
-        beam = to;
-    };
-    for (std::size_t i = 0; i < vectors.contours(); ++i) {
-        const std::span<const Point2> contour = vectors.contour(i);
-        jump(contour.front());
-        for (const Point2& p : contour.subspan(1))
-            mark(p);
-        if (vectors.closed(i))
-            mark(contour.front());
-    }
-    for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
-        jump(vectors.hatches[i]);
-        mark(vectors.hatches[i + 1]);
-    }
-    const auto seconds = [](double length, double speed) {
-        return speed > 0 ? length / speed : 0;
-    };
-    const double marking = seconds(figures.marked_mm, parameters.speed_mm_s);
-    figures.build_seconds = marking + seconds(figures.jumped_mm, parameters.jump_speed_mm_s) +
-                            1e-6 * (static_cast<double>(marks) * parameters.mark_delay_us +
-                                    static_cast<double>(jumps) * parameters.jump_delay_us);
-    figures.energy_j = parameters.power_w * marking;
-    return figures;
 }
 
 } // namespace lamella

@@ -1,6 +1,7 @@
 #include "lamella/write/layer_page.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/measure_vectors.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
@@ -21,6 +22,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace lamella {
@@ -39,25 +41,38 @@ struct PlaneFacts {
     std::uint64_t misoriented = 0;
     std::uint64_t overlapping = 0;
     std::uint64_t hatches = 0;
+    ScanFigures scan = {};
 };
 
 /// A plane as the page may hold it, all of it or thinned out.
 struct Picture {
     std::string bytes; ///< compressed
     std::uint64_t shown = 0;
+    std::uint64_t hatches_shown = 0;
     double tolerance_mm = 0;
 };
 
-/// Fills in what is wrong with the layers of a plane, and appends the places of the first crossings.
-void find_faults(std::span<const Layer> parts, PlaneFacts& facts, std::vector<Point2>& places) {
-    for (const Layer& layer : parts) {
-        facts.measure.add(measure(layer));
-        facts.gaps += open_gaps(layer);
+/// Fills in the figures of a plane and what is wrong with it, and appends the places of the first crossings.
+void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, PlaneFacts& facts,
+             std::vector<Point2>& places) {
+    std::optional<Point2> beam;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Layer& layer = layers[i];
         facts.hatches += layer.hatches.size() / 2;
         const Crossings crossings = find_crossings(layer);
         facts.crossings += crossings.count;
         for (const Crossing& crossing : crossings.first)
             places.push_back(crossing.at);
+        if (parts[i].exposure) {
+            // Vectors bound no material: their rings have no area, need not lie within one another, and a
+            // chain is open by intent.
+            facts.scan += measure_vectors(layer, parts[i].exposure->parameters, beam);
+            facts.measure.contours += layer.contours();
+            facts.measure.points += layer.points.size();
+            continue;
+        }
+        facts.measure.add(measure(layer));
+        facts.gaps += open_gaps(layer);
         const Nesting nested = nesting(layer);
         facts.misoriented += static_cast<std::uint64_t>(
             std::count(nested.kind.begin(), nested.kind.end(), RingKind::misoriented));
@@ -66,18 +81,20 @@ void find_faults(std::span<const Layer> parts, PlaneFacts& facts, std::vector<Po
     }
 }
 
-/// Layers that lose detail step by step, no contour moving by more than `tolerance_mm` in all.
+/// Layers that lose detail step by step, no contour moving by more than `tolerance_mm` in all. What remains
+/// stays in its order: that of scan vectors is told.
 class Thinning {
   public:
     Thinning(std::span<const Layer> parts, double step_mm)
         : layers_(parts.begin(), parts.end()), step_mm_(step_mm) {}
 
-    /// To a tolerance of one step, then to four times the last one, at which curves keep half of their
-    /// points. Drops hatches, and specks as soon as the tolerance can be seen.
+    /// Drops hatches; then to a tolerance of one step, and to four times the last one, at which curves keep
+    /// half of their points. Drops specks as soon as the tolerance can be seen.
     void coarsen() {
+        if (drop_hatches())
+            return;
         const double tolerance = tolerance_mm_ == 0 ? step_mm_ : 4 * tolerance_mm_;
         for (Layer& layer : layers_) {
-            layer.hatches = {};
             layer = simplify_each(layer, tolerance - tolerance_mm_);
             if (tolerance > steps_of_specks * step_mm_)
                 layer = without_small_rings(layer, tolerance * tolerance);
@@ -89,6 +106,16 @@ class Thinning {
     [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
 
   private:
+    /// Whether there were any.
+    bool drop_hatches() {
+        bool any = false;
+        for (Layer& layer : layers_) {
+            any = any || !layer.hatches.empty();
+            layer.hatches = {};
+        }
+        return any;
+    }
+
     static constexpr double steps_of_specks = 7.5;
     static constexpr double most_steps = 512; // a hundredth of the part
 
@@ -111,48 +138,61 @@ Cost cost_of(const Picture& picture) {
     return {base64_size(picture.bytes.size()), picture.shown};
 }
 
-constexpr std::uint64_t most_shares = 4; // for one layer
+constexpr std::uint64_t most_shares = 4; // of those that are thinned out, for one layer
 
 /// Hands out the bytes of a page: an equal share for each layer, and from what layers below have left of
 /// theirs so much more that it makes four shares at most.
+///
+/// Of scan vectors a layer may have all that is left, but only as a whole; else it takes a quarter of its
+/// share, and those above it may have the rest. For all vectors of every tenth layer tell more than all
+/// layers without their hatches.
 class Budget {
   public:
-    Budget(const PageOptions& options, std::uint64_t layers)
-        : share_{options.budget_bytes / std::max<std::uint64_t>(1, layers), options.layer_points} {}
+    Budget(const PageOptions& options, std::uint64_t layers, bool vectors)
+        : bytes_(options.budget_bytes / std::max<std::uint64_t>(1, layers)), thinned_{vectors ? bytes_ / 4
+                                                                                              : bytes_,
+                                                                                      options.layer_points},
+          vectors_(vectors) {}
 
-    [[nodiscard]] const Cost& share() const noexcept { return share_; }
+    /// What a layer that is thinned out shall cost.
+    [[nodiscard]] const Cost& thinned() const noexcept { return thinned_; }
 
     /// Of the pictures of the next layer, the finest first, the first that it can pay for; else the last.
     const Picture& choose(const std::vector<Picture>& pictures) {
-        const Cost most{std::min(saved_bytes_ + share_.bytes, most_shares * share_.bytes), share_.points};
+        const std::uint64_t left = saved_bytes_ + bytes_;
+        const Cost most{vectors_ ? left : std::min(left, most_shares * bytes_), thinned_.points};
         const auto fitting = std::find_if(pictures.begin(), pictures.end(), [&](const Picture& picture) {
-            return cost_of(picture).within(most);
+            const bool whole = &picture == &pictures.front();
+            return cost_of(picture).within(vectors_ && !whole ? thinned_ : most);
         });
         const Picture& chosen = fitting == pictures.end() ? pictures.back() : *fitting;
-        saved_bytes_ += share_.bytes;
-        saved_bytes_ -= std::min(saved_bytes_, cost_of(chosen).bytes);
+        saved_bytes_ = left - std::min(left, cost_of(chosen).bytes);
         return chosen;
     }
 
   private:
-    Cost share_;
+    std::uint64_t bytes_; ///< the share of a layer
+    Cost thinned_;
+    bool vectors_;
     std::uint64_t saved_bytes_ = 0;
 };
 
 /// The same plane, all of it first, each with less detail than the one before, until one costs no more than
-/// the share, or little is gained and it costs no more than four.
-std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const Point2> places,
-                                 const PageGrid& grid, const Cost& share) {
+/// `thinned`, or little is gained and it costs no more than four times as much.
+std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const PartInfo> infos,
+                                 std::span<const Point2> places, const PageGrid& grid, const Cost& thinned) {
     const auto picture = [&](std::span<const Layer> layers, double tolerance) {
-        Picture made{.bytes = {}, .shown = 0, .tolerance_mm = tolerance};
-        made.bytes = deflated(layer_numbers(layers, places, grid, made.shown).view());
+        Picture made{.bytes = {}, .tolerance_mm = tolerance};
+        made.bytes = deflated(layer_numbers(layers, infos, places, grid, made.shown).view());
+        for (const Layer& layer : layers)
+            made.hatches_shown += layer.hatches.size() / 2;
         return made;
     };
     std::vector<Picture> pictures{picture(parts, 0)};
     Thinning thinning(parts, grid.step_mm);
-    const Cost most{most_shares * share.bytes, share.points};
+    const Cost most{most_shares * thinned.bytes, thinned.points};
     bool saves = true;
-    for (Cost cost = cost_of(pictures.back()); !cost.within(share) && !thinning.at_end();) {
+    for (Cost cost = cost_of(pictures.back()); !cost.within(thinned) && !thinning.at_end();) {
         if (!saves && cost.within(most))
             break; // what is left is many small rings: better a larger page than a crude one
         thinning.coarsen();
@@ -167,6 +207,9 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
 /// Columns of numbers about the planes, as JSON grows row by row.
 class PlaneTable {
   public:
+    /// `vectors`: whether there are columns about scan vectors.
+    explicit PlaneTable(bool vectors) : shown_(vectors ? columns.size() : columns.size() - columns_of_scan) {}
+
     void add(const PlaneFacts& facts, const Picture& picture) {
         const std::array<std::string, columns.size()> values{std::to_string(facts.index),
                                                              page_number(facts.z),
@@ -185,8 +228,14 @@ class PlaneTable {
                                                              std::to_string(facts.overlapping),
                                                              std::to_string(facts.hatches),
                                                              std::to_string(picture.shown),
-                                                             page_number(picture.tolerance_mm)};
-        for (std::size_t i = 0; i < columns.size(); ++i)
+                                                             std::to_string(picture.hatches_shown),
+                                                             page_number(picture.tolerance_mm),
+                                                             std::to_string(facts.scan.vectors),
+                                                             page_number(facts.scan.marked_mm),
+                                                             page_number(facts.scan.jumped_mm),
+                                                             page_number(facts.scan.build_seconds),
+                                                             page_number(facts.scan.energy_j)};
+        for (std::size_t i = 0; i < shown_; ++i)
             append(texts_[i], values[i]);
         planes_.push_back({facts.index, facts.measure.area_mm2});
     }
@@ -194,7 +243,7 @@ class PlaneTable {
     /// `changes`: what steps did to the planes; without any, there are no columns about it.
     [[nodiscard]] std::string json(const std::vector<PageChange>& changes) const {
         std::string text;
-        for (std::size_t i = 0; i < columns.size(); ++i)
+        for (std::size_t i = 0; i < shown_; ++i)
             append(text, column(columns[i], texts_[i]));
         if (!changes.empty())
             append(text, change_columns(changes));
@@ -228,10 +277,13 @@ class PlaneTable {
         std::uint64_t index;
         double area_mm2;
     };
-    static constexpr std::array<std::string_view, 18> columns{
-        "index",     "z",           "bottom",      "top",         "area_mm2",       "perimeter_mm",
-        "contours",  "holes",       "points",      "open_chains", "longest_gap_mm", "gaps_mm",
-        "crossings", "misoriented", "overlapping", "hatches",     "shown",          "tolerance_mm"};
+    static constexpr std::size_t columns_of_scan = 5; // the last ones
+    static constexpr std::array<std::string_view, 24> columns{
+        "index",        "z",           "bottom",      "top",         "area_mm2",       "perimeter_mm",
+        "contours",     "holes",       "points",      "open_chains", "longest_gap_mm", "gaps_mm",
+        "crossings",    "misoriented", "overlapping", "hatches",     "shown",          "hatches_shown",
+        "tolerance_mm", "vectors",     "marked_mm",   "jumped_mm",   "build_seconds",  "energy_j"};
+    std::size_t shown_;
     std::array<std::string, columns.size()> texts_;
     std::vector<Plane> planes_;
 };
@@ -240,7 +292,7 @@ class PageWriter final : public LayerPageWriter {
   public:
     PageWriter(const std::string& path, const LayerFileInfo& info, const PageOptions& options)
         : frame_(page_frame(options)), grid_(page_grid(info.box)), file_(path), order_(info),
-          budget_(options, info.layers) {
+          parts_(info.parts), budget_(options, info.layers, has_vectors()), table_(has_vectors()) {
         file_.append(frame_.head);
         file_.append(json_element("head", head(info, options)));
     }
@@ -251,8 +303,8 @@ class PageWriter final : public LayerPageWriter {
         PlaneFacts facts{
             .index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top, .measure = {}};
         std::vector<Point2> places;
-        find_faults(parts, facts, places);
-        return [this, facts, pictures = pictures_of(parts, places, grid_, budget_.share())] {
+        look_at(parts, parts_, facts, places);
+        return [this, facts, pictures = pictures_of(parts, parts_, places, grid_, budget_.thinned())] {
             order_.next(facts.z);
             write(facts, pictures);
         };
@@ -275,19 +327,31 @@ class PageWriter final : public LayerPageWriter {
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return file_.bytes(); }
 
     [[nodiscard]] std::vector<std::string> warnings() const override {
-        if (thinned_ == 0)
-            return {};
-        return {fmt::format("{} of {} layers are shown thinned out, so that the page stays small: contours "
-                            "are up to {:.6g} mm off, figures are of all of them",
-                            thinned_, order_.count(), largest_tolerance_mm_)};
+        std::vector<std::string> told;
+        if (without_hatches_ > 0)
+            told.push_back(
+                fmt::format("{} of {} layers are shown without their hatches, so that the page stays "
+                            "small; figures are of all of them",
+                            without_hatches_, order_.count()));
+        if (thinned_ > 0)
+            told.push_back(fmt::format("{} of {} layers are shown thinned out, so that the page stays small: "
+                                       "contours are up to {:.6g} mm off, figures are of all of them",
+                                       thinned_, order_.count(), largest_tolerance_mm_));
+        return told;
     }
 
   private:
+    [[nodiscard]] bool has_vectors() const {
+        return std::any_of(parts_.begin(), parts_.end(),
+                           [](const PartInfo& part) { return part.exposure.has_value(); });
+    }
+
     [[nodiscard]] std::string head(const LayerFileInfo& info, const PageOptions& options) const {
         std::string parts;
         for (const PartInfo& part : info.parts)
-            parts += fmt::format(R"({}{{"label":{},"box":{}}})", parts.empty() ? "" : ",",
-                                 page_quoted(part.label), page_box(part.box));
+            parts += fmt::format(R"({}{{"label":{},"box":{}{}}})", parts.empty() ? "" : ",",
+                                 page_quoted(part.label), page_box(part.box),
+                                 part.exposure ? R"(,"exposure":)" + exposure_json(*part.exposure) : "");
         return fmt::format(
             R"({{"kind":"layers","version":1,"title":{},"layers":{},"step_mm":{},"origin":[{},{}],)"
             R"("box":{},"bottom":{},"budget_bytes":{},"layer_points":{},"parts":[{}]}})",
@@ -298,6 +362,8 @@ class PageWriter final : public LayerPageWriter {
 
     void write(const PlaneFacts& facts, const std::vector<Picture>& pictures) {
         const Picture& picture = budget_.choose(pictures);
+        if (picture.hatches_shown < facts.hatches)
+            ++without_hatches_;
         if (picture.tolerance_mm > 0) {
             ++thinned_;
             largest_tolerance_mm_ = std::max(largest_tolerance_mm_, picture.tolerance_mm);
@@ -314,7 +380,9 @@ class PageWriter final : public LayerPageWriter {
     PageGrid grid_;
     AtomicFile file_;
     LayerOrder order_;
+    std::vector<PartInfo> parts_;
     Budget budget_;
+    std::uint64_t without_hatches_ = 0;
     std::uint64_t thinned_ = 0;
     double largest_tolerance_mm_ = 0;
     PlaneTable table_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace lamella {
@@ -35,13 +36,17 @@ struct SnappedContours {
     std::size_t rings = 0;
 };
 
-SnappedContours snapped(const Layer& layer, const WriterGrid& grid) {
+SnappedContours snapped(const Layer& layer, bool vectors, const WriterGrid& grid) {
     SnappedContours result;
     std::vector<GridPoint> scratch;
     for (std::size_t i = 0; i < layer.contours(); ++i) {
         const bool closed = layer.closed(i);
         const auto contour = layer.contour(i);
-        const auto points = grid.snap(contour, closed, closed ? ring_area(contour) : 0, layer.index, scratch);
+        std::span<const GridPoint> points;
+        if (vectors)
+            points = scratch = grid.snap_points(contour, layer.index);
+        else
+            points = grid.snap(contour, closed, closed ? ring_area(contour) : 0, layer.index, scratch);
         if (points.empty())
             continue;
         result.points.insert(result.points.end(), points.begin(), points.end());
@@ -85,13 +90,14 @@ PageGrid page_grid(const Box3& box) {
     return grid;
 }
 
-NumberBytes layer_numbers(std::span<const Layer> parts, std::span<const Point2> places, const PageGrid& grid,
-                          std::uint64_t& shown) {
+NumberBytes layer_numbers(std::span<const Layer> layers, std::span<const PartInfo> parts,
+                          std::span<const Point2> places, const PageGrid& grid, std::uint64_t& shown) {
     const WriterGrid snapping(grid.step_mm);
     NumberBytes out;
     shown = 0;
-    for (const Layer& layer : parts) {
-        const SnappedContours contours = snapped(layer, snapping);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Layer& layer = layers[i];
+        const SnappedContours contours = snapped(layer, parts[i].exposure.has_value(), snapping);
         out.add(contours.rings);
         out.add(contours.ends.size() - contours.rings);
         out.add(layer.hatches.size() / 2);
@@ -103,7 +109,7 @@ NumberBytes layer_numbers(std::span<const Layer> parts, std::span<const Point2> 
     }
     out.add(places.size());
     Walk walk(grid.origin, out);
-    for (const GridPoint& p : snapping.snap_points(places, parts.empty() ? 0 : parts.front().index))
+    for (const GridPoint& p : snapping.snap_points(places, layers.empty() ? 0 : layers.front().index))
         walk.to(p);
     return out;
 }

@@ -5,6 +5,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
+#include "lamella/write/layer_writer.hpp"
 
 #include "write/grid.hpp"
 
@@ -48,9 +49,11 @@ struct PageGrid {
 
 /// What one plane yields, as numbers: for each part the counts of rings, chains and hatch lines and then
 /// those; a contour is the count of its points and the way from point to point, its first one counted from
-/// that of the contour before; at last the places. `shown` counts the points of the contours.
-[[nodiscard]] NumberBytes layer_numbers(std::span<const Layer> parts, std::span<const Point2> places,
-                                        const PageGrid& grid, std::uint64_t& shown);
+/// that of the contour before; at last the places. `shown` counts the points of the contours. Those of scan
+/// vectors are all there, even where points fall together: each line is one that is executed.
+[[nodiscard]] NumberBytes layer_numbers(std::span<const Layer> layers, std::span<const PartInfo> parts,
+                                        std::span<const Point2> places, const PageGrid& grid,
+                                        std::uint64_t& shown);
 
 /// Compressed (raw Deflate).
 [[nodiscard]] std::string deflated(std::string_view bytes);

@@ -97,6 +97,17 @@ std::string page_box(const Box3& box) {
     return box.empty() ? "null" : fmt::format("[{},{}]", point_json(box.min), point_json(box.max));
 }
 
+std::string exposure_json(const Exposure& exposure) {
+    const ParameterSet& set = exposure.parameters;
+    return fmt::format(
+        R"({{"part":{},"region":"{}","kind":"{}","contour":{},"parameters":{{"name":{},"power_w":{},)"
+        R"("speed_mm_s":{},"jump_speed_mm_s":{},"focus_mm":{},"spot_mm":{},"mark_delay_us":{},"jump_delay_us":{}}}}})",
+        page_quoted(exposure.part), scan_region_name(exposure.region), vector_kind_name(exposure.kind),
+        exposure.contour, page_quoted(set.name), page_number(set.power_w), page_number(set.speed_mm_s),
+        page_number(set.jump_speed_mm_s), page_number(set.focus_mm), page_number(set.spot_mm),
+        page_number(set.mark_delay_us), page_number(set.jump_delay_us));
+}
+
 std::string notes_json(const PageNotes& notes) {
     return fmt::format(R"({{"sections":{},"places":{}}})", list(notes.sections, section_json),
                        list(notes.places, place_json));

@@ -2,6 +2,7 @@
 
 // The frame of a page: the viewer's text around the data, and text that may stand in both.
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/write/layer_page.hpp"
 
@@ -24,6 +25,8 @@ struct PageFrame {
 [[nodiscard]] std::string page_number(double value);
 /// [[x,y,z],[x,y,z]], null for an empty box.
 [[nodiscard]] std::string page_box(const Box3& box);
+/// {"part":...,"region":...,"kind":...,"contour":...,"parameters":{...}}
+[[nodiscard]] std::string exposure_json(const Exposure& exposure);
 /// {"sections":[...],"places":[...]}
 [[nodiscard]] std::string notes_json(const PageNotes& notes);
 

@@ -82,6 +82,41 @@ class View(ProgramTest):
         self.assertRegex(sections["The run"]["Slicing"], r"^\d+\.\d{3} s$")
         self.succeed("verify", "box.cli", "--mesh", "box.stl")
 
+    def test_a_page_of_scan_vectors_tells_what_is_exposed_and_how_long(self):
+        self.need_viewer()
+        options = ["--layer-height", "2.5", "--scan", "--hatch-distance", "0.5", "--skin-layers", "1", "--label", "bracket"]
+        self.succeed("slice", "box.stl", "-o", "job.ovf", "--report", "report.html", "--stats", "stats.json", *options)
+        self.succeed("view", "job.ovf", "-o", "viewed.html")
+        self.succeed("slice", "box.stl", "-o", "layers.npz", "--layer-height", "2.5", "--label", "bracket")
+        self.succeed("scan", "layers.npz", "-o", "scanned.html", "--hatch-distance", "0.5", "--skin-layers", "1")
+        stats = json.loads(self.bytes_of("stats.json"))
+        for name in ("report.html", "viewed.html", "scanned.html"):
+            page = self.page(name)
+            exposures = [part["exposure"] for part in element(page, "head")["parts"]]
+            self.assertEqual({exposure["part"] for exposure in exposures}, {"bracket"})
+            self.assertEqual([(exposure["region"], exposure["kind"]) for exposure in exposures if exposure["kind"] == "hatch"],
+                             [("downskin", "hatch"), ("core", "hatch"), ("upskin", "hatch")])
+            self.assertEqual([exposure["parameters"]["power_w"] for exposure in exposures], [120, 200, 180, 120])
+            table = element(page, "table")
+            self.assertEqual(sum(table["vectors"]), stats["scan"]["contour_vectors"] + stats["scan"]["hatch_vectors"])
+            self.assertEqual(table["hatches"], table["hatches_shown"])
+            for key in ("marked_mm", "jumped_mm", "build_seconds", "energy_j"):
+                for i, layer in enumerate(stats["layers"]):
+                    # Formats keep coordinates and speeds in single precision.
+                    self.assertAlmostEqual(table[key][i] / layer["scan"][key], 1, places=4 if name == "viewed.html" else 12)
+            for key in ("area_mm2", "overlapping", "misoriented", "open_chains", "crossings"):
+                self.assertEqual(table[key], [0] * 4, key)
+        self.assertIn("Scan vectors", [section["title"] for section in element(self.page("report.html"), "notes")["sections"]])
+
+    def test_jobs_that_tell_no_speed_of_jumps_have_a_time_without_them(self):
+        self.need_viewer()
+        self.succeed("slice", "box.stl", "-o", "job.ilt", "--layer-height", "2.5", "--scan", "--hatch-distance", "0.5")
+        self.succeed("view", "job.ilt", "-o", "job.html")
+        page = self.page("job.html")
+        self.assertEqual({part["exposure"]["parameters"]["jump_speed_mm_s"] for part in element(page, "head")["parts"]}, {0})
+        for seconds, marked in zip(element(page, "table")["build_seconds"], element(page, "table")["marked_mm"]):
+            self.assertTrue(marked / 800 < seconds < marked / 500)
+
     def test_defects_have_their_places(self):
         self.need_viewer()
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))

@@ -1,4 +1,5 @@
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/measure_vectors.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/scan/scan.hpp"
@@ -233,25 +234,6 @@ TEST(Scan, RefusesAStrategyThatIsNotRight) {
     EXPECT_THROW(static_cast<void>(scan(Layer{}, {}, {}, strategy)), Error);
     strategy.hatch.distance = 1e-9;
     EXPECT_THROW(static_cast<void>(scan(normal_layer({rectangle(0, 0, 9, 9)}), {}, {}, strategy)), Error);
-}
-
-TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
-    Layer vectors = layer_of({rectangle(0, 0, 10, 10)}, {{{20, 0}, {23, 4}}});
-    vectors.hatches = PointArray(std::vector<Point2>{{23, 4}, {23, 14}, {33, 14}, {33, 4}});
-    const ParameterSet parameters{.power_w = 100,
-                                  .speed_mm_s = 500,
-                                  .jump_speed_mm_s = 5000,
-                                  .mark_delay_us = 200,
-                                  .jump_delay_us = 300};
-    std::optional<Point2> beam;
-    const ScanFigures figures = measure_vectors(vectors, parameters, beam);
-    EXPECT_EQ(figures.vectors, 4U + 1U + 2U);
-    EXPECT_DOUBLE_EQ(figures.marked_mm, 40 + 5 + 20);
-    EXPECT_DOUBLE_EQ(figures.jumped_mm, 20 + 10); // the first hatch begins where the chain ends
-    EXPECT_DOUBLE_EQ(figures.build_seconds, 65.0 / 500 + 30.0 / 5000 + 3 * 200e-6 + 2 * 300e-6);
-    EXPECT_DOUBLE_EQ(figures.energy_j, 100 * 65.0 / 500);
-    EXPECT_EQ(beam, (Point2{33, 4}));
-    EXPECT_DOUBLE_EQ(measure_vectors(layer_of({}, {{{33, 14}, {33, 15}}}), parameters, beam).jumped_mm, 10);
 }
 
 } // namespace

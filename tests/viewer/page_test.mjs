@@ -190,6 +190,122 @@ test('hatches of a slice file are drawn and can be left away', async () => {
   await close();
 });
 
+/** A job of four layers: the lowest one is downskin, the uppermost one upskin, and between them is core. */
+function scanJob() {
+  const options = ['--layer-height', '2.5', '--scan', '--hatch-distance', '0.5', '--skin-layers', '1', '--contours', '2'];
+  lamella('slice', 'box.stl', '-o', 'job.ovf', '--report', 'job_report.html', ...options);
+  lamella('view', 'job.ovf');
+  lamella('slice', 'box.stl', '-o', 'job_sliced.html', ...options);
+}
+
+test('scan vectors are drawn by region and kind, and each can be left away', async () => {
+  scanJob();
+  for (const colorScheme of ['light', 'dark']) {
+    const { page, complaints, close } = await open('job.html', { colorScheme });
+    await page.keyboard.press('Home');
+    await shown(page);
+    await page.getByRole('button', { name: 'Direction' }).click();
+    const canvas = page.locator('canvas[data-layer]');
+    const drawn = async (name) => (await pixelsNear(canvas, await colourOf(page, name), 24)).near;
+    for (const [name, colour, other] of [['downskin hatch', '--downskin-hatch', '--core-contour'], ['core contour', '--core-contour', '--downskin-hatch']]) {
+      const [before, kept] = [await drawn(colour), await drawn(other)];
+      assert.ok(before > 500, `${name}: ${before}`);
+      await page.getByRole('button', { name }).click();
+      await page.waitForTimeout(100);
+      assert.equal(await drawn(colour), 0, name);
+      assert.ok((await drawn(other)) >= 0.9 * kept, name);
+      await page.getByRole('button', { name }).click();
+      await page.waitForTimeout(100);
+    }
+    const before = await canvas.screenshot();
+    await page.keyboard.press('j');
+    await page.waitForTimeout(100);
+    assert.notDeepEqual(await canvas.screenshot(), before);
+    assert.deepEqual(await page.locator('.tools [aria-pressed]').allTextContents().then((texts) => texts.slice(0, 6)), [
+      'core contour', 'core hatch', 'upskin hatch', 'downskin hatch', 'jumps', 'Direction',
+    ]);
+    assert.deepEqual(complaints, []);
+    await close();
+  }
+});
+
+test('the order of scan vectors is shown up to where the slider is, and the beam is told', async () => {
+  scanJob();
+  const { page, complaints, close } = await open('job.html');
+  await page.keyboard.press('Home');
+  await shown(page);
+  const [canvas, slider] = [page.locator('canvas[data-layer]'), page.locator('#order')];
+  const count = Number(await slider.getAttribute('max'));
+  const readout = async () => (await page.locator('.beam').textContent()).replaceAll(/\s+/g, ' ');
+  const green = async () => (await pixelsNear(canvas, await colourOf(page, '--downskin-hatch'), 24)).near;
+  const drawn = [];
+  // Hatches come first, then contours.
+  for (const part of [0, 0.25, 0.5, 1]) {
+    await slider.fill(String(Math.round(part * count)));
+    await page.waitForTimeout(100);
+    drawn.push(await green());
+  }
+  assert.ok(drawn[0] === 0 && drawn[1] > 200 && drawn[2] > 1.5 * drawn[1] && drawn[3] > drawn[2], drawn.join(' '));
+  assert.match(await readout(), new RegExp(`^Vector ${count} of ${count}core contour 1, “contour.*”: 120 W, 500 mm/s([\\d.]+ s) of \\1$`));
+  await slider.fill('1');
+  assert.match(await readout(), /^Vector 1 of \d+downskin hatch, “downskin.*”: 120 W, 1,200 mm\/s0\.0\d+ s of [\d.]+ s$/);
+  // Keys go on from there, and on the slider itself arrows do not go to other layers.
+  await slider.evaluate((node) => node.blur());
+  for (const [key, at] of [['.', 2], ['.', 3], [',', 2], ['>', 102], ['<', 2]]) {
+    await page.keyboard.press(key);
+    assert.equal(await slider.inputValue(), String(Math.min(at, count)), key);
+  }
+  await slider.focus();
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await slider.inputValue(), '3');
+  assert.equal(await shown(page), 1);
+  // Going back draws what going on drew.
+  await slider.fill('20');
+  await page.waitForTimeout(100);
+  const once = await canvas.screenshot();
+  await slider.fill('60');
+  await page.waitForTimeout(100);
+  assert.ok((await differentPixels(page, await canvas.screenshot(), once)) > 100);
+  await slider.fill('20');
+  await page.waitForTimeout(100);
+  assert.ok((await differentPixels(page, await canvas.screenshot(), once)) < 20);
+  await slider.evaluate((node) => node.blur());
+  await page.keyboard.press('o');
+  await until(page, () => document.getElementById('order').value === document.getElementById('order').max);
+  // Another layer is shown with all of its vectors.
+  await slider.fill('5');
+  await page.getByRole('button', { name: 'Layer above' }).click();
+  await shown(page);
+  assert.equal(await slider.inputValue(), await slider.getAttribute('max'));
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('the time of scan vectors is plotted, added up, and the same in all pages of a job', async () => {
+  scanJob();
+  const told = [];
+  for (const name of ['job.html', 'job_report.html', 'job_sliced.html']) {
+    const { page, complaints, close } = await open(name, { view: 'both' });
+    await page.waitForSelector('canvas[data-built]');
+    const rows = await page.locator('.row').evaluateAll((nodes) => nodes.map((node) => node.textContent));
+    assert.deepEqual(rows.map((row) => row.match(/^[A-Za-z]+/)[0]), ['Time', 'Vectors', 'Marked', 'Jumped', 'Open'].slice(0, rows.length));
+    const stack = await page.getByRole('complementary').locator('section', { hasText: 'Layer height' }).textContent();
+    assert.match(stack, /Time of the beam\d+ min \d\d s|Time of the beam[\d.]+ s/);
+    assert.doesNotMatch(stack, /Volume|Open contours/);
+    assert.match(await page.locator('#verdict').textContent(), /^[\d,]+ vectors in /);
+    assert.doesNotMatch(await page.getByRole('complementary').textContent(), /overlap|inside out/);
+    told.push([rows, stack.match(/Time of the beam.*$/)[0]]);
+    assert.deepEqual(complaints, [], name);
+    await close();
+  }
+  assert.deepEqual(told[1], told[2]);
+  assert.deepEqual(told[0][1].match(/Vectors[\d,]+/), told[1][1].match(/Vectors[\d,]+/));
+  // The words of a narrow page stay within it.
+  const { page, close } = await open('job.html', { width: 390, height: 800, view: null });
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  await close();
+});
+
 test('an open contour is seen in red, counted, and listed', async () => {
   for (const colorScheme of ['light', 'dark']) {
     const { page, close } = await open('open.html', { colorScheme });

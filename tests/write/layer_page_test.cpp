@@ -1,4 +1,5 @@
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/measure_vectors.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
@@ -20,8 +21,10 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -289,6 +292,127 @@ TEST(LayerPage, FindsFaults) {
     ASSERT_EQ(read.crossings.size(), 1U);
     EXPECT_NEAR(read.crossings[0].x, 5, 0.01);
     EXPECT_NEAR(read.crossings[0].y, 5, 0.01);
+}
+
+/// Two exposures: contours of two rings, one within the other and both counter-clockwise, each beginning
+/// elsewhere than in normal form, and a chain; and a hatch.
+std::vector<LayerStack> scanned(std::size_t count, int lines = 40) {
+    std::vector<LayerStack> parts(2);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const double bottom = 0.1 * static_cast<double>(i);
+        LayerBuilder builder;
+        for (const double radius : {20.0, 19.9}) {
+            constexpr int points = 200;
+            for (int p = 0; p < points; ++p) {
+                const double angle = 1 + 2 * std::numbers::pi * p / points;
+                builder.add_point({radius * std::cos(angle), radius * std::sin(angle)});
+            }
+            builder.end_contour(true);
+        }
+        add_contour(builder, {{-30, 0}, {-30, 5}}, false);
+        parts[0].push_back(builder.finish_as_added(i, bottom + 0.05, bottom, bottom + 0.1));
+        std::vector<Point2> hatches;
+        for (int line = 0; line < lines; ++line) {
+            const double y = 0.2 * line - 4;
+            const double x = 10 + std::fmod(std::numbers::phi * line * line + static_cast<double>(i), 3);
+            hatches.insert(hatches.end(), {{-x, y}, {x, y}});
+        }
+        parts[1].push_back({.index = i, .z = bottom + 0.05, .bottom = bottom, .top = bottom + 0.1});
+        parts[1].back().hatches = PointArray(std::move(hatches));
+    }
+    return parts;
+}
+
+LayerFileInfo scanned_info(const std::vector<LayerStack>& parts) {
+    LayerFileInfo info = info_of(parts[0]);
+    const auto exposure = [](ScanRegion region, VectorKind kind, double power) {
+        return Exposure{.part = "</script>a",
+                        .region = region,
+                        .kind = kind,
+                        .parameters = {.name = "set", .power_w = power, .speed_mm_s = 500}};
+    };
+    info.parts = {{"contours", {}, exposure(ScanRegion::core, VectorKind::contour, 120)},
+                  {"hatches", {}, exposure(ScanRegion::upskin, VectorKind::hatch, 200)}};
+    return info;
+}
+
+TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
+    const std::vector<LayerStack> parts = scanned(3);
+    const LayerFileInfo info = scanned_info(parts);
+    const WrittenPage written = write_page(parts, info, options_with());
+    EXPECT_TRUE(written.warnings.empty());
+    EXPECT_NE(written.page.json.at("head").find(
+                  R"("exposure":{"part":"\u003c/script>a","region":"core","kind":"contour","contour":0,)"
+                  R"("parameters":{"name":"set","power_w":120,"speed_mm_s":500,"jump_speed_mm_s":5000,)"),
+              std::string::npos)
+        << written.page.json.at("head");
+    auto table = numbers_of(written.page.json.at("table"));
+    const std::vector<PageLayer> read = layers_of(written.page, 2);
+    for (std::size_t i = 0; i < 3; ++i) {
+        ScanFigures expected;
+        std::optional<Point2> beam;
+        for (std::size_t part = 0; part < 2; ++part)
+            expected += measure_vectors(parts[part][i], info.parts[part].exposure->parameters, beam);
+        EXPECT_EQ(table["vectors"][i], static_cast<double>(expected.vectors));
+        EXPECT_EQ(table["marked_mm"][i], expected.marked_mm);
+        EXPECT_EQ(table["jumped_mm"][i], expected.jumped_mm);
+        EXPECT_EQ(table["build_seconds"][i], expected.build_seconds);
+        EXPECT_EQ(table["energy_j"][i], expected.energy_j);
+        EXPECT_EQ(table["hatches_shown"][i], 40);
+        // Vectors bound no material.
+        for (const char* name : {"area_mm2", "open_chains", "misoriented", "overlapping", "crossings"})
+            EXPECT_EQ(table[name][i], 0) << name;
+        const std::vector<PageContour>& contours = read[i].parts[0].contours;
+        ASSERT_EQ(contours.size(), 3U);
+        EXPECT_EQ(contours[0].points.size(), 200U);
+        EXPECT_NEAR(contours[0].points[0].x, 20 * std::cos(1), 0.001);
+        EXPECT_NEAR(contours[1].points[0].y, 19.9 * std::sin(1), 0.001);
+        EXPECT_NEAR(read[i].parts[1].hatches[2].y, -3.8, 0.001);
+    }
+    EXPECT_EQ(numbers_of(write_page(square_with_hole()).page.json.at("table")).count("vectors"), 0U);
+}
+
+TEST(LayerPage, KeepsEachLineOfScanVectorsEvenWherePointsFallTogether) {
+    std::vector<LayerStack> parts = scanned(1);
+    LayerBuilder builder;
+    add_contour(builder, {{1, 1}, {1.00001, 1}, {1, 1.00001}}, true);
+    parts[0][0] = builder.finish_as_added(0, 0.05, 0, 0.1);
+    const WrittenPage written = write_page(parts, scanned_info(scanned(1)), options_with());
+    EXPECT_EQ(layers_of(written.page, 2)[0].parts[0].contours.at(0).points.size(), 3U);
+}
+
+TEST(LayerPage, ShowsAllVectorsOfSomeLayersWhereItsBudgetIsShort) {
+    const std::vector<LayerStack> parts = scanned(40, 4000);
+    const LayerFileInfo info = scanned_info(parts);
+    const std::size_t frame = write_page(LayerStack{}).html.size();
+    const std::uint64_t all = write_page(parts, info, options_with()).html.size() - frame;
+    const WrittenPage written = write_page(parts, info, options_with(all / 4));
+    ASSERT_EQ(written.warnings.size(), 1U);
+    EXPECT_NE(written.warnings[0].find("layers are shown without their hatches"), std::string::npos);
+    EXPECT_LE(written.html.size(), frame + all / 4 + 500 * parts[0].size());
+    auto table = numbers_of(written.page.json.at("table"));
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < 40; ++i) {
+        EXPECT_EQ(table["tolerance_mm"][i], 0);
+        if (table["hatches_shown"][i] > 0) {
+            EXPECT_EQ(table["hatches_shown"][i], 4000);
+            whole.push_back(i);
+        }
+    }
+    ASSERT_GE(whole.size(), 4U);
+    for (std::size_t i = 1; i < whole.size(); ++i) // evenly over the height
+        EXPECT_LE(whole[i] - whole[i - 1], 12U);
+
+    // Where not even contours fit, these lose points, but begin where they began.
+    const WrittenPage thin = write_page(parts, info, options_with(40 * 400));
+    const std::vector<PageLayer> read = layers_of(thin.page, 2);
+    EXPECT_EQ(thin.warnings.size(), 2U);
+    for (const PageLayer& layer : read) {
+        ASSERT_EQ(layer.parts[0].contours.size(), 3U);
+        EXPECT_LT(layer.parts[0].contours[0].points.size(), 200U);
+        EXPECT_NEAR(layer.parts[0].contours[0].points[0].x, 20 * std::cos(1), 0.001);
+        EXPECT_NEAR(layer.parts[0].contours[1].points[0].x, 19.9 * std::cos(1), 0.001);
+    }
 }
 
 TEST(LayerPage, KeepsHostileTextInItsPlace) {

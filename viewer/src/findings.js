@@ -1,4 +1,5 @@
-import { brief, count, counted, mm } from './text.js';
+import { hasMaterial, hasVectors } from './data/exposures.js';
+import { brief, count, counted, duration, mm } from './text.js';
 
 /** What the figures of the layers mean, in plain words. */
 
@@ -68,7 +69,12 @@ export function findings(page) {
       layer: widest.layer,
     });
   if (found.length === 0 && table.z.length > 0)
-    found.push({ tone: 'good', text: 'Every contour closes, none crosses another, and all run the right way round.' });
+    found.push({
+      tone: 'good',
+      text: hasMaterial(head)
+        ? 'Every contour closes, none crosses another, and all run the right way round.'
+        : 'No contour crosses itself or another one of its exposure.',
+    });
   const overlapping = layersWith(table.overlapping);
   if (overlapping.length > 0)
     found.push({
@@ -76,11 +82,31 @@ export function findings(page) {
       text: `Bodies overlap ${where(table, overlapping)}. Areas count such places twice; lamella slice --fill nonzero unites them.`,
       layer: overlapping[0],
     });
-  const empty = table.contours.flatMap((n, i) => (n === 0 ? [i] : []));
+  const empty = table.contours.flatMap((n, i) => (n === 0 && table.hatches[i] === 0 ? [i] : []));
   if (empty.length > 0)
-    found.push({ tone: 'warning', text: `${counted(empty.length, 'layer')} without any contour, the lowest at z = ${mm(table.z[empty[0]])} mm.`, layer: empty[0] });
+    found.push({ tone: 'warning', text: `${counted(empty.length, 'layer')} with nothing in ${empty.length === 1 ? 'it' : 'them'}, the lowest at z = ${mm(table.z[empty[0]])} mm.`, layer: empty[0] });
+  const bare = table.hatches.flatMap((n, i) => (n > table.hatches_shown[i] ? [i] : []));
+  if (bare.length > 0)
+    found.push({
+      tone: 'warning',
+      text:
+        `To keep the page small, the hatches of ${counted(bare.length, 'layer')} of ${count(table.z.length)} are left out ` +
+        `(${count(sum(table.hatches_shown))} of ${count(sum(table.hatches))} lines are there). All figures are of all vectors.`,
+      layer: bare[0],
+    });
+  const untold = untoldSpeeds(head);
+  if (untold !== '') found.push({ tone: 'plain', text: `The file does not tell ${untold}.` });
   found.push(accuracy(head, table));
   return found;
+}
+
+/** What of the times is missing, since speeds are. */
+function untoldSpeeds({ parts }) {
+  const missing = (name) => parts.some(({ exposure }) => exposure && !(exposure.parameters[name] > 0));
+  return [
+    ...(missing('speed_mm_s') ? ['all speeds of the beam: what is marked at these counts neither for time nor for energy'] : []),
+    ...(missing('jump_speed_mm_s') ? ['how fast the beam jumps: times are without jumps'] : []),
+  ].join(', nor ');
 }
 
 function accuracy(head, table) {
@@ -101,8 +127,10 @@ function accuracy(head, table) {
 
 /** In one line for the head of the page: { tone, text }. */
 export function verdict(page) {
-  const bad = page.table.z.filter((_, i) => faultsOf(page.table, i) > 0).length;
+  const { head, table } = page;
+  const bad = table.z.filter((_, i) => faultsOf(table, i) > 0).length;
   if (bad > 0) return { tone: 'bad', text: `${counted(bad, 'layer')} with faults` };
+  if (!hasMaterial(head)) return { tone: 'plain', text: `${counted(sum(table.vectors), 'vector')} in ${duration(sum(table.build_seconds))}` };
   if (page.notes.places.length > 0) return { tone: 'warning', text: 'Contours are sound, the mesh has defects' };
   return { tone: 'good', text: 'All contours are sound' };
 }
@@ -135,17 +163,37 @@ export function gapText(table, i) {
   return `the longest ${longest}, ${counted(table.open_chains[i], 'gap')} of ${brief(table.gaps_mm[i])} mm in all`;
 }
 
-/** The layer with most faults; null where there are none. */
-export const firstFault = (table) => worstLayers(table, 1)[0]?.layer ?? null;
+/** To begin with: the layer with most faults, or else the one in the middle, of those that have all their hatches. */
+export function firstLayer({ table }) {
+  const middle = Math.floor(table.z.length / 2);
+  const whole = [...table.z.keys()].filter((i) => table.hatches_shown[i] === table.hatches[i]);
+  const nearest = whole.reduce((best, i) => (Math.abs(i - middle) < Math.abs(best - middle) ? i : best), whole[0] ?? middle);
+  return worstLayers(table, 1)[0]?.layer ?? nearest;
+}
+
+/** "3 contours, 12.5 mm²"; "1,234 vectors in 4.9 s" */
+export function layerText({ head, table }, i) {
+  const parts = hasVectors(head) ? [`${counted(table.vectors[i], 'vector')} in ${duration(table.build_seconds[i])}`] : [];
+  if (hasMaterial(head)) parts.push(`${counted(table.contours[i], 'contour')}, ${brief(table.area_mm2[i])} mm²`);
+  return parts.join(', ');
+}
 
 /** Layers that stand out, faults or not. */
-export function remarkableLayers(table) {
+export function remarkableLayers({ head, table }) {
   const layers = [...table.z.keys()];
   if (layers.length < 2) return [];
   const largest = (value) => layers.reduce((best, i) => (value(i) > value(best) ? i : best), 0);
   const step = (i) => (i === 0 ? 0 : Math.abs(table.area_mm2[i] - table.area_mm2[i - 1]));
   const [points, contours, area, change] = [(i) => table.points[i], (i) => table.contours[i], (i) => table.area_mm2[i], step].map(largest);
   const uneven = (column) => column.some((value) => value !== column[0]);
+  if (!hasMaterial(head)) {
+    const [time, vectors, jumps] = ['build_seconds', 'vectors', 'jumped_mm'].map((column) => largest((i) => table[column][i]));
+    return [
+      { layer: time, text: `longest time, ${duration(table.build_seconds[time])}`, stands: uneven(table.build_seconds) },
+      { layer: vectors, text: `most vectors, ${count(table.vectors[vectors])}`, stands: uneven(table.vectors) },
+      { layer: jumps, text: `longest jumps, ${brief(table.jumped_mm[jumps])} mm`, stands: uneven(table.jumped_mm) },
+    ].filter(({ stands }) => stands);
+  }
   return [
     { layer: area, text: `largest area, ${brief(table.area_mm2[area])} mm²`, stands: uneven(table.area_mm2) },
     { layer: change, text: `area changes most, by ${brief(step(change))} mm²`, stands: uneven(table.area_mm2) },
@@ -166,6 +214,22 @@ export function totals(page) {
     ['Layer height', n === 0 ? '–' : uneven ? `${mm(thin)} to ${mm(thick)} mm` : `${mm(thin)} mm`],
     ['From z', n === 0 ? '–' : `${mm(table.bottom[0])} to ${mm(table.top[n - 1])} mm`],
     ['Size', `${head.box[0].map((low, k) => brief(head.box[1][k] - low)).join(' × ')} mm`],
+    ...(hasVectors(head) ? totalsOfVectors(table) : []),
+    ...(hasMaterial(head) ? totalsOfMaterial(table, thickness) : []),
+  ];
+}
+
+const totalsOfVectors = (table) => [
+  ['Time of the beam', duration(sum(table.build_seconds))],
+  ['Vectors', count(sum(table.vectors))],
+  ['of them hatches', count(sum(table.hatches))],
+  ['Marked', `${brief(sum(table.marked_mm) / 1000)} m`],
+  ['Jumped', `${brief(sum(table.jumped_mm) / 1000)} m`],
+  ['Energy', `${brief(sum(table.energy_j) / 1000)} kJ`],
+];
+
+function totalsOfMaterial(table, thickness) {
+  return [
     ['Volume', `${brief(sum(thickness.map((t, i) => t * table.area_mm2[i])))} mm³`],
     ['Contours', count(sum(table.contours))],
     ['Open contours', count(sum(table.open_chains))],

@@ -6,6 +6,7 @@ const shapes = {
   minus: 'M5 12H19',
   all: 'M9 4H4V9M15 4H20V9M20 15V20H15M9 20H4V15',
   back: 'M16 5 7 12 16 19Z',
+  pause: 'M8 5V19M16 5V19',
   forth: 'M8 5 17 12 8 19Z',
   first: 'M6 5V19M19 5 10 12 19 19Z',
   last: 'M18 5V19M5 5 14 12 5 19Z',

@@ -1,16 +1,14 @@
 import { element } from './element.js';
+import { hasMaterial, hasVectors } from './data/exposures.js';
 import { LayerShelf } from './data/page.js';
-import { faultText, faultsOf, firstFault, verdict } from './findings.js';
+import { faultText, faultsOf, firstLayer, layerText, verdict } from './findings.js';
 import { LayerView } from './layer/layer_view.js';
 import { layerPanels, middleOf } from './panels/panels.js';
 import { StackView } from './stack/stack_view.js';
 import { Player } from './player.js';
 import { Timeline } from './timeline/timeline.js';
-import { brief, count, mm } from './text.js';
+import { count, mm } from './text.js';
 import { switchTheme } from './theme.js';
-
-/** The middle layer, or the worst one where there are faults: something to see at once. */
-const firstLayer = (table) => firstFault(table) ?? Math.floor(table.z.length / 2);
 
 /** Tells screen readers where one is, once the layer stays. */
 function announce(page, store) {
@@ -24,8 +22,7 @@ function announce(page, store) {
       const { table } = page;
       live.textContent =
         `Layer ${layer + 1} of ${count(page.head.layers)}, z ${mm(table.z[layer])} millimetres, ` +
-        `${count(table.contours[layer])} contours, ${brief(table.area_mm2[layer])} square millimetres, ` +
-        (faultText(table, layer) || 'no faults');
+        `${layerText(page, layer)}, ${faultText(table, layer) || 'no faults'}`;
     }, 400);
   });
 }
@@ -46,7 +43,7 @@ function switchViews(store, layerView, stackView) {
   });
 }
 
-function keyTable(page, store, player, layerView, stackView, help) {
+function keyTable(page, store, player, orderPlayer, layerView, stackView, help) {
   const faulty = page.table.z.flatMap((_, i) => (faultsOf(page.table, i) > 0 ? [i] : []));
   const nextFault = () => faulty.find((i) => i > store.state.layer) ?? faulty[0];
   const lastFault = () => faulty.findLast((i) => i < store.state.layer) ?? faulty.at(-1);
@@ -55,6 +52,14 @@ function keyTable(page, store, player, layerView, stackView, help) {
   const inStack = () => store.state.view === 'stack' || stackView.node.contains(document.activeElement);
   const zoom = (factor) => (inStack() ? stackView : layerView).zoomBy(factor);
   const move = (x, y) => (inStack() ? stackView.turnBy(-0.2 * x, 0.2 * y) : layerView.moveBy(-60 * x, 60 * y));
+  const ofVectors = [
+    { keys: ['.'], label: '. ,', help: 'one vector more, one less', act: () => orderPlayer.step(1) },
+    { keys: [','], act: () => orderPlayer.step(-1) },
+    { keys: ['>'], label: '> <', help: 'a hundred vectors more, less', act: () => orderPlayer.step(100) },
+    { keys: ['<'], act: () => orderPlayer.step(-100) },
+    { keys: ['o'], label: 'O', help: 'execute the vectors, pause', act: () => orderPlayer.toggle() },
+    { keys: ['j'], label: 'J', help: 'jumps', act: () => store.set({ jumps: !store.state.jumps }) },
+  ];
   return [
     { keys: ['ArrowRight', 'ArrowUp'], label: '→ ↑', help: 'layer above', act: () => player.step(1) },
     { keys: ['ArrowLeft', 'ArrowDown'], label: '← ↓', help: 'layer below', act: () => player.step(-1) },
@@ -72,8 +77,9 @@ function keyTable(page, store, player, layerView, stackView, help) {
     { keys: ['Shift+ArrowRight'], act: () => move(1, 0) },
     { keys: ['Shift+ArrowUp'], act: () => move(0, 1) },
     { keys: ['Shift+ArrowDown'], act: () => move(0, -1) },
-    { keys: ['d'], label: 'D', help: 'directions of contours', act: () => store.set({ directions: !store.state.directions }) },
-    { keys: ['f'], label: 'F', help: 'fill', act: () => store.set({ fill: !store.state.fill }) },
+    { keys: ['d'], label: 'D', help: 'directions', act: () => store.set({ directions: !store.state.directions }) },
+    ...(hasMaterial(page.head) ? [{ keys: ['f'], label: 'F', help: 'fill', act: () => store.set({ fill: !store.state.fill }) }] : []),
+    ...(hasVectors(page.head) ? ofVectors : []),
     { keys: ['1', '2', '3'], label: '1 2 3', help: 'the layer, the stack, or both', act: ({ key }) => store.set({ view: ['layer', 'stack', 'both'][key - 1] }) },
     { keys: ['t'], label: 'T', help: 'dark or light', act: () => switchTheme(store) },
     { keys: ['?'], label: '?', help: 'this list', act: () => help().showModal() },
@@ -86,10 +92,12 @@ export function buildLayerPage(page, store, main, help) {
     main.append(element('p', { className: 'trouble' }, 'There are no layers in this file.'));
     return [];
   }
-  store.set({ layer: firstLayer(page.table) });
+  store.set({ layer: firstLayer(page) });
+  store.on(['layer'], () => store.set({ order: Infinity, executing: false }));
   const shelf = new LayerShelf(page);
-  const player = new Player(store, page.head.layers);
-  const layerView = new LayerView(page, shelf, store);
+  const player = new Player(store, 'layer', 'playing', () => page.head.layers - 1);
+  const orderPlayer = new Player(store, 'order', 'executing', () => layerView.vectors);
+  const layerView = new LayerView(page, shelf, store, orderPlayer);
   const timeline = new Timeline(page, store, player);
   const show = (place) => {
     const [x, y, z] = middleOf(place);
@@ -113,5 +121,5 @@ export function buildLayerPage(page, store, main, help) {
   const node = document.getElementById('verdict');
   node.className = `verdict ${tone}`;
   node.textContent = text;
-  return keyTable(page, store, player, layerView, stackView, help);
+  return keyTable(page, store, player, orderPlayer, layerView, stackView, help);
 }

@@ -18,7 +18,11 @@ import { nextTurn } from './turn.js';
  * @property {boolean} fill whether the material is filled; likewise contours, directions, hatches
  * @property {boolean} ghosts whether the layers above are hinted at in the stack
  * @property {'layer'|'stack'|'both'} view
- * @property {Set<number>} hidden parts that are not shown
+ * @property {Set<import('./data/exposures.js').Group>} off groups of parts that are not shown
+ * @property {Set<number>} hidden the parts of these
+ * @property {number} order so many vectors of the layer are shown, as they are executed; Infinity for all
+ * @property {boolean} executing whether the order plays
+ * @property {boolean} jumps whether the ways between vectors are shown
  * @property {number|null} shell of a mesh: the one that is shown in colours; null for all
  */
 async function build() {
@@ -34,7 +38,11 @@ async function build() {
     hatches: true,
     ghosts: true,
     view: matchMedia('(min-width: 1100px)').matches ? 'both' : 'layer',
+    off: new Set(),
     hidden: new Set(),
+    order: Infinity,
+    executing: false,
+    jumps: true,
     shell: null,
   });
   followTheme(store);

@@ -15,6 +15,15 @@ export function brief(value) {
   return new Intl.NumberFormat('en', { maximumFractionDigits: digits }).format(value);
 }
 
+/** 4.87 s, 43 min 07 s, 2 h 05 min: three digits or more that matter. */
+export function duration(seconds) {
+  if (seconds < 60) return `${brief(seconds)} s`;
+  const whole = Math.round(seconds);
+  const two = (n) => String(n).padStart(2, '0');
+  const minutes = Math.floor(whole / 60);
+  return minutes < 60 ? `${minutes} min ${two(whole % 60)} s` : `${count(Math.floor(minutes / 60))} h ${two(minutes % 60)} min`;
+}
+
 /** Heights and coordinates, to a thousandth. */
 export const mm = (value) => new Intl.NumberFormat('en', { maximumFractionDigits: 3 }).format(value);
 

@@ -1,20 +1,25 @@
 /** Dark and light. The colours themselves are in styles.css; canvases ask here. */
 
+import { kinds, regions } from './data/exposures.js';
+
 const names = [
   'paper', 'grid', 'gridStrong', 'outer', 'hole', 'open', 'crossing', 'place', 'hatch', 'accent',
-  'plot', 'plotFill', 'fault', 'bed', 'bedLine', 'wallCut', 'inside',
+  'plot', 'plotFill', 'fault', 'bed', 'bedLine', 'wallCut', 'inside', 'jump', 'outline',
 ];
 const mostParts = 8;
 const remembered = 'lamella-theme';
 
 const variable = (style, name) => style.getPropertyValue(`--${name.replace(/[A-Z]/g, (c) => `-${c.toLowerCase()}`)}`).trim();
 
-/** The colours in effect, by the names above, and those of parts: `fills` in 2D, `walls` in 3D. */
+/** The colours in effect, by the names above, and those of parts: `fills` in 2D, `walls` in 3D; `vectors` by region and kind. */
 function coloursInEffect() {
   const style = getComputedStyle(document.documentElement);
   const colours = Object.fromEntries(names.map((name) => [name, variable(style, name)]));
   for (const of of ['fill', 'wall'])
     colours[`${of}s`] = Array.from({ length: mostParts }, (_, i) => variable(style, `${of}-${i}`));
+  colours.vectors = {};
+  for (const region of regions)
+    for (const kind of kinds) colours.vectors[`${region} ${kind}`] = variable(style, `${region}-${kind}`);
   colours.dark = document.documentElement.dataset.theme === 'dark';
   return colours;
 }

@@ -5,8 +5,11 @@ import { test } from 'node:test';
 import { NumberReader } from '../src/data/number_reader.js';
 import { readLayer } from '../src/data/layer.js';
 import { readMesh } from '../src/data/mesh.js';
+import { bodiesOf, bodyOfParts, kindsOf, switchGroup } from '../src/data/exposures.js';
 import { LayerShelf } from '../src/data/page.js';
 import { unpack } from '../src/data/unpack.js';
+import { jumpsTo, partOf, vectorsOf } from '../src/data/vectors.js';
+import { Store } from '../src/store.js';
 
 // Browsers unpack raw Deflate streams, and so does Node.js from 20.12 on. For older ones its zlib does.
 try {
@@ -96,7 +99,7 @@ test('the shelf decodes a layer once, and lets go of old ones', async () => {
       return text;
     },
   }));
-  const page = { head: { layers: 5, parts: [{}], step_mm: 0.5 }, table: { shown: [9, 9, 9, 9, 4e6] }, data };
+  const page = { head: { layers: 5, parts: [{}], step_mm: 0.5 }, table: { shown: [9, 9, 9, 9, 2e6], hatches_shown: [1, 1, 1, 1, 1e6] }, data };
   const shelf = new LayerShelf(page);
   assert.equal(await shelf.layer(0), await shelf.layer(0));
   await shelf.layer(1);
@@ -104,4 +107,65 @@ test('the shelf decodes a layer once, and lets go of old ones', async () => {
   await shelf.layer(4); // too much for the shelf together with the others
   await shelf.layer(0);
   assert.equal(read, 4);
+});
+
+const parameters = { name: 'a', power_w: 100, speed_mm_s: 500, jump_speed_mm_s: 5000, mark_delay_us: 200, jump_delay_us: 300 };
+const exposure = (part, region, kind) => ({ label: `${part} ${region} ${kind}`, exposure: { part, region, kind, contour: 0, parameters } });
+
+/** The contours of a part of a layer. */
+const part = ({ rings = [], chains = [], hatches = [] } = {}) => {
+  const contours = [...rings, ...chains];
+  let end = 0;
+  return {
+    points: new Float32Array(contours.flat(2)),
+    ends: new Uint32Array(contours.map((contour) => (end += contour.length))),
+    rings: rings.length,
+    hatches: new Float32Array(hatches),
+  };
+};
+
+test('vectors are those that are executed, in their order and with their times', () => {
+  // The same vectors as in tests/contour/measure_vectors_test.cpp, after a part of material and in two exposures.
+  const layer = {
+    parts: [
+      part({ rings: [[[5, 5], [6, 5], [6, 6]]] }),
+      part({ rings: [[[0, 0], [10, 0], [10, 10], [0, 10]]], chains: [[[20, 0], [23, 4]]], hatches: [23, 4, 23, 14, 33, 14, 33, 4] }),
+      part(),
+      part({ hatches: [33, 4, 33, 9] }),
+    ],
+  };
+  const parts = [{ label: 'material' }, exposure('a', 'core', 'contour'), exposure('a', 'upskin', 'hatch'), exposure('a', 'core', 'hatch')];
+  const vectors = vectorsOf(layer, parts);
+  assert.equal(vectors.count, 4 + 1 + 2 + 1);
+  assert.deepEqual([...vectors.lines.subarray(0, 20)], [0, 0, 10, 0, 10, 0, 10, 10, 10, 10, 0, 10, 0, 10, 0, 0, 20, 0, 23, 4]);
+  assert.deepEqual([...vectors.ends], [0, 7, 7, 8]);
+  assert.deepEqual([0, 1, 4, 5, 6, 7].map((i) => jumpsTo(vectors, i)), [false, false, true, false, true, false]);
+  assert.deepEqual([0, 6, 7].map((i) => partOf(vectors, i)), [1, 1, 3]);
+  const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-12, `${a}, ${b}`);
+  near(vectors.seconds[0], 10 / 500);
+  near(vectors.seconds[3], 40 / 500 + 200e-6);
+  near(vectors.seconds[4], 45 / 500 + 200e-6 + 20 / 5000 + 300e-6); // the run goes on
+  near(vectors.seconds[6], 65 / 500 + 30 / 5000 + 3 * 200e-6 + 2 * 300e-6);
+  near(vectors.seconds[7], 70 / 500 + 30 / 5000 + 4 * 200e-6 + 2 * 300e-6); // no jump, but another exposure
+  const none = vectorsOf({ parts: [part()] }, [exposure('a', 'core', 'hatch')]);
+  assert.deepEqual([none.count, ...none.ends], [0, 0]);
+});
+
+test('exposures are told apart by region and kind, and belong to bodies', () => {
+  const head = {
+    parts: [exposure('a', 'downskin', 'hatch'), exposure('a', 'core', 'contour'), exposure('b', 'core', 'contour'), { label: 'material' }],
+  };
+  assert.deepEqual(kindsOf(head).map(({ name, parts }) => [name, parts]), [['core contour', [1, 2]], ['downskin hatch', [0]]]);
+  assert.deepEqual(bodiesOf(head), [{ name: 'a', parts: [0, 1] }, { name: 'b', parts: [2] }, { name: 'material', parts: [3] }]);
+  assert.deepEqual(bodyOfParts(head), [0, 0, 1, 2]);
+  const store = new Store({ off: new Set(), hidden: new Set() });
+  const [[contours], [a]] = [kindsOf(head), bodiesOf(head)];
+  const hidden = () => [...store.state.hidden].sort();
+  switchGroup(store, contours, false);
+  switchGroup(store, a, false);
+  assert.deepEqual(hidden(), [0, 1, 2]);
+  switchGroup(store, contours, true);
+  assert.deepEqual(hidden(), [0, 1]); // still hidden by its body
+  switchGroup(store, a, true);
+  assert.deepEqual(hidden(), []);
 });

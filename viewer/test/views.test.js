@@ -1,13 +1,13 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { faultText, findings, firstFault, gapText, remarkableLayers, totals, verdict, widestGaps, worstLayers } from '../src/findings.js';
+import { faultText, findings, firstLayer, gapText, layerText, remarkableLayers, totals, verdict, widestGaps, worstLayers } from '../src/findings.js';
 import { Camera } from '../src/layer/camera.js';
 import { roundStep } from '../src/layer/round_step.js';
 import { levelsOf } from '../src/stack/levels.js';
 import { Walls, linesOfRow, spacingFor } from '../src/stack/walls.js';
 import { Store } from '../src/store.js';
 import { LayerAxis, columnsOf } from '../src/timeline/plot.js';
-import { brief, counted } from '../src/text.js';
+import { brief, counted, duration } from '../src/text.js';
 
 test('a camera fits, zooms about a pixel and moves', () => {
   const camera = new Camera();
@@ -44,16 +44,17 @@ test('an axis maps layers to pixels and back, and a plot loses no peak', () => {
   assert.equal(Math.min(...columns.map((column) => column.low)), 1);
 });
 
-const columns = ['area_mm2', 'contours', 'points', 'shown', 'open_chains', 'longest_gap_mm', 'gaps_mm', 'crossings', 'misoriented', 'overlapping', 'tolerance_mm', 'hatches'];
-function pageOf(layers, notes = { sections: [], places: [] }) {
+const columns = ['area_mm2', 'contours', 'points', 'shown', 'open_chains', 'longest_gap_mm', 'gaps_mm', 'crossings', 'misoriented', 'overlapping', 'tolerance_mm', 'hatches', 'hatches_shown'];
+const columnsOfVectors = ['vectors', 'marked_mm', 'jumped_mm', 'build_seconds', 'energy_j'];
+function pageOf(layers, notes = { sections: [], places: [] }, parts = [{}]) {
   const table = { z: [], bottom: [], top: [] };
-  for (const column of columns) table[column] = layers.map((layer) => layer[column] ?? (column === 'contours' ? 1 : 0));
+  for (const column of [...columns, ...(parts.some(({ exposure }) => exposure) ? columnsOfVectors : [])]) table[column] = layers.map((layer) => layer[column] ?? (column === 'contours' ? 1 : 0));
   layers.forEach((_, i) => {
     table.bottom.push(i);
     table.z.push(i + 0.5);
     table.top.push(i + 1);
   });
-  return { head: { step_mm: 0.001, layers: layers.length }, table, notes };
+  return { head: { step_mm: 0.001, layers: layers.length, parts }, table, notes };
 }
 
 test('faults are told, the worst layers first', () => {
@@ -63,7 +64,7 @@ test('faults are told, the worst layers first', () => {
   assert.match(told[0].text, /^3 open contours in 2 layers, the lowest at z = 1\.5 mm/);
   assert.deepEqual(worstLayers(page.table).map(({ layer }) => layer), [2, 1, 3]);
   assert.equal(verdict(page).text, '3 layers with faults');
-  assert.equal(firstFault(page.table), 2);
+  assert.equal(firstLayer(page), 2);
 });
 
 test('gaps are told, the longest first', () => {
@@ -106,15 +107,48 @@ test('a sound stack is called sound, and thinning is said', () => {
   const told = findings(page);
   assert.equal(told[0].tone, 'good');
   assert.match(told.at(-1).text, /1 layer of 2 is drawn with fewer points, up to 0\.04 mm off \(120 of 200 points in all\)/);
-  assert.equal(firstFault(page.table), null);
+  assert.equal(firstLayer(page), 1);
   const flawed = pageOf([{}], { sections: [], places: [{ kind: 'boundary loop' }] });
   assert.equal(verdict(flawed).tone, 'warning');
 });
 
 test('only what differs stands out', () => {
-  assert.deepEqual(remarkableLayers(pageOf([{ area_mm2: 5 }, { area_mm2: 5 }, { area_mm2: 5 }]).table), []);
-  const told = remarkableLayers(pageOf([{ area_mm2: 5 }, { area_mm2: 9 }, { area_mm2: 8 }]).table);
+  assert.deepEqual(remarkableLayers(pageOf([{ area_mm2: 5 }, { area_mm2: 5 }, { area_mm2: 5 }])), []);
+  const told = remarkableLayers(pageOf([{ area_mm2: 5 }, { area_mm2: 9 }, { area_mm2: 8 }]));
   assert.deepEqual(told.map(({ layer }) => layer), [1, 1]);
+});
+
+/** A page of scan vectors alone. */
+const scanPageOf = (layers, parameters = { speed_mm_s: 500, jump_speed_mm_s: 5000 }) =>
+  pageOf(layers, undefined, [{ exposure: { part: 'a', region: 'core', kind: 'hatch', parameters } }]);
+
+test('of scan vectors their time is told, and nothing of material', () => {
+  const page = scanPageOf([
+    { vectors: 100, build_seconds: 40, marked_mm: 900, energy_j: 500, hatches: 90, hatches_shown: 90 },
+    { vectors: 300, build_seconds: 50, marked_mm: 100, energy_j: 500, hatches: 300, hatches_shown: 300, contours: 0 },
+    { contours: 0 },
+  ]);
+  page.head.box = [[0, 0, 0], [3, 3, 2]];
+  assert.deepEqual(verdict(page), { tone: 'plain', text: '400 vectors in 1 min 30 s' });
+  assert.equal(layerText(page, 1), '300 vectors in 50 s');
+  const told = new Map(totals(page));
+  assert.deepEqual(['Time of the beam', 'Marked', 'Energy', 'Volume'].map((name) => told.get(name)), ['1 min 30 s', '1 m', '1 kJ', undefined]);
+  const texts = findings(page).map(({ text }) => text);
+  assert.match(texts[0], /^No contour crosses itself/);
+  assert.match(texts[1], /^1 layer with nothing in it, the lowest at z = 2\.5 mm/);
+  assert.ok(!texts.some((text) => text.includes('does not tell')));
+  const untold = findings(scanPageOf([{}], { speed_mm_s: 500, jump_speed_mm_s: 0 })).map(({ text }) => text);
+  assert.ok(untold.includes('The file does not tell how fast the beam jumps: times are without jumps.'));
+  assert.deepEqual(remarkableLayers(page).map(({ text }) => text), ['longest time, 50 s', 'most vectors, 300']);
+});
+
+test('which layers are without their hatches is said, and the page begins at another one', () => {
+  const layers = Array.from({ length: 9 }, (_, i) => ({ hatches: 100, hatches_shown: i % 4 === 3 ? 100 : 0 }));
+  const page = scanPageOf(layers);
+  const told = findings(page).find(({ text }) => text.includes('hatches'));
+  assert.match(told.text, /the hatches of 7 layers of 9 are left out \(200 of 900 lines are there\)/);
+  assert.equal(told.layer, 0);
+  assert.equal(firstLayer(page), 3);
 });
 
 /** A square of 10 mm with one open chain beside it. */
@@ -195,6 +229,7 @@ test('a store tells those who listen, and of changes only', () => {
 
 test('numbers read well', () => {
   assert.deepEqual([0, 0.05, 12.3456, 1234.56, 123456.7, 1e-5].map(brief), ['0', '0.05', '12.35', '1,235', '123,457', '0.00001']);
+  assert.deepEqual([4.8712, 59, 187, 3600, 7512].map(duration), ['4.871 s', '59 s', '3 min 07 s', '1 h 00 min', '2 h 05 min']);
   assert.equal(counted(1, 'layer'), '1 layer');
   assert.equal(counted(1200, 'layer'), '1,200 layers');
 });

@@ -21,7 +21,8 @@ namespace LAMELLA_API lamella {
 [[nodiscard]] Layer simplify(const Layer& layer, double tolerance);
 
 /// The same for each contour by itself, for pictures: in a small part of the time. No ring vanishes or turns
-/// over, but contours that are closer to one another than twice the tolerance may come to cross.
+/// over, but contours that are closer to one another than twice the tolerance may come to cross. Contours
+/// keep their order and their first points, so it is for scan vectors, too.
 [[nodiscard]] Layer simplify_each(const Layer& layer, double tolerance);
 
 } // namespace lamella

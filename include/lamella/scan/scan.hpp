@@ -2,12 +2,9 @@
 
 // From layers to scan vectors: what a powder-bed machine executes.
 
-#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/scan/strategy.hpp"
 
-#include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,22 +29,5 @@ namespace LAMELLA_API lamella {
 /// for a layer that would have more than 2^26 lines, or islands, before memory is spent on them.
 [[nodiscard]] std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below,
                                       std::span<const Layer> above, const ScanStrategy& strategy);
-
-/// What a machine does for vectors.
-struct ScanFigures {
-    std::uint64_t vectors = 0;
-    double marked_mm = 0;
-    double jumped_mm = 0;
-    double build_seconds =
-        0; ///< by the speeds and delays of the parameter sets alone: what accelerates is left out
-    double energy_j = 0; ///< power by the time of marking
-
-    ScanFigures& operator+=(const ScanFigures& other) noexcept;
-};
-
-/// Of vectors executed one after the other with one parameter set, from where the beam was before, and that
-/// is moved to where it ends. What is done at an unknown speed, 0, takes no time. O(vectors).
-[[nodiscard]] ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
-                                          std::optional<Point2>& beam);
 
 } // namespace lamella

@@ -45,13 +45,18 @@ export class LayerShelf {
     }
     const made = this.decode(i);
     this.#kept.set(i, made);
-    this.#points += this.#page.table.shown[i];
+    this.#points += this.#pointsOf(i);
     for (const old of this.#kept.keys()) {
       if (this.#points <= LayerShelf.#mostPoints || old === i) break;
       this.#kept.delete(old);
-      this.#points -= this.#page.table.shown[old];
+      this.#points -= this.#pointsOf(old);
     }
     return made;
+  }
+
+  #pointsOf(i) {
+    const { shown, hatches_shown } = this.#page.table;
+    return shown[i] + 2 * hatches_shown[i];
   }
 
   /** The same without being kept. */

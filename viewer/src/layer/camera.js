@@ -6,6 +6,7 @@ export class Camera {
     this.scale = 1; // pixels per mm
     this.width = 1;
     this.height = 1;
+    this.top = 0; // pixels at the upper edge that `fit` leaves free
     this.fitted = true; // follows the size of the canvas until somebody moves it
     this.box = [0, 0, 1, 1];
   }
@@ -25,7 +26,7 @@ export class Camera {
   get fitScale() {
     const [left, bottom, right, top] = this.box;
     const margin = 0.86;
-    return margin * Math.min(this.width / Math.max(right - left, 1e-9), this.height / Math.max(top - bottom, 1e-9));
+    return margin * Math.min(this.width / Math.max(right - left, 1e-9), (this.height - this.top) / Math.max(top - bottom, 1e-9));
   }
 
   /** How many times larger than fitted. */
@@ -36,8 +37,8 @@ export class Camera {
   fit() {
     const [left, bottom, right, top] = this.box;
     this.x = (left + right) / 2;
-    this.y = (bottom + top) / 2;
     this.scale = this.fitScale;
+    this.y = (bottom + top) / 2 + this.top / 2 / this.scale;
     this.fitted = true;
   }
 

@@ -230,6 +230,10 @@ export function drawLayer(ctx, camera, layer, options) {
     if (options.directions) drawDirections(ctx, contours, camera, colours);
     if (ends.length > rings) drawOpenChains(ctx, contours, camera, colours);
   });
+}
+
+/** Marks crossings and places of defects: over all else. The options are those of drawLayer. */
+export function drawFaults(ctx, camera, layer, { colours, marks }) {
   drawMarks(ctx, layer.crossings, camera, colours.crossing);
-  drawMarks(ctx, options.marks, camera, colours.place);
+  drawMarks(ctx, marks, camera, colours.place);
 }

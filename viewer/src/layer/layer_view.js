@@ -1,8 +1,13 @@
+import { hasMaterial, hasVectors, kindsOf, switchGroup } from '../data/exposures.js';
+import { vectorsOf } from '../data/vectors.js';
 import { element } from '../element.js';
+import { layerText } from '../findings.js';
 import { iconButton } from '../icon.js';
-import { brief, mm } from '../text.js';
+import { mm } from '../text.js';
 import { Camera } from './camera.js';
-import { drawLayer } from './draw_layer.js';
+import { drawFaults, drawLayer } from './draw_layer.js';
+import { drawBeam, drawOutline, drawVectorDirections, drawVectors } from './draw_vectors.js';
+import { OrderBar } from './order_bar.js';
 import { roundStep } from './round_step.js';
 
 /** Where lines of the notes' places pass through the plane at z, x and y in turn. */
@@ -25,6 +30,17 @@ export function marksAt(places, z, tolerance, origin) {
 /** Called in a frame; acts when the browser has painted that. */
 const afterPaint = (act) => setTimeout(act);
 
+/** A piece of a line as vectors of a region and kind, or jumps, are drawn. */
+function sample(colour, width) {
+  const [svg, path] = ['svg', 'path'].map((tag) => document.createElementNS('http://www.w3.org/2000/svg', tag));
+  svg.setAttribute('viewBox', '0 0 22 12');
+  svg.setAttribute('aria-hidden', true);
+  path.setAttribute('d', width > 2 ? 'M1 6H21' : 'M1 2H21M1 6H21M1 10H21');
+  path.setAttribute('style', `stroke: var(--${colour}); stroke-width: ${width}`);
+  svg.append(path);
+  return svg;
+}
+
 /** One layer, seen from above: a canvas to zoom and pan, with its tools. */
 export class LayerView {
   #page;
@@ -32,13 +48,16 @@ export class LayerView {
   #store;
   #camera = new Camera();
   #layer = null; // what is drawn
+  #vectors = null; // of it, where there are any
+  #executed = { canvas: document.createElement('canvas'), count: Infinity }; // a picture of the first of them
   #shown = -1;
   #asked = false;
   #tellDrawn;
   /** Resolved when the first layer is on the screen. */
   drawn = new Promise((resolve) => (this.#tellDrawn = resolve));
 
-  constructor(page, shelf, store) {
+  /** @param {import('../player.js').Player} orderPlayer of the vectors */
+  constructor(page, shelf, store, orderPlayer) {
     this.#page = page;
     this.#shelf = shelf;
     this.#store = store;
@@ -49,38 +68,51 @@ export class LayerView {
       role: 'img',
       'aria-describedby': 'keys-of-layer',
     });
+    this.order = hasVectors(page.head) ? new OrderBar(page, store, orderPlayer) : null;
+    this.tools = this.#tools();
     this.readout = element('output', { className: 'readout', 'aria-hidden': true });
     this.scaleText = element('span');
     this.scale = element('div', { className: 'scale', 'aria-hidden': true }, this.scaleText, element('i'));
     this.node = element(
       'section',
-      { className: 'pane', 'aria-label': 'The layer, seen from above' },
+      { className: `pane${this.order ? ' ordered' : ''}`, 'aria-label': 'The layer, seen from above' },
       this.canvas,
-      this.#tools(),
+      this.tools,
       this.scale,
       this.readout,
+      ...(this.order ? [this.order.node] : []),
       element('p', { id: 'keys-of-layer', className: 'unseen' }, 'Plus and minus zoom, shift and arrows move, 0 shows all.'),
     );
     const [low, high] = page.head.box;
     this.#camera.frame([low[0] - this.origin[0], low[1] - this.origin[1], high[0] - this.origin[0], high[1] - this.origin[1]]);
     this.#listen();
     store.on(['layer'], (state) => this.#show(state.layer));
-    store.on(['theme', 'fill', 'lines', 'directions', 'hatches', 'hidden'], () => this.redraw());
+    store.on(['theme', 'fill', 'lines', 'directions', 'hatches', 'jumps', 'hidden'], () => this.redraw());
+    store.on(['order'], () => this.#drawSoon());
   }
 
   get camera() {
     return this.#camera;
   }
 
+  /** So many vectors are on the layer that is shown. */
+  get vectors() {
+    return this.#vectors?.count ?? 0;
+  }
+
   #tools() {
-    const toggle = (key, label) => {
-      const node = element('button', { type: 'button', className: 'toggle' }, label);
+    const { head, table } = this.#page;
+    const toggle = (key, ...label) => {
+      const node = element('button', { type: 'button', className: 'toggle' }, ...label);
       node.addEventListener('click', () => this.#store.set({ [key]: !this.#store.state[key] }));
       this.#store.on([key], (state) => node.setAttribute('aria-pressed', state[key]));
       return node;
     };
-    const toggles = [toggle('fill', 'Fill'), toggle('lines', 'Contours'), toggle('directions', 'Direction')];
-    if (this.#page.table.hatches.some((n) => n > 0)) toggles.push(toggle('hatches', 'Hatches'));
+    const toggles = hasMaterial(head) ? [toggle('fill', 'Fill'), toggle('lines', 'Contours')] : [];
+    if (hasMaterial(head) && table.hatches.some((n) => n > 0)) toggles.push(toggle('hatches', 'Hatches'));
+    toggles.push(...kindsOf(head).map((kind) => this.#kindToggle(kind)));
+    if (hasVectors(head)) toggles.push(toggle('jumps', sample('jump', 1), 'jumps'));
+    toggles.push(toggle('directions', 'Direction'));
     return element(
       'div',
       { className: 'tools', role: 'toolbar', 'aria-label': 'How the layer is drawn' },
@@ -92,15 +124,27 @@ export class LayerView {
     );
   }
 
+  /** Of the legend: shows what is drawn in that colour and stroke. */
+  #kindToggle(kind) {
+    const line = sample(`${kind.region}-${kind.kind}`, kind.kind === 'contour' ? 3 : 1.5);
+    const node = element('button', { type: 'button', className: 'toggle' }, line, kind.name);
+    node.addEventListener('click', () => switchGroup(this.#store, kind, this.#store.state.off.has(kind)));
+    this.#store.on(['off'], ({ off }) => node.setAttribute('aria-pressed', !off.has(kind)));
+    return node;
+  }
+
   async #show(number) {
     const layer = await this.#shelf.layer(number);
     if (this.#store.state.layer !== number) return; // another one was asked for meanwhile
     this.#layer = layer;
     this.#shown = number;
-    const { table } = this.#page;
+    const { head, table } = this.#page;
+    if (this.order) {
+      this.#vectors = vectorsOf(layer, head.parts);
+      this.order.show(this.#vectors, number);
+    }
     const text =
-      `Layer ${number + 1} of ${this.#shelf.count} at z = ${mm(table.z[number])} mm, seen from above: ` +
-      `${table.contours[number]} contours, ${brief(table.area_mm2[number])} mm²` +
+      `Layer ${number + 1} of ${this.#shelf.count} at z = ${mm(table.z[number])} mm, seen from above: ${layerText(this.#page, number)}` +
       (table.open_chains[number] > 0 ? `, ${table.open_chains[number]} of the contours open` : '');
     this.canvas.setAttribute('aria-label', text);
     this.redraw();
@@ -109,7 +153,9 @@ export class LayerView {
   #listen() {
     const { canvas } = this;
     new ResizeObserver(() => {
+      if (this.order) this.#camera.top = this.tools.offsetTop + this.tools.offsetHeight; // a legend hides more than some tools
       this.#camera.resize(canvas.clientWidth, canvas.clientHeight);
+      this.#executed.count = Infinity;
       this.draw();
     }).observe(canvas);
     canvas.addEventListener(
@@ -180,8 +226,13 @@ export class LayerView {
     this.redraw();
   }
 
-  /** In the next frame. */
+  /** In the next frame, all of it. */
   redraw() {
+    this.#executed.count = Infinity;
+    this.#drawSoon();
+  }
+
+  #drawSoon() {
     if (this.#asked) return;
     this.#asked = true;
     requestAnimationFrame(() => this.draw());
@@ -195,26 +246,53 @@ export class LayerView {
     this.#camera.resize(width, height);
     const density = window.devicePixelRatio || 1;
     const [pixelsX, pixelsY] = [Math.round(width * density), Math.round(height * density)];
-    if (canvas.width !== pixelsX || canvas.height !== pixelsY) [canvas.width, canvas.height] = [pixelsX, pixelsY];
+    if (canvas.width !== pixelsX || canvas.height !== pixelsY) {
+      [canvas.width, canvas.height] = [pixelsX, pixelsY];
+      this.#executed.count = Infinity;
+    }
     const ctx = canvas.getContext('2d');
     ctx.setTransform(density, 0, 0, density, 0, 0);
     const { state } = this.#store;
-    const { table, notes } = this.#page;
+    const { head, table, notes } = this.#page;
     const z = table.z[this.#shown];
     const half = (table.top[this.#shown] - table.bottom[this.#shown]) / 2;
-    drawLayer(ctx, this.#camera, this.#layer, {
+    const options = {
       ...state,
+      parts: head.parts,
       origin: this.origin,
       colours: state.theme,
       partColours: state.theme.fills,
       marks: marksAt(notes.places, z, half, this.origin),
-    });
+    };
+    if (this.#vectors === null) drawLayer(ctx, this.#camera, this.#layer, options);
+    else this.#drawExecuted(ctx, density, options);
+    drawFaults(ctx, this.#camera, this.#layer, options);
     this.#drawScale();
     if (canvas.dataset.layer === undefined) {
       performance.mark('first picture');
       afterPaint(this.#tellDrawn);
     }
     canvas.dataset.layer = this.#shown;
+  }
+
+  /** The vectors that are executed, on a picture of those drawn before: to go on takes as long as what is new. */
+  #drawExecuted(ctx, density, options) {
+    const [camera, vectors, executed] = [this.#camera, this.#vectors, this.#executed];
+    const order = Math.min(options.order, vectors.count);
+    const kept = executed.canvas.getContext('2d');
+    if (executed.count > order) {
+      [executed.canvas.width, executed.canvas.height] = [this.canvas.width, this.canvas.height];
+      kept.setTransform(density, 0, 0, density, 0, 0);
+      const exposed = options.parts.flatMap(({ exposure }, part) => (exposure ? [part] : []));
+      drawLayer(kept, camera, this.#layer, { ...options, hidden: new Set([...options.hidden, ...exposed]) });
+      if (order < vectors.count) drawOutline(kept, camera, vectors, options);
+      executed.count = 0;
+    }
+    drawVectors(kept, camera, vectors, executed.count, order, options);
+    executed.count = order;
+    ctx.drawImage(executed.canvas, 0, 0, camera.width, camera.height);
+    if (options.directions) drawVectorDirections(ctx, camera, vectors, order, options);
+    if (order < vectors.count) drawBeam(ctx, camera, vectors, order, options.colours);
   }
 
   #drawScale() {

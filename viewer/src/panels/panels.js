@@ -1,6 +1,7 @@
+import { bodiesOf, hasMaterial, hasVectors, switchGroup } from '../data/exposures.js';
 import { element } from '../element.js';
 import { icon } from '../icon.js';
-import { brief, count, counted, mm } from '../text.js';
+import { brief, count, counted, duration, mm } from '../text.js';
 import { faultText, findings, gapText, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
@@ -31,16 +32,28 @@ function diagnosisCard(page, go) {
 
 /** The figures of the layer that is shown. */
 function layerCard(page, store) {
-  const { table } = page;
+  const { head, table } = page;
   const rows = [
     ['Cut at z', (i) => `${mm(table.z[i])} mm`],
     ['Thickness', (i) => `${mm(table.top[i] - table.bottom[i])} mm`],
+  ];
+  const rowsOfVectors = [
+    ['Time of the beam', (i) => duration(table.build_seconds[i])],
+    ['Vectors', (i) => count(table.vectors[i])],
+    ['of them hatches', (i) => count(table.hatches[i])],
+    ['Marked', (i) => `${brief(table.marked_mm[i])} mm`],
+    ['Jumped', (i) => `${brief(table.jumped_mm[i])} mm`],
+    ['Energy', (i) => `${brief(table.energy_j[i])} J`],
+  ];
+  const rowsOfMaterial = [
     ['Area', (i) => `${brief(table.area_mm2[i])} mm²`],
     ['Perimeter', (i) => `${brief(table.perimeter_mm[i])} mm`],
     ['Contours', (i) => count(table.contours[i])],
     ['of them holes', (i) => count(table.holes[i])],
     ['Points', (i) => count(table.points[i])],
   ];
+  if (hasVectors(head)) rows.push(...rowsOfVectors);
+  if (hasMaterial(head)) rows.push(...rowsOfMaterial);
   if (table.open_chains.some((n) => n > 0)) rows.push(['Gaps', (i) => gapText(table, i)]);
   if (table.rings_dropped)
     rows.push(['Rings dropped', (i) => count(table.rings_dropped[i])], ['Area before', (i) => `${brief(table.area_before_mm2[i])} mm²`]);
@@ -75,17 +88,12 @@ function layerList(title, layers, page, go) {
   return card(title, element('ol', { className: 'picks' }, ...items));
 }
 
-function partsCard(page, store) {
-  const items = page.head.parts.map(({ label }, part) => {
+function partsCard(bodies, store) {
+  const items = bodies.map((body, number) => {
     const box = element('input', { type: 'checkbox', checked: true });
-    box.addEventListener('change', () => {
-      const hidden = new Set(store.state.hidden);
-      if (box.checked) hidden.delete(part);
-      else hidden.add(part);
-      store.set({ hidden });
-    });
-    const swatch = element('i', { className: 'swatch', style: `background: var(--wall-${part % 8})`, 'aria-hidden': true });
-    return element('li', {}, element('label', {}, box, swatch, element('span', {}, label)));
+    box.addEventListener('change', () => switchGroup(store, body, box.checked));
+    const swatch = element('i', { className: 'swatch', style: `background: var(--wall-${number % 8})`, 'aria-hidden': true });
+    return element('li', {}, element('label', {}, box, swatch, element('span', {}, body.name)));
   });
   return card(`${count(items.length)} parts`, element('ul', { className: 'parts' }, ...items));
 }
@@ -171,13 +179,14 @@ export function meshPanels(page, store, show) {
 /** Beside layers. @param {(layer: number) => void} go @param {(place: object) => void} show */
 export function layerPanels(page, store, go, show) {
   const worst = worstLayers(page.table);
-  const remarkable = remarkableLayers(page.table);
+  const remarkable = remarkableLayers(page);
   const cards = [layerCard(page, store), diagnosisCard(page, go)];
   if (worst.length > 0) cards.push(layerList('Worst layers', worst, page, go));
   const gaps = widestGaps(page.table);
   if (gaps.length > 0) cards.push(layerList('Longest gaps', gaps, page, go));
   if (page.notes.places.length > 0) cards.push(placesCard(page, show));
-  if (page.head.parts.length > 1) cards.push(partsCard(page, store));
+  const bodies = bodiesOf(page.head);
+  if (bodies.length > 1) cards.push(partsCard(bodies, store));
   cards.push(card('Stack', facts(totals(page))));
   if (remarkable.length > 0) cards.push(layerList('Layers that stand out', remarkable, page, go));
   cards.push(...noteCards(page));

@@ -43,7 +43,7 @@ export class Cap {
     ctx.clearRect(0, 0, this.canvas.width, this.canvas.height);
     layer.parts.forEach((contours, part) => {
       if (hidden.has(part)) return;
-      ctx.fillStyle = colours[part % colours.length];
+      ctx.fillStyle = colours[part];
       const path = pathOf(contours, this.camera);
       ctx.fill(path, 'nonzero');
       if (rim === null) return;

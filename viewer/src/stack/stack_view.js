@@ -1,4 +1,5 @@
-import { BufferAttribute, BufferGeometry, DataTexture, Mesh, RGBAIntegerFormat, RedFormat, UnsignedIntType, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry, DataTexture, Mesh, RGBAIntegerFormat, RGFormat, UnsignedIntType, Vector3 } from 'three';
+import { bodyOfParts } from '../data/exposures.js';
 import { element } from '../element.js';
 import { brief } from '../text.js';
 import { nextTurn } from '../turn.js';
@@ -66,7 +67,8 @@ export class StackView {
   #shelf;
   #store;
   #space;
-  #hidden;
+  #bodies; // of each part
+  #parts;
   #walls;
   #ghosts;
   #levels = []; // those that are complete, each a list of pieces { layers, counts, solid, ghost }
@@ -106,10 +108,11 @@ export class StackView {
       this.caption.textContent = 'This browser draws nothing in space: WebGL is missing or switched off.';
       return;
     }
-    this.#hidden = new DataTexture(new Uint8Array(head.parts.length), head.parts.length, 1, RedFormat);
+    this.#bodies = bodyOfParts(head);
+    this.#parts = new DataTexture(new Uint8Array(this.#bodies.flatMap((body) => [0, body % 256])), head.parts.length, 1, RGFormat);
     const heights = heightsTexture(table.bottom.map((z) => z - bottom), table.top.map((z) => z - bottom));
-    this.#walls = wallMaterial(false, heights, head.layers - 1, this.#hidden);
-    this.#ghosts = wallMaterial(true, heights, head.layers - 1, this.#hidden);
+    this.#walls = wallMaterial(false, heights, head.layers - 1, this.#parts);
+    this.#ghosts = wallMaterial(true, heights, head.layers - 1, this.#parts);
     this.#top = new Cap(this.#space.size);
     this.#floor = new Cap(this.#space.size);
     this.#marks = placeMarks(notes.places, this.#origin);
@@ -140,7 +143,7 @@ export class StackView {
 
   #paint(theme) {
     for (const { uniforms } of [this.#walls, this.#ghosts]) {
-      uniforms.parts.value.forEach((colour, i) => colour.set(theme.walls[i]));
+      uniforms.bodies.value.forEach((colour, i) => colour.set(theme.walls[i]));
       uniforms.current.value.set(theme.wallCut);
       uniforms.open.value.set(theme.open);
     }
@@ -149,9 +152,14 @@ export class StackView {
   }
 
   #hide(hidden) {
-    this.#hidden.image.data.forEach((_, part, data) => (data[part] = hidden.has(part) ? 255 : 0));
-    this.#hidden.needsUpdate = true;
+    this.#bodies.forEach((_, part) => (this.#parts.image.data[2 * part] = hidden.has(part) ? 255 : 0));
+    this.#parts.needsUpdate = true;
     this.#space.redraw();
+  }
+
+  /** The colour of each part: that of its body. */
+  #wallsOf({ walls }) {
+    return this.#bodies.map((body) => walls[body % walls.length]);
   }
 
   #shine(up) {
@@ -166,13 +174,13 @@ export class StackView {
     const layer = await this.#shelf.layer(number);
     if (this.#store.state.layer !== number) return;
     this.#capToPaint('top', (theme, hidden) =>
-      this.#top.show(layer, this.#page.table.top[number] - this.#origin[2], theme.walls, hidden, theme.wallCut),
+      this.#top.show(layer, this.#page.table.top[number] - this.#origin[2], this.#wallsOf(theme), hidden, theme.wallCut),
     );
   }
 
   async #followFloor() {
     const layer = await this.#shelf.decode(0);
-    this.#capToPaint('floor', (theme, hidden) => this.#floor.show(layer, 0, theme.walls, hidden));
+    this.#capToPaint('floor', (theme, hidden) => this.#floor.show(layer, 0, this.#wallsOf(theme), hidden));
   }
 
   #capToPaint(name, paint) {

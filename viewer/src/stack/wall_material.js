@@ -1,7 +1,7 @@
 import { Color, DataTexture, DoubleSide, FloatType, FrontSide, RGFormat, ShaderMaterial, Vector3 } from 'three';
 import { linesOfRow } from './walls.js';
 
-const mostParts = 8;
+const mostBodies = 8;
 /** How far ledges reach inwards, in thicknesses of the layer: over slopes of 18 degrees and more there are no gaps. */
 const ledgeWidth = 3;
 const heightsOfRow = 1024;
@@ -23,7 +23,7 @@ export function heightsTexture(bottoms, tops) {
 const vertex = /* glsl */ `
   uniform highp usampler2D lines;
   uniform highp sampler2D heights;
-  uniform sampler2D hidden;
+  uniform sampler2D parts;
   uniform int layer;
   uniform int last;
   uniform int stride;
@@ -32,6 +32,7 @@ const vertex = /* glsl */ `
   varying float upward;
   flat varying float isLedge;
   flat varying ivec2 which;
+  flat varying int body;
 
   vec2 heightsOf(int number) {
     return texelFetch(heights, ivec2(number % ${heightsOfRow}, number / ${heightsOfRow}), 0).rg;
@@ -60,7 +61,9 @@ const vertex = /* glsl */ `
     which = ivec2(number, info.y);
     normalSeen = normalize(normalMatrix * (ledge ? vec3(0.0, 0.0, 1.0) : vec3(outward, 0.0)));
     gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
-    bool isHidden = texelFetch(hidden, ivec2(part, 0), 0).r > 0.5;
+    vec2 shown = texelFetch(parts, ivec2(part, 0), 0).rg;
+    bool isHidden = shown.r > 0.5;
+    body = int(shown.g * 255.0 + 0.5);
     // Ledges of open contours would lie nowhere, those of ghosts would hide them, and the top layer has a cap.
     bool isBare = ledge && (above || number + stride > layer || open);
     if (isHidden || isBare) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -79,7 +82,7 @@ const light = /* glsl */ `
 const fragment = /* glsl */ `
   uniform int layer;
   uniform bool above;
-  uniform vec3 parts[${mostParts}];
+  uniform vec3 bodies[${mostBodies}];
   uniform vec3 current;
   uniform vec3 open;
   uniform vec3 up;
@@ -87,10 +90,11 @@ const fragment = /* glsl */ `
   varying float upward;
   flat varying float isLedge;
   flat varying ivec2 which;
+  flat varying int body;
   ${light}
 
   void main() {
-    vec3 colour = parts[(which.y >> 1) % ${mostParts}];
+    vec3 colour = bodies[body % ${mostBodies}];
     bool isOpen = (which.y & 1) == 1;
     if (above) {
       gl_FragColor = vec4(isOpen ? open : colour, isOpen ? 0.3 : 0.07);
@@ -120,9 +124,9 @@ const fragment = /* glsl */ `
  * @param {boolean} above the ghosts of the layers above instead of the stack up to the layer
  * @param {import('three').DataTexture} heights of the layers
  * @param {number} last layer
- * @param {import('three').DataTexture} hidden a byte for each part: 255 for those that are not shown
+ * @param {import('three').DataTexture} parts two bytes for each: 255 for those that are not shown; the number of its body
  */
-export function wallMaterial(above, heights, last, hidden) {
+export function wallMaterial(above, heights, last, parts) {
   return new ShaderMaterial({
     vertexShader: vertex,
     fragmentShader: fragment,
@@ -132,12 +136,12 @@ export function wallMaterial(above, heights, last, hidden) {
     uniforms: {
       lines: { value: null },
       heights: { value: heights },
-      hidden: { value: hidden },
+      parts: { value: parts },
       layer: { value: 0 },
       last: { value: last },
       stride: { value: 1 },
       above: { value: above },
-      parts: { value: Array.from({ length: mostParts }, () => new Color()) },
+      bodies: { value: Array.from({ length: mostBodies }, () => new Color()) },
       current: { value: new Color() },
       open: { value: new Color() },
       up: { value: new Vector3(0, 0, 1) },

@@ -1,9 +1,10 @@
+import { hasMaterial, hasVectors } from '../data/exposures.js';
 import { element } from '../element.js';
 import { iconButton } from '../icon.js';
 import { brief, count, mm } from '../text.js';
 import { LayerAxis, drawPlot, drawTicks } from './plot.js';
 
-const rows = [
+const rowsOfMaterial = [
   { column: 'area_mm2', name: 'Area', unit: 'mm²', tell: brief },
   { column: 'perimeter_mm', name: 'Perimeter', unit: 'mm', tell: brief },
   { column: 'contours', name: 'Contours', unit: '', tell: count },
@@ -12,9 +13,18 @@ const rows = [
   { column: 'longest_gap_mm', name: 'Gap', unit: 'mm', tell: brief, fault: true, rare: true },
   { column: 'rings_dropped', name: 'Dropped', unit: '', tell: count, rare: true },
 ];
+const rowsOfVectors = [
+  { column: 'build_seconds', name: 'Time', unit: 's', tell: brief },
+  { column: 'vectors', name: 'Vectors', unit: '', tell: count },
+  { column: 'marked_mm', name: 'Marked', unit: 'mm', tell: brief },
+  { column: 'jumped_mm', name: 'Jumped', unit: 'mm', tell: brief },
+];
 
 /** Rows of what few stacks have are there for those alone. */
-const rowsFor = (table) => rows.filter(({ column, rare }) => !rare || table[column]?.some((value) => value > 0));
+const rowsFor = ({ head, table }) =>
+  [...(hasVectors(head) ? rowsOfVectors : []), ...(hasMaterial(head) ? rowsOfMaterial : [])].filter(
+    ({ column, rare }) => !rare || table[column]?.some((value) => value > 0),
+  );
 
 /** The slider over all layers, and under it what they measure, on the same axis. */
 export class Timeline {
@@ -49,7 +59,7 @@ export class Timeline {
     });
     this.height = element('span', { className: 'height' });
     this.cursor = element('i', { className: 'cursor', 'aria-hidden': true });
-    this.plots = rowsFor(page.table).map((row) => this.#plot(row));
+    this.plots = rowsFor(page).map((row) => this.#plot(row));
     this.node = element(
       'section',
       { className: 'timeline', 'aria-label': 'Layers' },
