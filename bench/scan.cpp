@@ -4,6 +4,8 @@
 // as plain lines do. And what does a whole job take, from mesh to a binary file, against copying that file?
 // What it holds must be what verify_vectors asks for.
 
+#include "lamella/core/unit_circle.hpp"
+
 #include "experiment.hpp"
 #include "parts.hpp"
 #include "parts/shapes.hpp"
@@ -166,7 +168,9 @@ struct FileCost {
 };
 
 FileCost file_of(const Part& part, const ScanStrategy& strategy, const std::string& path) {
-    FileJob job{.inputs = {{.path = part.path}}, .output = path};
+    FileJob job;
+    job.inputs = {{.path = part.path}};
+    job.output = path;
     job.layering.cut = UniformLayers{.layer_height = part.layer_height};
     job.scan = strategy;
     FileCost cost;
