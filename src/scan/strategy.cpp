@@ -51,9 +51,9 @@ void check(std::string_view rule, const HatchRule& hatch) {
     check_not_negative(rule, "border", hatch.border);
     check_not_negative(rule, "shortest", hatch.shortest);
     check_positive(rule, "cell", hatch.cell);
-    if (!(hatch.overlap >= 0 && hatch.overlap < hatch.cell / 2))
-        refuse(rule, "overlap", hatch.overlap,
-               fmt::format("0 or more and less than half of `cell`, {:g}", hatch.cell / 2));
+    check_not_negative(rule, "overlap", hatch.overlap);
+    if (!(hatch.cell > 2 * hatch.overlap)) // of both, options set this one
+        refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, twice the overlap", 2 * hatch.overlap));
     check(rule, hatch.parameters);
 }
 

@@ -62,7 +62,7 @@ class Strategy(ProgramTest):
         self.check('[contours]\nbefore_hatch = "no"\n', r's\.toml:2: contours\.before_hatch is "no", but has to be true or false')
         self.check('[hatch]\npattern = "stripe"\n', r's\.toml:2: hatch\.pattern is "stripe", .*did you mean stripes\?')
         self.check("[hatch]\nangle_degrees = 1\ndistance = -0.1\n", r"s\.toml:3: hatch\.distance is -0\.1, but has to be above 0")
-        self.check("[hatch]\ncell = 0.1\n", r"s\.toml:1: hatch\.overlap is 0\.1, but has to be .*less than half of cell, 0\.05")
+        self.check("[hatch]\ncell = 0.1\n", r"s\.toml:2: hatch\.cell is 0\.1, but has to be above 0\.2, twice the overlap")
         self.check("[upskin.hatch]\nborder = -1\n", r"s\.toml:2: upskin\.hatch\.border is -1, but has to be 0 or more")
         self.check("[parameters.hatch]\npower_w = 1\nspeed_mm_s = 0\n",
                    r"s\.toml:3: parameters\.hatch\.speed_mm_s is 0, but has to be above 0")
@@ -177,11 +177,11 @@ class Scan(ProgramTest):
             chosen = ["--format", "3mf-toolpath"] if name == "job.3mf" else []
             result = self.succeed("slice", "plate.3mf", "--include", "support", "-o", name, *chosen, *options, "--stats", "stats.json")
             self.assertEqual(result.err, "")
-            self.succeed("convert", name, "back.json", *(["--format", "json"]))
+            self.succeed("convert", name, "back.json")
             self.assertEqual([part["label"] for part in json.loads(self.bytes_of("back.json"))["parts"]], labels)
         stats = json.loads(self.bytes_of("stats.json"))["scan"]
         self.assertEqual(list(stats["regions"]), ["core", "upskin", "support"])
-        self.assertEqual(stats["regions"]["support"]["contour_vectors"], 2 * 2 * 4)
+        self.assertEqual(stats["regions"]["support"]["contour_vectors"], 2 * stats["regions"]["core"]["contour_vectors"])
         # Contours of 3.9 and 3.7 mm by 2.9 and 2.7 mm; the hatch is 3.6 mm by 2.6 mm.
         support = stats["regions"]["support"]["marked_mm"] / 2
         self.assertAlmostEqual(support, 2 * (3.9 + 2.9 + 3.7 + 2.7) + 3.6 * 2.6 / 0.5, delta=4)
@@ -213,7 +213,7 @@ class Scan(ProgramTest):
         self.assertEqual(self.bytes_of("configured.json"), self.bytes_of("job.json"))
         shard = ["slice", "part.stl", "-o", "a.cli", "--shard", "1/2", "--resume", "--layer-height", "1", "--scan"]
         self.assertIn("sliced", self.succeed(*shard).text)
-        self.assertIn("sliced", self.succeed(*shard, "--support").text) # not finished: its origin is another
+        self.assertIn("sliced", self.succeed(*shard, "--support").text)  # it is no longer what was asked for
 
     def test_options_that_make_no_sense(self):
         self.fail_with(2, "--hatch-distance goes with --scan or --strategy", "slice", "part.stl", "-o", "x.cli", "--hatch-distance", "1")
@@ -223,7 +223,11 @@ class Scan(ProgramTest):
         self.fail_with(2, "--pattern: \"stripe\" is none of .*did you mean stripes", "slice", "part.stl", "-o", "x.cli", "--scan",
                        "--pattern", "stripe")
         self.fail_with(2, "--contours: ", "slice", "part.stl", "-o", "x.cli", "--scan", "--contours", "-1")
-        self.fail_with(2, "less than half of --cell-size, 0.05", "slice", "part.stl", "-o", "x.cli", "--scan", "--cell-size", "0.1")
+        self.fail_with(2, "--cell-size is 0.1, but has to be above 0.2, twice the overlap", "slice", "part.stl", "-o", "x.cli", "--scan",
+                       "--cell-size", "0.1")
+        self.write("s.toml", "[upskin.hatch]\noverlap = 0.5\n")
+        self.fail_with(2, "--cell-size is 0.7, but has to be above 1, twice the overlap", "slice", "part.stl", "-o", "x.cli",
+                       "--strategy", "s.toml", "--cell-size", "0.7")
 
     def test_the_same_bytes_for_any_division(self):
         self.succeed("make", "sphere", "--size", "12", "--detail", "3", "-o", "ball.stl")

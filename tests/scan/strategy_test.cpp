@@ -57,6 +57,10 @@ TEST(Strategy, RefusesValuesOutOfRangeAndNamesTheirField) {
          }},
         {"`hatch.overlap`",
          [](ScanStrategy& s) {
+             s.hatch.overlap = -0.1;
+         }},
+        {"`hatch.cell`",
+         [](ScanStrategy& s) {
              s.hatch.overlap = s.hatch.cell / 2;
          }},
         {"`hatch.speed_mm_s`",
