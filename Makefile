@@ -87,7 +87,7 @@ test-shared: packages-all
 fresh:  ## `make demo` and `make test` on a Debian 12 with git, make and nothing else, made for it (root only)
 	@tools/fresh.sh
 
-fuzz: packages-all  ## fuzz all readers, each for MINUTES (10 unless given); what is found is left in out/fuzz/
+fuzz: packages-all  ## fuzz readers and strategies, each for MINUTES (10 unless given); what is found is left in out/fuzz/
 	cmake --preset fuzz
 	cmake --build build-fuzz --target tests/fuzz/all
 	$(CTEST) --test-dir build-fuzz --label-regex '^fuzz$$'

@@ -45,6 +45,7 @@ struct InputOptions {
     std::optional<std::uint64_t> copies;
     std::optional<double> spacing;
     std::string label;
+    bool support = false;
 };
 
 struct SliceArguments {
@@ -102,6 +103,7 @@ void finish_input(SliceArguments& target) {
     input.copies = options.copies.value_or(input.copies);
     input.spacing_mm = options.spacing.value_or(input.spacing_mm);
     input.label = options.label;
+    input.support = options.support;
 }
 
 void add_input(SliceArguments& target, const std::string& path) {
@@ -131,6 +133,11 @@ OptionGroup input_options(SliceArguments& target) {
     group.options.push_back(text("label", "TEXT",
                                  "its name in the slice file, instead of that of the file or its objects",
                                  target.of_input.label));
+    group.options.push_back(
+        flag("support",
+             "it is a support, whatever the file says: scan vectors are made by a rule of "
+             "their own",
+             target.of_input.support));
     for (Option& option : group.options)
         option.of_each_file = true;
     group.options.push_back(triple("build-volume", "X,Y,Z",

@@ -26,7 +26,6 @@ struct FieldOption {
 
 constexpr std::array field_options{
     FieldOption{"`adaptive`", "--adaptive"},
-    FieldOption{"`cell`", "--cell-size"},
     FieldOption{"`drop_duplicates`", "--drop-duplicates"},
     FieldOption{"`inspect`", "--inspect"},
     FieldOption{"`max_memory`", "--max-memory"},
@@ -36,13 +35,16 @@ constexpr std::array field_options{
     FieldOption{"`strict`", "--strict"},
     FieldOption{"`threads`", "--threads"},
     FieldOption{"`weld_tolerance_mm`", "--weld-tolerance"},
-    // Of a strategy, which options change in all rules at once: the first that is looked at is named.
+    // Of a strategy, which options change in all rules at once: the first that is looked at is named. A cell
+    // has to suit the overlap, which rules have each for itself.
     FieldOption{"`contours.beam_offset`", "--beam-offset"},
     FieldOption{"`contours.count`", "--contours"},
     FieldOption{"`contours.distance`", "--contour-distance"},
     FieldOption{"`hatch.angle_degrees`", "--hatch-angle"},
     FieldOption{"`hatch.border`", "--hatch-border"},
     FieldOption{"`hatch.cell`", "--cell-size"},
+    FieldOption{"`upskin.hatch.cell`", "--cell-size"},
+    FieldOption{"`downskin.hatch.cell`", "--cell-size"},
     FieldOption{"`hatch.distance`", "--hatch-distance"},
     FieldOption{"`hatch.shortest`", "--shortest"},
     FieldOption{"`hatch.turn_degrees`", "--hatch-turn"},

@@ -37,8 +37,8 @@ LayerFileInfo info_of(const LayerFile& file) {
     LayerFileInfo info{
         .box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}, .rule = file.rule};
     for (const LayerPart& part : file.parts)
-        info.parts.push_back(
-            {part.label.empty() ? PartInfo{}.label : part.label, box_of(part.layers), part.exposure});
+        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label, box_of(part.layers),
+                              part.exposure, part.support});
     info.box = box_of(info, layers);
     return info;
 }

@@ -41,7 +41,8 @@ Json input_json(const PlateInput& input, const Execution& execution) {
             {"placement", std::move(placement)},
             {"copies", input.copies},
             {"spacing", input.spacing_mm},
-            {"label", input.label}};
+            {"label", input.label},
+            {"support", input.support}};
 }
 
 Json read_stamp(const std::string& output) {

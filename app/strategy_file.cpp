@@ -31,7 +31,21 @@ namespace lamella::app {
 namespace {
 
 constexpr std::string_view parameters_key = "parameters";
-constexpr std::string_view hatch_key = "hatch"; ///< of a skin, too
+constexpr std::string_view contours_key = "contours"; ///< of supports, too
+constexpr std::string_view hatch_key = "hatch";       ///< of skins and of supports, too
+
+/// Each once, in the order of the tables.
+std::vector<ParameterSet> sets_of(const ScanStrategy& strategy) {
+    std::vector<ParameterSet> sets;
+    for (const ParameterSet* one :
+         {&strategy.contours.parameters, &strategy.hatch.parameters, &strategy.upskin.hatch.parameters,
+          &strategy.downskin.hatch.parameters, &strategy.support.contours.parameters,
+          &strategy.support.hatch.parameters})
+        if (std::none_of(sets.begin(), sets.end(),
+                         [&](const ParameterSet& set) { return set.name == one->name; }))
+            sets.push_back(*one);
+    return sets;
+}
 
 // ------------------------------------------------------------------------------------------------ read
 
@@ -124,7 +138,7 @@ class StrategyReading {
         read_fields("", file, strategy, strategy_fields(),
                     {{"contours",
                       [&](const TomlValue& value) {
-                          read_contours(value);
+                          read_contours("contours", value, strategy.contours);
                       }},
                      {"hatch",
                       [&](const TomlValue& value) {
@@ -138,6 +152,10 @@ class StrategyReading {
                       [&](const TomlValue& value) {
                           read_skin("downskin", value, strategy.downskin);
                       }},
+                     {"support",
+                      [&](const TomlValue& value) {
+                          read_support(value);
+                      }},
                      {"parameters", [&](const TomlValue& value) {
                           read_sets(value);
                       }}});
@@ -145,6 +163,8 @@ class StrategyReading {
         resolve("hatch", strategy.hatch.parameters);
         resolve("upskin.hatch", strategy.upskin.hatch.parameters);
         resolve("downskin.hatch", strategy.downskin.hatch.parameters);
+        resolve("support.contours", strategy.support.contours.parameters);
+        resolve("support.hatch", strategy.support.hatch.parameters);
         check_use();
         check_ranges();
     }
@@ -215,10 +235,9 @@ class StrategyReading {
                 }};
     }
 
-    void read_contours(const TomlValue& value) {
-        ContourRule& rule = strategy.contours;
-        read_fields("contours.", table_of(value, "contours"), rule, contour_fields(),
-                    {set_name("contours", rule.parameters)});
+    void read_contours(const std::string& path, const TomlValue& value, ContourRule& rule) {
+        read_fields(path + ".", table_of(value, path), rule, contour_fields(),
+                    {set_name(path, rule.parameters)});
     }
 
     void read_hatch(const std::string& path, const TomlValue& value, HatchRule& rule) {
@@ -231,6 +250,19 @@ class StrategyReading {
         read_fields(path + ".", table_of(value, path), rule, skin_fields(),
                     {{std::string(hatch_key), [&](const TomlValue& inner) {
                           read_hatch(hatch, inner, rule.hatch);
+                      }}});
+    }
+
+    void read_support(const TomlValue& value) {
+        SupportRule& rule = strategy.support;
+        read_fields("support.", table_of(value, "support"), rule,
+                    std::span<const StrategyField<SupportRule>>(), // it has tables only
+                    {{std::string(contours_key),
+                      [&](const TomlValue& inner) {
+                          read_contours("support.contours", inner, rule.contours);
+                      }},
+                     {std::string(hatch_key), [&](const TomlValue& inner) {
+                          read_hatch("support.hatch", inner, rule.hatch);
                       }}});
     }
 
@@ -254,9 +286,8 @@ class StrategyReading {
     static std::map<std::string, Set> preset_sets() {
         const ScanStrategy preset;
         std::map<std::string, Set> sets;
-        for (const ParameterSet* one : {&preset.contours.parameters, &preset.hatch.parameters,
-                                        &preset.upskin.hatch.parameters, &preset.downskin.hatch.parameters})
-            sets.try_emplace(one->name).first->second.parameters = *one;
+        for (const ParameterSet& one : sets_of(preset))
+            sets.try_emplace(one.name).first->second.parameters = one;
         return sets;
     }
 
@@ -391,6 +422,10 @@ std::string set_text(const ParameterSet& set) {
                      "what the beam does: the table of this name below");
 }
 
+std::string contours_text(const ContourRule& rule) {
+    return rule_text(rule, contour_fields()) + set_text(rule.parameters);
+}
+
 std::string hatch_text(const HatchRule& rule) {
     return rule_text(rule, hatch_fields()) + set_text(rule.parameters);
 }
@@ -398,6 +433,12 @@ std::string hatch_text(const HatchRule& rule) {
 std::string skin_text(const std::string& name, const SkinRule& rule, std::string_view where) {
     return fmt::format("\n# Where there is no material {}, or little.\n[{}]\n{}\n[{}.{}]\n{}", where, name,
                        rule_text(rule, skin_fields()), name, hatch_key, hatch_text(rule.hatch));
+}
+
+Json contours_json(const ContourRule& rule) {
+    Json object = rule_json(rule, contour_fields());
+    object[std::string(parameters_key)] = rule.parameters.name;
+    return object;
 }
 
 Json hatch_json(const HatchRule& rule) {
@@ -410,17 +451,6 @@ Json skin_json(const SkinRule& rule) {
     Json object = rule_json(rule, skin_fields());
     object[std::string(hatch_key)] = hatch_json(rule.hatch);
     return object;
-}
-
-/// Each once, in the order of the tables.
-std::vector<ParameterSet> sets_of(const ScanStrategy& strategy) {
-    std::vector<ParameterSet> sets;
-    for (const ParameterSet* one : {&strategy.contours.parameters, &strategy.hatch.parameters,
-                                    &strategy.upskin.hatch.parameters, &strategy.downskin.hatch.parameters})
-        if (std::none_of(sets.begin(), sets.end(),
-                         [&](const ParameterSet& set) { return set.name == one->name; }))
-            sets.push_back(*one);
-    return sets;
 }
 
 } // namespace
@@ -436,12 +466,14 @@ std::string strategy_text(const ScanStrategy& strategy) {
         "# A strategy for --strategy of lamella slice and lamella scan. What a file does not say is "
         "as by default.\n\n";
     text += rule_text(strategy, strategy_fields());
-    text +=
-        fmt::format("\n# Lines along the outline of the part.\n[contours]\n{}{}",
-                    rule_text(strategy.contours, contour_fields()), set_text(strategy.contours.parameters));
+    text += fmt::format("\n# Lines along the outline of the part.\n[contours]\n{}",
+                        contours_text(strategy.contours));
     text += fmt::format("\n# Parallel lines that fill the core.\n[hatch]\n{}", hatch_text(strategy.hatch));
     text += skin_text("upskin", strategy.upskin, "above");
     text += skin_text("downskin", strategy.downskin, "below");
+    text += fmt::format(
+        "\n# All of what is a support, which has no skins.\n[support.contours]\n{}\n[support.hatch]\n{}",
+        contours_text(strategy.support.contours), hatch_text(strategy.support.hatch));
     text += "\n# What the beam does along lines and between them.\n";
     for (const ParameterSet& set : sets_of(strategy))
         text += fmt::format("[{}.{}]\n{}\n", parameters_key, key_text(set.name),
@@ -452,11 +484,12 @@ std::string strategy_text(const ScanStrategy& strategy) {
 
 Json strategy_json(const ScanStrategy& strategy) {
     Json object = rule_json(strategy, strategy_fields());
-    object["contours"] = rule_json(strategy.contours, contour_fields());
-    object["contours"][std::string(parameters_key)] = strategy.contours.parameters.name;
+    object["contours"] = contours_json(strategy.contours);
     object["hatch"] = hatch_json(strategy.hatch);
     object["upskin"] = skin_json(strategy.upskin);
     object["downskin"] = skin_json(strategy.downskin);
+    object["support"] = {{std::string(contours_key), contours_json(strategy.support.contours)},
+                         {std::string(hatch_key), hatch_json(strategy.support.hatch)}};
     for (const ParameterSet& set : sets_of(strategy))
         object[std::string(parameters_key)][set.name] = rule_json(set, parameter_fields());
     return object;

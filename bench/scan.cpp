@@ -183,10 +183,11 @@ FileCost file_of(const Part& part, const ScanStrategy& strategy, const std::stri
 
 bool is_right(const Part& part, const ScanStrategy& strategy, const std::string& path) {
     const LayerFile file = read_layers(path);
-    return verify_vectors(
-               file.parts,
-               {.mesh = read_mesh(part.path).mesh, .rounding = file.rounding, .strategy = strategy})
-        .ok();
+    VectorVerifyOptions options;
+    options.mesh = open_part(part, {}).mesh;
+    options.rounding = file.rounding;
+    options.strategy = strategy;
+    return verify_vectors(file.parts, options).ok();
 }
 
 int report(int argc, char** argv) {

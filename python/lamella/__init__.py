@@ -40,6 +40,7 @@ from ._lamella import (
     ScanStrategy,
     SkinRule,
     Stack,
+    SupportRule,
     __version__,
 )
 from ._meshes import Inspection, inspect
@@ -72,6 +73,7 @@ __all__ = [
     "ScanStrategy",
     "SkinRule",
     "Stack",
+    "SupportRule",
     "UsageError",
     "Verification",
     "__version__",

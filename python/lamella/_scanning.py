@@ -61,7 +61,7 @@ def _lines(layer: Layer) -> npt.NDArray[np.float64]:
 
 
 def scan(
-    layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part"
+    layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part", *, support: bool = False
 ) -> Iterator[ScanLayer]:
     """Makes scan vectors of layers in ascending z, such as a Stack or what `iter_layers` gives; one by one, while no
     more layers are held than skins ask for.
@@ -69,6 +69,7 @@ def scan(
     strategy: a ScanStrategy; the path of a TOML file, as the program takes it (needs Python 3.11); the same as a dict,
         such as {"hatch": {"distance": 0.08}}; None is what is there by default.
     part: what exposures call the part.
+    support: it is a support: exposed by the strategy's rule for these, without skins.
 
     Raises UsageError for a strategy that is not right, LimitError for layers that would have too many vectors.
     """
@@ -76,7 +77,15 @@ def scan(
         each = iter(layers)
     except TypeError:
         check.refuse_type("layers", "layers in ascending z", layers)
-    return _scan(each, as_strategy("strategy", strategy), check.label("part", part))
+    known = as_strategy("strategy", strategy)
+    label = check.label("part", part)
+    return _scan_support(each, known, label) if check.flag("support", support) else _scan(each, known, label)
+
+
+def _scan_support(layers: Iterator[Layer], strategy: ScanStrategy, part: bytes) -> Iterator[ScanLayer]:
+    exposures = tuple(_lamella.support_exposures(strategy, part))
+    for layer in layers:
+        yield _scanned(layer, exposures, _lamella.scan_support(_checked(layer), strategy))
 
 
 def _scan(layers: Iterator[Layer], strategy: ScanStrategy, part: bytes) -> Iterator[ScanLayer]:
@@ -84,13 +93,21 @@ def _scan(layers: Iterator[Layer], strategy: ScanStrategy, part: bytes) -> Itera
     below: Deque[Layer] = deque(maxlen=strategy.downskin.layers)
     coming: Deque[Layer] = deque(islice(layers, 1 + strategy.upskin.layers))
     while coming:
-        layer = coming.popleft()
-        if not isinstance(layer, Layer):
-            check.refuse_type("layers", "layers", layer)
+        layer = _checked(coming.popleft())
         vectors = _lamella.scan(layer, list(reversed(below)), list(coming), strategy)
-        yield ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors))
+        yield _scanned(layer, exposures, vectors)
         below.append(layer)
         coming.extend(islice(layers, 1))
+
+
+def _checked(layer: Any) -> Layer:
+    if not isinstance(layer, Layer):
+        check.refuse_type("layers", "layers", layer)
+    return layer
+
+
+def _scanned(layer: Layer, exposures: Tuple[Exposure, ...], vectors: List[Layer]) -> ScanLayer:
+    return ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors))
 
 
 def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
@@ -127,7 +144,8 @@ def _from_tables(name: str, tables: Mapping[str, Any]) -> ScanStrategy:
     """The tables of a strategy file, of which any may be missing."""
     strategy = ScanStrategy()
     rules: List[Union[ContourRule, HatchRule]] = [
-        strategy.contours, strategy.hatch, strategy.upskin.hatch, strategy.downskin.hatch
+        strategy.contours, strategy.hatch, strategy.upskin.hatch, strategy.downskin.hatch,
+        strategy.support.contours, strategy.support.hatch,
     ]  # fmt: skip
     sets = {rule.parameters.name: ParameterSet(rule.parameters) for rule in rules}
     parameters = tables.get("parameters", {})

@@ -1,7 +1,6 @@
 #include "scanning.hpp"
 
 #include "lamella/contour/exposure.hpp"
-#include "lamella/contour/measure_vectors.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
@@ -99,6 +98,11 @@ std::vector<LayerPointer> scanned(const SharedLayer& layer, const std::vector<La
     return shared(scan(layer.get(), layers_of(below), layers_of(above), strategy));
 }
 
+std::vector<LayerPointer> scanned_support(const SharedLayer& layer, const ScanStrategy& strategy) {
+    const py::gil_scoped_release released;
+    return shared(scan_support(layer.get(), strategy));
+}
+
 std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
                                   const std::vector<Exposure>& exposures) {
     const py::gil_scoped_release released;
@@ -121,6 +125,10 @@ void bind_rules(py::module_& module) {
         .def_readwrite("parameters", &ContourRule::parameters, parameters);
     bind_rule(module, "SkinRule", "Where a layer has little material above it, or below.", skin_fields())
         .def_readwrite("hatch", &SkinRule::hatch, "Its lines: a HatchRule.");
+    py::class_<SupportRule>(module, "SupportRule", "All of what is a support, which has no skins.")
+        .def(py::init())
+        .def_readwrite("contours", &SupportRule::contours, "Lines along its outline: a ContourRule.")
+        .def_readwrite("hatch", &SupportRule::hatch, "Lines that fill it: a HatchRule.");
     bind_rule(module, "ScanStrategy",
               "How a powder-bed machine is to expose a part: contours, hatches, skins. By default what makes "
               "sense\n"
@@ -130,7 +138,8 @@ void bind_rules(py::module_& module) {
         .def_readwrite("hatch", &ScanStrategy::hatch, "Lines that fill the core: a HatchRule.")
         .def_readwrite("upskin", &ScanStrategy::upskin, "Where there is little material above: a SkinRule.")
         .def_readwrite("downskin", &ScanStrategy::downskin,
-                       "Where there is little material below: a SkinRule.");
+                       "Where there is little material below: a SkinRule.")
+        .def_readwrite("support", &ScanStrategy::support, "What is a support: a SupportRule.");
 }
 
 } // namespace
@@ -162,7 +171,9 @@ void bind_scanning(py::module_& module) {
         .def_readonly("energy_j", &ScanFigures::energy_j, "Power by the time of marking, in joules.");
     module.def("check_strategy", &check_strategy);
     module.def("exposures", &exposures);
+    module.def("support_exposures", &support_exposures);
     module.def("scan", &scanned);
+    module.def("scan_support", &scanned_support);
     module.def("measure_vectors", &measured);
 }
 

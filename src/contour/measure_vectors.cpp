@@ -1,4 +1,4 @@
-#include "lamella/contour/measure_vectors.hpp"
+#include "lamella/contour/exposure.hpp"
 
 #include <cmath>
 #include <cstddef>

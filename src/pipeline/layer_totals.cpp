@@ -5,6 +5,7 @@
 #include "lamella/contour/open_gaps.hpp"
 
 #include "pipeline/packed.hpp"
+#include "pipeline/plane_scan.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -13,14 +14,16 @@
 
 namespace lamella {
 
-LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, std::size_t parts)
+LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes,
+                         const std::vector<bool>& supports)
     : closed_(job.repair.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),
-      statistics_(job.layer_statistics ? planes.size() : 0), parts_(parts), has_changes_(job.steps.any()) {
+      statistics_(job.layer_statistics ? planes.size() : 0), parts_(supports.size()),
+      has_changes_(job.steps.any()) {
     rows_.reserve(planes.size());
     for (const PlannedLayer& plane : planes)
         rows_.push_back({.index = plane.index, .z = plane.z, .open_gaps = {}});
     if (job.scan)
-        for (Exposure& exposure : exposures(*job.scan, {}))
+        for (Exposure& exposure : plane_exposures(supports, *job.scan))
             exposures_.push_back({std::move(exposure), {}});
     vectors_.resize(planes.size() * exposures_.size());
 }

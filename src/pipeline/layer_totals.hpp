@@ -19,13 +19,13 @@ namespace lamella {
 /// processes give the same figures, bit for bit.
 class LayerTotals {
   public:
-    /// Of the planes that this process slices; none, perhaps.
-    LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, std::size_t parts);
+    /// Of the planes that this process slices; none, perhaps. `supports`: for each part whether it is one.
+    LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, const std::vector<bool>& supports);
 
     /// The layers of all parts on one plane, as they are written, and what was done to them. From any thread,
     /// once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes);
-    /// Of the scan vectors of a plane, by exposure. From any thread, once for each plane.
+    /// Of the scan vectors of a plane, by `plane_exposures`. From any thread, once for each plane.
     void add(std::uint64_t index, std::span<const ScanFigures> vectors);
 
     /// Points of the layers that were added.

@@ -25,6 +25,7 @@ namespace {
 struct ShardPart {
     std::string label;
     std::optional<Exposure> exposure;
+    bool support;
     Box3 box; ///< of its points
 };
 
@@ -60,7 +61,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .lowest_layer_mm = layers.front().thickness(),
                     .highest_layer_mm = layers.back().thickness()};
     for (const LayerPart& part : file.parts) {
-        Box3& box = shard.parts.emplace_back(ShardPart{part.label, part.exposure, {}}).box;
+        Box3& box = shard.parts.emplace_back(ShardPart{part.label, part.exposure, part.support, {}}).box;
         for (const Layer& layer : part.layers)
             for (const PointArray* points : {&layer.points, &layer.hatches})
                 for (const Point2& p : *points)
@@ -273,6 +274,7 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
         if (!part.label.empty())
             of_part.label = part.label;
         of_part.exposure = part.exposure;
+        of_part.support = part.support;
         of_part.box = part.box;
         info.box.add(of_part.box);
     }

@@ -1,5 +1,6 @@
 #include "pipeline/plane_scan.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <optional>
@@ -21,17 +22,35 @@ std::vector<Layer> layers_of(std::size_t part, const std::vector<std::span<const
 
 } // namespace
 
-PlaneVectors scan_plane(const PlaneLayers& plane, const ScanStrategy& strategy) {
-    const std::vector<Exposure> each = exposures(strategy, {});
+std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const ScanStrategy& strategy) {
+    std::vector<Exposure> all;
+    if (std::find(supports.begin(), supports.end(), false) != supports.end())
+        all = exposures(strategy, {});
+    if (std::find(supports.begin(), supports.end(), true) != supports.end())
+        for (Exposure& exposure : support_exposures(strategy, {}))
+            all.push_back(std::move(exposure));
+    return all;
+}
+
+PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
+                        const ScanStrategy& strategy) {
+    assert(supports.size() == plane.parts.size());
+    const std::vector<Exposure> each = plane_exposures(supports, strategy);
+    const auto of_supports = static_cast<std::size_t>(
+        std::find_if(each.begin(), each.end(),
+                     [](const Exposure& exposure) { return exposure.region == ScanRegion::support; }) -
+        each.begin());
     PlaneVectors vectors;
     vectors.figures.resize(each.size());
     std::optional<Point2> beam;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
-        std::vector<Layer> scanned =
-            scan(plane.parts[part], layers_of(part, plane.below), layers_of(part, plane.above), strategy);
-        assert(scanned.size() == each.size());
-        for (std::size_t i = 0; i < each.size(); ++i) {
-            vectors.figures[i] += measure_vectors(scanned[i], each[i].parameters, beam);
+        std::vector<Layer> scanned = supports[part] ? scan_support(plane.parts[part], strategy)
+                                                    : scan(plane.parts[part], layers_of(part, plane.below),
+                                                           layers_of(part, plane.above), strategy);
+        const std::size_t first = supports[part] ? of_supports : 0;
+        assert(scanned.size() == (supports[part] ? each.size() : of_supports) - first);
+        for (std::size_t i = 0; i < scanned.size(); ++i) {
+            vectors.figures[first + i] += measure_vectors(scanned[i], each[first + i].parameters, beam);
             vectors.layers.push_back(std::move(scanned[i]));
         }
     }

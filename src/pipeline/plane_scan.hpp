@@ -3,7 +3,7 @@
 // One plane of a plate and its neighbours become scan vectors.
 
 #include "lamella/contour/layer.hpp"
-#include "lamella/contour/measure_vectors.hpp"
+#include "lamella/contour/exposure.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -21,10 +21,16 @@ struct PlaneLayers {
 
 struct PlaneVectors {
     std::vector<Layer> layers;        ///< of each part each exposure
-    std::vector<ScanFigures> figures; ///< of each exposure, all parts together
+    std::vector<ScanFigures> figures; ///< of each of `plane_exposures`
 };
 
+/// What has figures: the exposures of parts, and then those of supports, where there are such; of no part:
+/// of all of them. `supports`: for each part whether it is one.
+[[nodiscard]] std::vector<Exposure> plane_exposures(const std::vector<bool>& supports,
+                                                    const ScanStrategy& strategy);
+
 /// See `scan`. The beam goes through the parts one after the other.
-[[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const ScanStrategy& strategy);
+[[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
+                                      const ScanStrategy& strategy);
 
 } // namespace lamella

@@ -107,8 +107,12 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
             label = !instance.name.empty()                              ? instance.name
                     : file.instances.size() > 1 && !object.name.empty() ? object.name
                                                                         : std::string();
-        instances.push_back(
-            {index, instance.object, compose(outer, instance.placement), std::move(label), {}});
+        instances.push_back({index,
+                             instance.object,
+                             compose(outer, instance.placement),
+                             std::move(label),
+                             input.support || instance.support,
+                             {}});
         instances.back().box = box_of(object.mesh, instances.back().placement);
         check_range(instances.back().box, input.path);
         box.add(instances.back().box);
@@ -144,6 +148,7 @@ Plate PlateBuilder::finish() {
                           : instances_.size() == 1 ? "part"
                                                    : stem_of(plate_.files[instance.input].path));
         plate_.parts[i].box = instance.box;
+        plate_.parts[i].support = instance.support;
         plate_.box.add(instance.box);
         const std::vector<std::size_t>& group = same[key_of(instance)];
         if (group.front() != i)

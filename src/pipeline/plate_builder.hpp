@@ -34,6 +34,7 @@ class PlateBuilder {
         std::size_t object;
         Transform placement;
         std::string label;
+        bool support;
         Box3 box;
     };
     /// Equal keys, equal layers but for a way along x and y.

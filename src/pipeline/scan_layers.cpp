@@ -17,8 +17,9 @@ LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& stra
     LayerFileInfo exposed = info;
     exposed.parts.clear();
     for (const PartInfo& part : info.parts)
-        for (const Exposure& exposure : exposures(strategy, part.label))
-            exposed.parts.push_back({exposure.label(), part.box, exposure});
+        for (const Exposure& exposure :
+             part.support ? support_exposures(strategy, part.label) : exposures(strategy, part.label))
+            exposed.parts.push_back({exposure.label(), part.box, exposure, part.support});
     return exposed;
 }
 
@@ -61,7 +62,10 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
     check_strategy(strategy);
     const Stacks stacks(parts);
     ScanResult result;
-    for (Exposure& exposure : exposures(strategy, {}))
+    std::vector<bool> supports;
+    for (const PartInfo& part : info.parts)
+        supports.push_back(part.support);
+    for (Exposure& exposure : plane_exposures(supports, strategy))
         result.exposures.push_back({std::move(exposure), {}});
     result.layers.resize(stacks.size());
     std::atomic<std::uint64_t> nanoseconds{0};
@@ -69,7 +73,7 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
         open_layer_writer(path, format, with_exposures(info, strategy), options);
     const auto vectors_of = [&](std::size_t i) {
         const Stopwatch scanning;
-        PlaneVectors vectors = scan_plane(stacks.plane(i, strategy), strategy);
+        PlaneVectors vectors = scan_plane(stacks.plane(i, strategy), supports, strategy);
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
                               std::memory_order_relaxed);
         result.layers[i] = std::move(vectors.figures);

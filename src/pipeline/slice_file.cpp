@@ -154,7 +154,7 @@ LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan
     LayerFileInfo info{
         .box = plate.box, .layers = written.size(), .bottom = plan.layers[written.begin].bottom, .parts = {}};
     for (const PlatePart& part : plate.parts)
-        info.parts.push_back({part.label, part.box});
+        info.parts.push_back({.label = part.label, .box = part.box, .support = part.support});
     info.rule = plan.rule;
     return job.scan ? with_exposures(info, *job.scan) : info;
 }
@@ -286,10 +286,12 @@ std::vector<PlaneRange> divide(const FileJob& job, const Planes& planes, Feed& f
 /// What is made of the layers of one plane on their way from the engine to the output.
 class LayerWay {
   public:
-    /// `sliced`: the planes of the plan that come, of which those of `mine` are written.
-    LayerWay(const FileJob& job, const Plan& plan, PlaneRange sliced, PlaneRange mine, LayerTotals& totals,
-             JobOutput& output)
-        : job_(job), first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
+    /// `sliced`: the planes of the plan that come, of which those of `mine` are written. `supports`: for each
+    /// part whether it is one.
+    LayerWay(const FileJob& job, const Plan& plan, PlaneRange sliced, PlaneRange mine,
+             const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output)
+        : job_(job), supports_(supports), first_index_(plan.layers.front().index), mine_(mine),
+          totals_(totals), output_(output),
           window_(sliced, mine, job.scan ? job.scan->downskin.layers : 0,
                   job.scan ? job.scan->upskin.layers : 0,
                   [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {}
@@ -344,13 +346,14 @@ class LayerWay {
 
     std::vector<Layer> vectors_of(const PlaneLayers& plane) {
         const Stopwatch scanning;
-        PlaneVectors vectors = scan_plane(plane, *job_.scan);
+        PlaneVectors vectors = scan_plane(plane, supports_, *job_.scan);
         count(scanning, scan_nanoseconds_);
         totals_.add(plane.parts.front().index, vectors.figures);
         return std::move(vectors.layers);
     }
 
     const FileJob& job_;
+    const std::vector<bool>& supports_;
     std::uint64_t first_index_;
     PlaneRange mine_;
     LayerTotals& totals_;
@@ -452,8 +455,11 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
 
     JobOutput output(job, file_info(job, plate, plan, all), {mine.begin - all.begin, mine.end - all.begin},
                      processes, feed.memory().of_output());
-    LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), plate.parts.size());
-    LayerWay way(job, plan, sliced_here, mine, totals, output);
+    std::vector<bool> supports;
+    for (const PlatePart& part : plate.parts)
+        supports.push_back(part.support);
+    LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports);
+    LayerWay way(job, plan, sliced_here, mine, supports, totals, output);
     double slice_seconds = 0; // without waiting for others
     std::uint64_t shares_of_all = 0;
     {

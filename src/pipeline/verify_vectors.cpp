@@ -44,17 +44,28 @@ std::vector<Group> groups_of(std::span<const LayerPart> parts, bool all_together
     return result;
 }
 
+const ContourRule& contours_of(const ScanStrategy& strategy, ScanRegion region) noexcept {
+    return region == ScanRegion::support ? strategy.support.contours : strategy.contours;
+}
+
 const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexcept {
-    return region == ScanRegion::upskin     ? strategy.upskin.hatch
-           : region == ScanRegion::downskin ? strategy.downskin.hatch
-                                            : strategy.hatch;
+    switch (region) {
+    case ScanRegion::upskin:
+        return strategy.upskin.hatch;
+    case ScanRegion::downskin:
+        return strategy.downskin.hatch;
+    case ScanRegion::support:
+        return strategy.support.hatch;
+    default:
+        return strategy.hatch;
+    }
 }
 
 /// How far inside of the outline of the part the vectors of an exposure are to be.
 double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
-    return exposure.kind == VectorKind::contour
-               ? contour_depth(strategy.contours, std::max(1U, exposure.contour))
-               : hatch_depth(strategy.contours, hatch_of(strategy, exposure.region));
+    const ContourRule& contours = contours_of(strategy, exposure.region);
+    return exposure.kind == VectorKind::contour ? contour_depth(contours, std::max(1U, exposure.contour))
+                                                : hatch_depth(contours, hatch_of(strategy, exposure.region));
 }
 
 /// What is wrong with the vectors of a plane.

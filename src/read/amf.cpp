@@ -186,6 +186,7 @@ class AmfReader {
             }
             degenerate += degenerate_triangles(object.mesh);
             nodes_[i].object = file_.objects.size();
+            nodes_[i].support = !object.has_part;
             file_.stored_triangles += object.mesh.triangles.size();
             file_.objects.push_back({object.name, Mesh(std::move(object.mesh))});
         }

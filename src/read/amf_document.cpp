@@ -201,7 +201,9 @@ class DocumentReader {
             if (element == "vertices")
                 return Where::vertices;
             if (element == "volume") {
-                if (supports_ || lower_case(trimmed(attributes.find("type"))) != "support")
+                const bool support = lower_case(trimmed(attributes.find("type"))) == "support";
+                object().has_part = object().has_part || !support;
+                if (supports_ || !support)
                     return Where::volume;
                 result_.supports.note(line_);
             }
@@ -299,7 +301,7 @@ class DocumentReader {
 
     Where start_object(const XmlAttributes& attributes) {
         count(0, sizeof(AmfObject));
-        result_.objects.push_back({std::string(required(attributes, "id")), {}, line_, false, {}, {}});
+        result_.objects.push_back({std::string(required(attributes, "id")), {}, line_, false, false, {}, {}});
         return Where::object;
     }
 

@@ -24,6 +24,7 @@ struct AmfObject {
     std::string name;
     std::size_t line = 0;
     bool has_mesh = false;
+    bool has_part = false; ///< a volume that is no support
     IndexedMesh mesh;
     MeshText text;
 };

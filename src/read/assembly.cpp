@@ -48,7 +48,7 @@ class Placer {
         instances_.reserve(all.instances);
         reaches_.resize(objects_.size());
         for (const AssemblyUse& root : roots)
-            put(root, {}, "");
+            put(root, {}, "", false);
         return std::move(instances_);
     }
 
@@ -90,7 +90,8 @@ class Placer {
     }
 
     // A node that was counted in one place may be used deeper down in another.
-    void put(const AssemblyUse& use, const Transform& outer, const std::string& name, int depth = 0) {
+    void put(const AssemblyUse& use, const Transform& outer, const std::string& name, bool in_support,
+             int depth = 0) {
         const AssemblyNode& node = nodes_[use.node];
         if (totals_[use.node].instances == 0)
             return; // many empty ones may be there
@@ -98,14 +99,15 @@ class Placer {
             fail(node.place, fmt::format("is nested deeper than {}", deepest));
         const Transform placement = compose(outer, use.placement);
         const std::string& nearest = node.name.empty() ? name : node.name;
+        const bool support = in_support || node.support;
         if (node.object) {
             executor_.check_cancelled();
-            MeshInstance instance{*node.object, compose(placement, node.unit), nearest};
+            MeshInstance instance{*node.object, compose(placement, node.unit), nearest, support};
             check_reach(instance, use.place);
             instances_.push_back(std::move(instance));
         }
         for (const AssemblyUse& inner : node.uses)
-            put(inner, placement, nearest, depth + 1);
+            put(inner, placement, nearest, support, depth + 1);
     }
 
     void check_reach(const MeshInstance& instance, const std::string& place) {

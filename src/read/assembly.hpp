@@ -30,7 +30,8 @@ struct AssemblyNode {
     std::optional<std::size_t> object; ///< index of the mesh
     Transform unit;                    ///< from the mesh to millimetres
     std::vector<AssemblyUse> uses;
-    std::string place; ///< in the file, for errors
+    std::string place;    ///< in the file, for errors
+    bool support = false; ///< and so is all that it consists of
 };
 
 /// One instance for each way from a root to a mesh, in the order of the file. Named after the mesh, or after

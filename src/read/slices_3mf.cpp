@@ -52,6 +52,7 @@ struct Object {
     std::string name;
     std::shared_ptr<const Stack> stack;
     std::vector<Use> components;
+    bool support = false;
 };
 
 /// What a copy of the contours takes.
@@ -120,7 +121,7 @@ class SliceModelReader {
             const std::string_view name = attributes.find("name");
             limits_.add_bytes_at(node_bytes + sizeof(Object) + name.size(), place());
             object_ = &objects_[id];
-            *object_ = {std::string(name), nullptr, {}};
+            *object_ = {std::string(name), nullptr, {}, attributes.find("type") == "support"};
             if (const std::string_view stack = attributes.find(XmlName{three_mf::slices, "slicestackid"});
                 stack.data() != nullptr)
                 object_->stack = stack_of(whole_of(stack, "slicestackid"));
@@ -288,6 +289,7 @@ struct Placed {
     Transform placement; ///< to millimetres
     double scale = 1;    ///< of heights
     double shift = 0;
+    bool support = false;
 
     [[nodiscard]] double height(double z) const { return z * scale + shift; }
 };
@@ -303,7 +305,7 @@ class PackageReader {
             read_model(root_, [&](std::string_view path, std::uint32_t id) { return referred(path, id); });
         unit_ = model->unit();
         for (const Use& item : model->items())
-            place(*model, item, {}, 0);
+            place(*model, item, {}, false, 0);
         if (placed_.empty())
             throw Error(
                 ErrorKind::input,
@@ -366,7 +368,8 @@ class PackageReader {
         return found->second;
     }
 
-    void place(const SliceModelReader& model, const Use& use, const Transform& outer, int depth) {
+    void place(const SliceModelReader& model, const Use& use, const Transform& outer, bool in_support,
+               int depth) {
         constexpr int deepest = 32;
         constexpr std::size_t most = std::size_t{1} << 20;
         const auto object = model.objects().find(use.object);
@@ -378,9 +381,10 @@ class PackageReader {
                         fmt::format("{}, line {}: found components within components without end",
                                     zip_.name(), use.line));
         const Transform placement = compose(outer, use.placement);
+        const bool support = in_support || object->second.support;
         if (!object->second.stack) { // a stack above its components counts, not theirs
             for (const Use& component : object->second.components)
-                place(model, component, placement, depth + 1);
+                place(model, component, placement, support, depth + 1);
             return;
         }
         const auto line = [&] {
@@ -389,6 +393,7 @@ class PackageReader {
         limits_.make_room(placed_, 1, line);
         limits_.add_bytes_at(object->second.name.size(), line);
         placed_.push_back(in_millimetres(object->second, placement, use.line));
+        placed_.back().support = support;
     }
 
     Placed in_millimetres(const Object& object, const Transform& placement, std::size_t line) const {
@@ -442,7 +447,7 @@ class PackageReader {
         for (std::size_t k = 0; k < placed_.size(); ++k) {
             limits_.make_room(file_.parts, 1, place_of(k));
             limits_.add_bytes_at(placed_[k].label.size(), place_of(k));
-            file_.parts.push_back({placed_[k].label, {}});
+            file_.parts.push_back({.label = placed_[k].label, .layers = {}, .support = placed_[k].support});
         }
         check_part_planes(file_, heights.size() - 1, std::max(points, zip_.unpacked()));
         std::uint64_t left = 64 * (points + heights.size() + (std::uint64_t{1} << 20));

@@ -225,6 +225,7 @@ class ThreeMfReader {
                 const double unit = parts_[i].model.unit_mm;
                 AssemblyNode node;
                 node.name = sources_.back()->name;
+                node.support = sources_.back()->type == ThreeMfObjectType::support;
                 node.unit = scaling(unit, unit, unit);
                 node.place = place(parts_[i].model, sources_.back()->line,
                                    fmt::format("object {}", sources_.back()->id));

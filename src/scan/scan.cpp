@@ -8,6 +8,7 @@
 #include "scan/alongside.hpp"
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
+#include "scan/support.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -149,6 +150,12 @@ std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below, std::s
         vectors.hatches = hatch(filled, rule(exposure.region), strategy.seed);
     }
     return result;
+}
+
+// What is left of a part without skins, by other rules.
+std::vector<Layer> scan_support(const Layer& layer, const ScanStrategy& strategy) {
+    check_strategy(strategy); // so that errors name fields of supports
+    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed));
 }
 
 } // namespace lamella

@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "scan/support.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -49,10 +51,19 @@ void check(std::string_view rule, const HatchRule& hatch) {
     check_not_negative(rule, "border", hatch.border);
     check_not_negative(rule, "shortest", hatch.shortest);
     check_positive(rule, "cell", hatch.cell);
-    if (!(hatch.overlap >= 0 && hatch.overlap < hatch.cell / 2))
-        refuse(rule, "overlap", hatch.overlap,
-               fmt::format("0 or more and less than half of `cell`, {:g}", hatch.cell / 2));
+    check_not_negative(rule, "overlap", hatch.overlap);
+    if (!(hatch.cell > 2 * hatch.overlap)) // of both, options set this one
+        refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, twice the overlap", 2 * hatch.overlap));
     check(rule, hatch.parameters);
+}
+
+void check(std::string_view rule, const ContourRule& contours) {
+    if (contours.count > most_contours)
+        refuse(rule, "count", contours.count, fmt::format("at most {}", most_contours));
+    check_not_negative(rule, "beam_offset", contours.beam_offset);
+    check_positive(rule, "distance", contours.distance);
+    check_finite(rule, "start_direction_degrees", contours.start_direction_degrees);
+    check(rule, contours.parameters);
 }
 
 void check(std::string_view rule, const SkinRule& skin) {
@@ -108,16 +119,12 @@ double hatch_depth(const ContourRule& contours, const HatchRule& rule) noexcept 
 }
 
 void check_strategy(const ScanStrategy& strategy) {
-    const ContourRule& contours = strategy.contours;
-    if (contours.count > most_contours)
-        refuse("contours", "count", contours.count, fmt::format("at most {}", most_contours));
-    check_not_negative("contours", "beam_offset", contours.beam_offset);
-    check_positive("contours", "distance", contours.distance);
-    check_finite("contours", "start_direction_degrees", contours.start_direction_degrees);
-    check("contours", contours.parameters);
+    check("contours", strategy.contours);
     check("hatch", strategy.hatch);
     check("upskin", strategy.upskin);
     check("downskin", strategy.downskin);
+    check("support.contours", strategy.support.contours);
+    check("support.hatch", strategy.support.hatch);
 }
 
 std::vector<Exposure> exposures(const ScanStrategy& strategy, const std::string& part) {
@@ -141,6 +148,13 @@ std::vector<Exposure> exposures(const ScanStrategy& strategy, const std::string&
                           contours.parameters});
     if (contours.before_hatch)
         add_hatches();
+    return result;
+}
+
+std::vector<Exposure> support_exposures(const ScanStrategy& strategy, const std::string& part) {
+    std::vector<Exposure> result = exposures(without_skins(strategy.support, strategy.seed), part);
+    for (Exposure& exposure : result)
+        exposure.region = ScanRegion::support;
     return result;
 }
 

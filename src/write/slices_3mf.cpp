@@ -131,9 +131,10 @@ class Slices3mfWriter final : public LayerWriter {
         std::string items;
         for (std::size_t part = 0; part < info_.parts.size(); ++part) {
             const PartInfo& known = info_.parts[part];
-            append(fmt::format("<object id=\"{}\" type=\"model\" name=\"{}\" s:slicestackid=\"{}\" "
+            append(fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\" s:slicestackid=\"{}\" "
                                "s:meshresolution=\"lowres\">\n{}</object>\n",
-                               object_id(part), xml_escaped(known.label), stack_id(part),
+                               object_id(part), known.support ? "support" : "model", xml_escaped(known.label),
+                               stack_id(part),
                                package_3mf::box_mesh(known.box.empty() ? info_.box : known.box)));
             items += fmt::format("<item objectid=\"{}\"/>\n", object_id(part));
         }

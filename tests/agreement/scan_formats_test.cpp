@@ -80,6 +80,7 @@ ScanStrategy strategy() {
     strategy.upskin.layers = 2;
     strategy.upskin.hatch.distance = 0.5;
     strategy.downskin.layers = 1;
+    strategy.support.contours.count = 2;
     return strategy;
 }
 
@@ -110,22 +111,29 @@ struct Job {
     std::vector<LayerStack> parts;
 };
 
-/// The scan vectors of two parts, and what is said of them.
+/// The scan vectors of two parts and of a support, and what is said of them.
 Job scanned() {
     Job job;
     job.info.parts.clear();
-    for (const auto& [label, centre] :
-         {std::pair{"left", Point2{-7, 1}}, std::pair{"right", Point2{8, -2}}}) {
-        const LayerStack layers = cup(centre);
+    struct Part {
+        std::string label;
+        Point2 centre;
+        bool support = false;
+    };
+    for (const Part& part :
+         std::vector<Part>{{"left", {-7, 1}}, {"foot", {0, 9}, true}, {"right", {8, -2}}}) {
+        const LayerStack layers = cup(part.centre);
         const std::size_t first = job.parts.size();
-        for (const Exposure& exposure : exposures(strategy(), label)) {
-            job.info.parts.push_back({std::string(label) + ' ' + exposure.name(), {}, exposure});
+        for (const Exposure& exposure :
+             part.support ? support_exposures(strategy(), part.label) : exposures(strategy(), part.label)) {
+            job.info.parts.push_back({part.label + ' ' + exposure.name(), {}, exposure});
             job.parts.emplace_back();
         }
         for (std::size_t i = 0; i < layers.size(); ++i) {
             const std::vector<Layer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
             const std::span above = std::span(layers).subspan(i + 1);
-            std::vector<Layer> vectors = scan(layers[i], below, above, strategy());
+            std::vector<Layer> vectors = part.support ? scan_support(layers[i], strategy())
+                                                      : scan(layers[i], below, above, strategy());
             for (std::size_t k = 0; k < vectors.size(); ++k)
                 job.parts[first + k].push_back(std::move(vectors[k]));
         }
@@ -164,7 +172,7 @@ void expect_points(std::span<const Point2> found, std::span<const Point2> expect
 
 TEST(ScanFormats, GiveBackVectorsInTheirOrderAndWhatIsSaidOfThem) {
     const Job job = scanned();
-    ASSERT_EQ(job.parts.size(), 12U);
+    ASSERT_EQ(job.parts.size(), 6U + 3U + 6U);
     for (const ScanFormat& format : scan_formats()) {
         std::vector<std::string> warnings;
         const LayerFile back = read(written(format.name, job, &warnings));

@@ -2,6 +2,7 @@
 
 import json
 import re
+import zipfile
 
 from program import SOURCE, ProgramTest, binary_stl, box_triangles, main, open_box
 
@@ -39,7 +40,7 @@ class Strategy(ProgramTest):
                 keys += 1
                 self.assertRegex(line, r"^\w+ = \S+ +# \w")
                 self.assertIn(f"`{line.split()[0]}`", page)
-        self.assertGreater(keys, 50)
+        self.assertGreater(keys, 70)
 
     def test_sets_of_parameters_are_found_by_their_names(self):
         self.write("s.toml", '[hatch]\nparameters = "fast"\n[upskin.hatch]\nparameters = "fast"\n'
@@ -61,10 +62,13 @@ class Strategy(ProgramTest):
         self.check('[contours]\nbefore_hatch = "no"\n', r's\.toml:2: contours\.before_hatch is "no", but has to be true or false')
         self.check('[hatch]\npattern = "stripe"\n', r's\.toml:2: hatch\.pattern is "stripe", .*did you mean stripes\?')
         self.check("[hatch]\nangle_degrees = 1\ndistance = -0.1\n", r"s\.toml:3: hatch\.distance is -0\.1, but has to be above 0")
-        self.check("[hatch]\ncell = 0.1\n", r"s\.toml:1: hatch\.overlap is 0\.1, but has to be .*less than half of cell, 0\.05")
+        self.check("[hatch]\ncell = 0.1\n", r"s\.toml:2: hatch\.cell is 0\.1, but has to be above 0\.2, twice the overlap")
         self.check("[upskin.hatch]\nborder = -1\n", r"s\.toml:2: upskin\.hatch\.border is -1, but has to be 0 or more")
         self.check("[parameters.hatch]\npower_w = 1\nspeed_mm_s = 0\n",
                    r"s\.toml:3: parameters\.hatch\.speed_mm_s is 0, but has to be above 0")
+        self.check("[support.hatch]\ndistance = 0\n", r"s\.toml:2: support\.hatch\.distance is 0, but has to be above 0")
+        self.check("[support]\ncount = 1\n", r's\.toml:2: \[support\] has no "count"; there are contours, hatch')
+        self.check("[support.contours]\ncount = 101\n", r"s\.toml:2: support\.contours\.count is 101, but has to be at most 100")
         self.check("hatch = 3\n", r"s\.toml:1: hatch is 3, but has to be a table: \[hatch\]")
         self.check('[hatch]\nparameters = "hach"\n', r's\.toml:2: hatch\.parameters is "hach", but there is no \[parameters\.hach\]; did')
         self.check("[parameters.hach]\npower_w = 1\n", r"s\.toml:1: \[parameters\.hach\] is used nowhere; did you mean hatch\?")
@@ -142,6 +146,75 @@ class Scan(ProgramTest):
         self.assertEqual([hatch[key] for key in ("cell", "angle_degrees", "turn_degrees", "border", "shortest")], [2, 10, -5, 0.4, 0.6])
         self.assertEqual((changed["upskin"]["layers"], changed["downskin"]["layers"]), (7, 7))
 
+    def plate_3mf(self, name="plate.3mf"):
+        """A bracket, and a foot beside it that is marked as support."""
+        def box(number, attributes, x):
+            corners = [(x + i % 2 * 4, i // 2 % 2 * 3, i // 4 * 2) for i in range(8)]
+            faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6),
+                     (1, 3, 5), (3, 7, 5)]
+            return (f'<object id="{number}" {attributes}><mesh><vertices>'
+                    + "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in corners) + "</vertices><triangles>"
+                    + "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces) + "</triangles></mesh></object>")
+        model = ('<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
+                 + box(1, 'name="bracket"', 0) + box(2, 'name="foot" type="support"', 10)
+                 + '</resources><build><item objectid="1"/><item objectid="2"/></build></model>')
+        with zipfile.ZipFile(self.path(name), "w") as archive:
+            archive.writestr("[Content_Types].xml", '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default '
+                             'Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default '
+                             'Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>')
+            archive.writestr("_rels/.rels", '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+                             '<Relationship Id="m" Target="/3D/3dmodel.model" '
+                             'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+            archive.writestr("3D/3dmodel.model", model)
+
+    def test_what_a_3mf_file_marks_as_support_is_exposed_as_such(self):
+        self.plate_3mf()
+        self.write("s.toml", "[upskin]\nlayers = 1\n[support.contours]\ncount = 2\n[support.hatch]\ndistance = 0.5\n")
+        options = ["--layer-height", "1", "--strategy", "s.toml", "--hatch-distance", "0.3"]
+        labels = ["bracket core hatch", "bracket upskin hatch", "bracket core contour 1", "foot support hatch",
+                  "foot support contour 2", "foot support contour 1"]
+        for name in ("job.json", "job.cli", "job.ilt", "job.ovf", "job.3mf"):
+            chosen = ["--format", "3mf-toolpath"] if name == "job.3mf" else []
+            result = self.succeed("slice", "plate.3mf", "--include", "support", "-o", name, *chosen, *options, "--stats", "stats.json")
+            self.assertEqual(result.err, "")
+            self.succeed("convert", name, "back.json")
+            self.assertEqual([part["label"] for part in json.loads(self.bytes_of("back.json"))["parts"]], labels)
+        stats = json.loads(self.bytes_of("stats.json"))["scan"]
+        self.assertEqual(list(stats["regions"]), ["core", "upskin", "support"])
+        self.assertEqual(stats["regions"]["support"]["contour_vectors"], 2 * stats["regions"]["core"]["contour_vectors"])
+        # Contours of 3.9 and 3.7 mm by 2.9 and 2.7 mm; the hatch is 3.6 mm by 2.6 mm.
+        support = stats["regions"]["support"]["marked_mm"] / 2
+        self.assertAlmostEqual(support, 2 * (3.9 + 2.9 + 3.7 + 2.7) + 3.6 * 2.6 / 0.5, delta=4)
+        self.assertEqual(stats["strategy"]["support"]["hatch"]["distance"], 0.5)
+        self.assertEqual(stats["strategy"]["hatch"]["distance"], 0.3)
+        # Without being asked for they are left out.
+        result = self.succeed("slice", "plate.3mf", "-o", "job.json", *options)
+        self.assertIn("support", result.err)
+        self.assertNotIn("support", self.bytes_of("job.json").decode())
+
+    def test_slices_of_3mf_keep_the_mark_of_supports(self):
+        self.plate_3mf()
+        self.succeed("slice", "plate.3mf", "--include", "support", "-o", "sliced.json", "--layer-height", "1", "--scan", *HATCHED)
+        self.succeed("slice", "plate.3mf", "--include", "support", "-o", "layers.3mf", "--layer-height", "1")
+        self.succeed("convert", "layers.3mf", "again.3mf")
+        self.succeed("scan", "again.3mf", "-o", "scanned.json", *HATCHED)
+        sliced, scanned = (json.loads(self.bytes_of(name))["parts"] for name in ("sliced.json", "scanned.json"))
+        self.assertEqual([part["label"] for part in scanned], [part["label"] for part in sliced])
+        self.assertIn("foot support hatch", [part["label"] for part in scanned])
+
+    def test_any_file_can_be_said_to_be_a_support(self):
+        self.succeed("slice", "part.stl", "part.stl", "--support", "--translate", "20,0,0", "--label", "foot", "-o", "job.json",
+                     "--layer-height", "1", "--scan")
+        self.assertEqual([part["label"] for part in json.loads(self.bytes_of("job.json"))["parts"]],
+                         ["part core hatch", "part core contour 1", "foot support hatch", "foot support contour 1"])
+        self.write("job.toml", '[[input]]\npath = "part.stl"\n[[input]]\npath = "part.stl"\nsupport = true\ntranslate = [20, 0, 0]\n'
+                               'label = "foot"\n')
+        self.succeed("slice", "--config", "job.toml", "-o", "configured.json", "--layer-height", "1", "--scan")
+        self.assertEqual(self.bytes_of("configured.json"), self.bytes_of("job.json"))
+        shard = ["slice", "part.stl", "-o", "a.cli", "--shard", "1/2", "--resume", "--layer-height", "1", "--scan"]
+        self.assertIn("sliced", self.succeed(*shard).text)
+        self.assertIn("sliced", self.succeed(*shard, "--support").text)  # it is no longer what was asked for
+
     def test_options_that_make_no_sense(self):
         self.fail_with(2, "--hatch-distance goes with --scan or --strategy", "slice", "part.stl", "-o", "x.cli", "--hatch-distance", "1")
         for option, value in {"--hatch-distance": "-1", "--beam-offset": "-1", "--contour-distance": "0", "--contours": "101",
@@ -150,7 +223,11 @@ class Scan(ProgramTest):
         self.fail_with(2, "--pattern: \"stripe\" is none of .*did you mean stripes", "slice", "part.stl", "-o", "x.cli", "--scan",
                        "--pattern", "stripe")
         self.fail_with(2, "--contours: ", "slice", "part.stl", "-o", "x.cli", "--scan", "--contours", "-1")
-        self.fail_with(2, "less than half of --cell-size, 0.05", "slice", "part.stl", "-o", "x.cli", "--scan", "--cell-size", "0.1")
+        self.fail_with(2, "--cell-size is 0.1, but has to be above 0.2, twice the overlap", "slice", "part.stl", "-o", "x.cli", "--scan",
+                       "--cell-size", "0.1")
+        self.write("s.toml", "[upskin.hatch]\noverlap = 0.5\n")
+        self.fail_with(2, "--cell-size is 0.7, but has to be above 1, twice the overlap", "slice", "part.stl", "-o", "x.cli",
+                       "--strategy", "s.toml", "--cell-size", "0.7")
 
     def test_the_same_bytes_for_any_division(self):
         self.succeed("make", "sphere", "--size", "12", "--detail", "3", "-o", "ball.stl")

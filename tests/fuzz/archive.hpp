@@ -60,4 +60,21 @@ class Archive {
     std::uint64_t entries_ = 0;
 };
 
+/// Entries of these names, as far as the bytes go. Each has its length in front, two bytes, the lower one
+/// first.
+inline std::string archive_of(std::string_view bytes, std::initializer_list<std::string_view> names) {
+    Archive archive;
+    for (const std::string_view name : names) {
+        if (bytes.size() < 2)
+            break;
+        const auto low = static_cast<unsigned char>(bytes[0]);
+        const auto high = static_cast<unsigned char>(bytes[1]);
+        bytes.remove_prefix(2);
+        const std::string_view entry = bytes.substr(0, low + 256U * high);
+        archive.add(name, entry);
+        bytes.remove_prefix(entry.size());
+    }
+    return archive.take();
+}
+
 } // namespace lamella::fuzz

@@ -7,7 +7,7 @@ work=$2
 minutes=${3:-10}
 corpus=$(dirname "$0")/corpus
 
-for target in mesh package layers arrays pictures; do
+for target in mesh package layers arrays ilt pictures strategy; do
     mkdir -p "$work/$target"
     "$programs/fuzz_$target" -max_len=4096 -max_total_time=$((60 * minutes)) -fork="$(nproc)" \
         -artifact_prefix="$work/$target-" "$work/$target" "$corpus/$target"

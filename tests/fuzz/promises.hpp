@@ -5,6 +5,7 @@
 #include <lamella/lamella.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 
 namespace lamella::fuzz {
@@ -14,19 +15,37 @@ inline void require(bool promise) {
         std::abort();
 }
 
-/// Layers in normal form that can be checked.
+/// Contours of finite points, and hatches of two each.
+inline void require_whole(const Layer& layer) {
+    require(!layer.offsets.empty() && layer.offsets.front() == 0 &&
+            layer.offsets.back() == layer.points.size());
+    require(layer.rings <= layer.contours());
+    for (std::size_t i = 0; i < layer.contours(); ++i)
+        require(layer.offsets[i] < layer.offsets[i + 1]);
+    require(layer.hatches.size() % 2 == 0);
+    for (const PointArray* points : {&layer.points, &layer.hatches})
+        for (const Point2& p : *points)
+            require(std::isfinite(p.x) && std::isfinite(p.y));
+}
+
+/// Layers that can be checked: in normal form, or scan vectors.
 inline void require_sound(const LayerFile& file) {
     require(!file.parts.empty());
-    const LayerStack layers = file.merged();
-    require(!layers.empty());
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const Layer& layer = layers[i];
-        require(in_normal_form(layer));
-        require(layer.bottom <= layer.top);
-        require(i == 0 || layers[i - 1].z <= layer.z);
-        for (const Point2& p : layer.points)
-            require(std::isfinite(p.x) && std::isfinite(p.y));
+    for (const LayerPart& part : file.parts) {
+        require(!part.layers.empty() && part.layers.size() == file.parts.front().layers.size());
+        for (std::size_t i = 0; i < part.layers.size(); ++i) {
+            const Layer& layer = part.layers[i];
+            require_whole(layer);
+            require(part.exposure || in_normal_form(layer));
+            require(layer.bottom <= layer.top);
+            require(i == 0 || part.layers[i - 1].z <= layer.z);
+        }
+        if (part.exposure)
+            require(part.exposure->parameters.speed_mm_s > 0);
     }
+    const LayerStack layers = file.merged();
+    for (const Layer& layer : layers)
+        require(in_normal_form(layer) || file.parts.size() == 1);
     static_cast<void>(verify(layers, {}, {.threads = 1}));
 }
 

@@ -40,8 +40,8 @@ TEST(LayerTotals, AreTheSameInAnyOrder) {
     const TriangleSoup torus = make_torus(10, 3, 40, 20);
     const Plan plan = plan_uniform(-3, 3, {.layer_height = 0.5});
     const LayerStack layers = slice(torus, plan);
-    LayerTotals upwards(measured(), plan.layers, 1);
-    LayerTotals downwards(measured(), plan.layers, 1);
+    LayerTotals upwards(measured(), plan.layers, std::vector<bool>(1));
+    LayerTotals downwards(measured(), plan.layers, std::vector<bool>(1));
     for (std::size_t i = 0; i < layers.size(); ++i) {
         upwards.add(std::span(&layers[i], 1), {}, {});
         downwards.add(std::span(&layers[layers.size() - 1 - i], 1), {}, {});
@@ -62,7 +62,7 @@ TEST(LayerTotals, AreTheSameInAnyOrder) {
 TEST(LayerTotals, CountPartsApartAndPlanesTogether) {
     const Plan plan = plan_uniform(0, 3, {.layer_height = 1});
     const LayerStack box = slice(make_box(1, 2, 3), plan);
-    LayerTotals totals(measured(), plan.layers, 2);
+    LayerTotals totals(measured(), plan.layers, std::vector<bool>(2));
     for (const Layer& layer : box) {
         const std::array parts{layer, layer};
         totals.add(parts, {}, {});
@@ -79,7 +79,7 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     FileJob job; // without statistics of layers
     job.repair.close_gaps_mm = 1;
     const Plan plan = plan_uniform(0, 2, {.layer_height = 1});
-    LayerTotals totals(job, plan.layers, 1);
+    LayerTotals totals(job, plan.layers, std::vector<bool>(1));
     LayerBuilder chain;
     chain.add_point({0, 0});
     chain.add_point({3, 4});
@@ -176,7 +176,7 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
         const Plan plan =
             plan_uniform(0, 9, {.layer_height = 0.3}, SliceAt::middle, {.index_range = {{7, 29}}});
         const std::vector<Plane> planes = random_planes(random, plan, parts);
-        LayerTotals whole(job, plan.layers, parts);
+        LayerTotals whole(job, plan.layers, std::vector<bool>(parts));
         for (const Plane& plane : planes)
             whole.add(plane.parts, plane.joins, plane.changes);
         const FileResult expected = told(whole, parts);
@@ -190,7 +190,7 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
         test::run_processes(processes, [&](Communicator& own) {
             const std::size_t begin = bounds[own.process()];
             const std::size_t count = bounds[own.process() + 1] - begin;
-            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count), parts);
+            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count), std::vector<bool>(parts));
             add_all(mine, std::span(planes).subspan(begin, count), 3);
             mine.gather(own);
             EXPECT_EQ(mine.points(), whole.points());
@@ -203,7 +203,7 @@ TEST(LayerTotals, TellHowManyLayersBeginWithARingThatRunsTheWrongWay) {
     const Plan plan = plan_uniform(0, 4, {.layer_height = 1});
     const test::Contour outer = test::rectangle(0, 0, 9, 9);
     const test::Contour inner = test::rectangle(2, 2, 4, 4);
-    LayerTotals totals(measured(), plan.layers, 1);
+    LayerTotals totals(measured(), plan.layers, std::vector<bool>(1));
     const std::vector<std::vector<test::Contour>> rings{
         {outer, test::reversed(inner)}, {test::reversed(outer), inner}, {}, {test::reversed(outer)}};
     for (std::size_t i = 0; i < rings.size(); ++i) {

@@ -118,6 +118,21 @@ TEST(PlateBuilder, SharesAShapeOnlyAmongPartsThatDifferInXAndY) {
     EXPECT_EQ(plate.shapes[plate.parts[3].shape].mesh.soup()->placement().offset[0], 50);
 }
 
+TEST(PlateBuilder, TellsSupportsByWhatTheFileMarksAndWhatIsSaidOfIt) {
+    const auto supports_of = [](const PlateInput& input) {
+        std::vector<bool> supports;
+        const Plate plate = plate_of(
+            input, boxes({{.support = false}, {.placement = translation(9, 0, 0), .support = true}}));
+        EXPECT_EQ(plate.shapes.size(), 1U); // sliced once all the same
+        for (const PlatePart& part : plate.parts)
+            supports.push_back(part.support);
+        return supports;
+    };
+    EXPECT_EQ(supports_of({.path = "a.3mf"}), (std::vector<bool>{false, true}));
+    EXPECT_EQ(supports_of({.path = "a.3mf", .copies = 2}), (std::vector<bool>{false, true, false, true}));
+    EXPECT_EQ(supports_of({.path = "a.3mf", .support = true}), (std::vector<bool>{true, true}));
+}
+
 TEST(PlateBuilder, KeepsEqualMeshesOfTwoFilesApart) {
     const Plate plate =
         plate_of(std::vector<PlateInput>{{.path = "a.stl"}, {.path = "b.stl"}}, {boxes(), boxes()});

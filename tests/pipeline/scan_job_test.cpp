@@ -48,6 +48,19 @@ class ScanJob : public testing::Test {
         return job;
     }
 
+    /// With a box beneath it, which supports it, and beside that one a copy that does not.
+    [[nodiscard]] FileJob job_with_support(const std::string& output) const {
+        FileJob with = job(output);
+        write_stl(path("foot.stl"), make_box(3, 4, 2));
+        for (const bool support : {true, false})
+            with.inputs.push_back({.path = path("foot.stl"),
+                                   .placement = translation(support ? 10 : 20, 0, -5),
+                                   .label = support ? "foot" : "base",
+                                   .support = support});
+        with.scan->support.contours.count = 2;
+        return with;
+    }
+
     /// The layers of a slice file, part by part.
     [[nodiscard]] std::vector<LayerPart> parts_of(const std::string& name) const {
         return read_layers(path(name)).parts;
@@ -199,6 +212,76 @@ TEST_F(ScanJob, GivesChosenLayersTheVectorsTheyHaveInTheWhole) {
     }
 }
 
+TEST_F(ScanJob, ExposesSupportsByTheirRules) {
+    const FileJob scanned = job_with_support("job.npz");
+    const FileResult result = slice_file(scanned);
+    const std::vector<Exposure> of_parts = exposures(*scanned.scan, {});
+    const std::vector<Exposure> of_supports = support_exposures(*scanned.scan, {});
+    ASSERT_EQ(result.exposures.size(), of_parts.size() + of_supports.size());
+    std::vector<std::string> labels;
+    for (const char* part : {"part", "foot", "base"})
+        for (const Exposure& exposure : part == std::string("foot") ? of_supports : of_parts)
+            labels.push_back(std::string(part) + ' ' + exposure.name());
+    const std::vector<LayerPart> written = parts_of("job.npz");
+    ASSERT_EQ(written.size(), labels.size());
+    std::vector<ScanFigures> sums(of_supports.size());
+    for (std::size_t i = 0; i < written.size(); ++i)
+        EXPECT_EQ(written[i].label, labels[i]);
+    const LayerStack foot = slice(make_box(3, 4, 2).transformed(translation(10, 0, -5)),
+                                  plan_uniform(result.box.min.z, result.box.max.z, {.layer_height = 0.5}));
+    for (std::size_t i = 0; i < foot.size(); ++i) {
+        const std::vector<Layer> vectors = scan_support(foot[i], *scanned.scan);
+        for (std::size_t e = 0; e < vectors.size(); ++e) {
+            const Layer& read = written[of_parts.size() + e].layers[i];
+            EXPECT_TRUE(std::equal(read.hatches.begin(), read.hatches.end(), vectors[e].hatches.begin(),
+                                   vectors[e].hatches.end()));
+            EXPECT_EQ(read.points.size(), vectors[e].points.size());
+            const std::size_t place = of_parts.size() + e;
+            EXPECT_EQ(result.exposures[place].exposure.name(), of_supports[e].name());
+            EXPECT_EQ(result.layers[i].scan[place].vectors,
+                      read.hatches.empty() ? read.points.size() : read.hatches.size() / 2);
+            sums[e] += result.layers[i].scan[place];
+        }
+    }
+    for (std::size_t e = 0; e < of_supports.size(); ++e) {
+        EXPECT_GT(sums[e].vectors, 0U);
+        EXPECT_EQ(result.exposures[of_parts.size() + e].figures.energy_j, sums[e].energy_j);
+    }
+}
+
+TEST_F(ScanJob, WithSupportsHasTheSameBytesForAnyThreadsProcessesAndShards) {
+    FileJob scanned = job_with_support("job.cli");
+    const FileResult one = slice_file(scanned, {.threads = 1});
+    const std::string expected = content("job.cli");
+    test::expect_same(one, slice_file(scanned, {.threads = 5}));
+    EXPECT_EQ(content("job.cli"), expected);
+    std::vector<FileResult> results(3);
+    test::run_processes(results.size(), [&](Communicator& own) {
+        results[own.process()] = slice_file(scanned, {.threads = 2}, own);
+    });
+    for (const FileResult& many : results)
+        test::expect_same(one, many);
+    EXPECT_EQ(content("job.cli"), expected);
+    std::vector<std::string> shards;
+    for (std::uint32_t i = 1; i <= 3; ++i) {
+        scanned.shard = Shard{i, 3};
+        scanned.output = path("shard" + std::to_string(i) + ".cli");
+        static_cast<void>(slice_file(scanned));
+        shards.push_back(scanned.output);
+    }
+    static_cast<void>(merge_layer_files(shards, path("merged.cli")));
+    EXPECT_EQ(content("merged.cli"), expected);
+}
+
+TEST_F(ScanJob, OfSupportsOnlyHasNoExposuresOfParts) {
+    FileJob scanned = job("job.npz");
+    scanned.inputs.front().support = true;
+    const FileResult result = slice_file(scanned);
+    ASSERT_EQ(result.exposures.size(), 2U);
+    for (const ExposureResult& one : result.exposures)
+        EXPECT_EQ(one.exposure.region, ScanRegion::support);
+}
+
 TEST_F(ScanJob, RefusesAnImpossibleStrategyBeforeItReads) {
     FileJob scanned = job("job.cli");
     scanned.inputs.front().path = path("missing.stl");
@@ -211,7 +294,7 @@ TEST_F(ScanJob, RefusesAnImpossibleStrategyBeforeItReads) {
 
 TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
     FileJob scanned = job("sliced.cli");
-    scanned.inputs.front().copies = 2;
+    scanned.inputs = job_with_support("sliced.cli").inputs;
     const FileResult sliced = slice_file(scanned);
     const FileJob plain = [&] {
         FileJob job = scanned;
@@ -225,7 +308,7 @@ TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
         .box = sliced.box, .layers = sliced.layers.size(), .bottom = sliced.bottom, .parts = {}};
     std::vector<LayerStack> stacks;
     for (const LayerPart& part : layers.parts) {
-        info.parts.push_back({.label = part.label});
+        info.parts.push_back({.label = part.label, .support = part.label == "foot"});
         stacks.push_back(part.layers);
     }
     for (const unsigned threads : {1U, 4U}) {

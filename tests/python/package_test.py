@@ -89,7 +89,7 @@ def test_stubs_have_what_the_extension_has(name):
 
 def test_the_extension_is_where_the_stubs_are():
     assert EXTENSION == ["ContourRule", "Exposure", "HatchRule", "Layer", "LayerStream", "Mesh", "ParameterSet",
-                         "ScanFigures", "ScanStrategy", "SkinRule", "Stack"]
+                         "ScanFigures", "ScanStrategy", "SkinRule", "Stack", "SupportRule"]
     functions = {name for name, node in stub().items() if isinstance(node, ast.FunctionDef)}
     assert functions == {name for name in vars(lamella._lamella) if inspect.isbuiltin(getattr(lamella._lamella, name))}
     assert (Path(lamella.__file__).parent / "py.typed").is_file()

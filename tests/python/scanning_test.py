@@ -59,6 +59,22 @@ def test_skins_see_the_layers_around(tmp_path):
     assert have == [{"downskin"}, {"core"}, {"core"}, {"upskin"}, {"upskin"}]
 
 
+def test_supports_have_rules_of_their_own():
+    strategy = {"upskin": {"layers": 3}, "support": {"contours": {"count": 2}, "hatch": {"distance": 1.5, "parameters": "slow"}},
+                "parameters": {"slow": {"speed_mm_s": 7}}}
+    layers = [square(10, 0.05 + 0.1 * i, i) for i in range(2)]
+    scanned = list(lamella.scan(layers, strategy, "foot", support=True))
+    assert [layer.index for layer in scanned] == [0, 1]
+    assert [e.name for e in scanned[0].exposures] == ["support hatch", "support contour 2", "support contour 1"]
+    assert {e.part for e in scanned[0].exposures} == {"foot"} and {e.region for e in scanned[0].exposures} == {"support"}
+    assert scanned[0].exposures[0].parameters.speed_mm_s == 7
+    plain = {"contours": {"count": 2}, "hatch": {"distance": 1.5, "pattern": "meander"}}
+    for one, other in zip(scanned, lamella.scan(layers, plain)):
+        assert (one.vectors == other.vectors).all()
+    with pytest.raises(TypeError):
+        lamella.scan(layers, support="yes")
+
+
 def test_strategies_come_from_files_and_dicts(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text('[hatch]\ndistance = 0.5\nparameters = "fast"\n[parameters.fast]\nspeed_mm_s = 1500\n')

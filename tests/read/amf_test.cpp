@@ -140,6 +140,11 @@ TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
         read(amf(replaced(two, "materialid=\"2\"", "type=\"support\"")), {.supports = true});
     EXPECT_EQ(with.stored_triangles, 5U);
     EXPECT_TRUE(with.warnings.empty());
+    EXPECT_FALSE(with.instances.at(0).support); // with both, it is a part
+    EXPECT_TRUE(
+        read(amf(replaced(amf_object("0"), "<volume", "<volume type=\"support\"")), {.supports = true})
+            .instances.at(0)
+            .support);
 }
 
 TEST(Amf, CurvesAreFlatAndSaidToBe) {

@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
+#include "lamella/write/layer_writer.hpp"
 
 #include "container/zip_writer.hpp"
 #include "temporary_folder.hpp"
@@ -9,6 +10,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lamella::slices_3mf_cases {
 namespace {
@@ -93,6 +95,33 @@ TEST(ReadSlices3mf, StacksAreFoundInOtherPartsAndUnderComponents) {
     ASSERT_EQ(file.parts.size(), 2U);
     EXPECT_DOUBLE_EQ(measure(file.parts[0].layers[1]).area_mm2, 32);
     EXPECT_DOUBLE_EQ(measure(file.parts[1].layers[1]).area_mm2, 8);
+}
+
+TEST(ReadSlices3mf, MarksOfSupportsAreKept) {
+    const auto typed = [](int id, const std::string& type) {
+        return "<object id=\"" + std::to_string(id) + "\" type=\"" + type + "\" t:slicestackid=\"1\"/>";
+    };
+    const LayerFile file = read(model(
+        stack(1, slice("1")) + typed(2, "model") + typed(3, "support") +
+            "<object id=\"4\" type=\"support\"><components><component objectid=\"2\"/></components></object>",
+        "<item objectid=\"2\"/><item objectid=\"3\"/><item objectid=\"4\"/>"));
+    ASSERT_EQ(file.parts.size(), 3U);
+    EXPECT_FALSE(file.parts[0].support);
+    EXPECT_TRUE(file.parts[1].support);
+    EXPECT_TRUE(file.parts[2].support);
+    const TemporaryFolder folder;
+    std::vector<LayerStack> stacks;
+    LayerFileInfo info{.layers = 1, .bottom = 0, .parts = {}};
+    info.box.add(Point3{0, 0, 0});
+    for (const LayerPart& part : file.parts) {
+        stacks.push_back(part.layers);
+        info.parts.push_back({.label = part.label, .support = part.support});
+    }
+    write_layers(folder.file("b.3mf"), layer_format("3mf", ""), stacks, info);
+    const LayerFile again = read_layers(folder.file("b.3mf"));
+    ASSERT_EQ(again.parts.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(again.parts[i].support, file.parts[i].support);
 }
 
 TEST(ReadSlices3mf, PartsOfDifferentHeightsAreDividedAtAll) {

@@ -181,7 +181,10 @@ TEST(ThreeMf, TypesOfObjectsDecideWhatIsRead) {
         ASSERT_EQ(file.warnings.size(), 1U);
         EXPECT_TRUE(says(file.warnings[0], "1 objects are of type support or surface"));
     }
-    EXPECT_EQ(read(with_type("support"), {.supports = true}).instances.size(), 2U);
+    const MeshFile supports = read(with_type("support"), {.supports = true});
+    ASSERT_EQ(supports.instances.size(), 2U);
+    EXPECT_FALSE(supports.instances[0].support);
+    EXPECT_TRUE(supports.instances[1].support);
     EXPECT_TRUE(read(with_type("support"), {.supports = true}).warnings.empty());
     const MeshFile surfaces = read(with_type("surface"), {.supports = true});
     EXPECT_EQ(surfaces.instances.size(), 1U);
@@ -191,6 +194,17 @@ TEST(ThreeMf, TypesOfObjectsDecideWhatIsRead) {
     EXPECT_TRUE(says(in_model(error_of(with_type("thing"))), "found an object of type 'thing'"));
     EXPECT_TRUE(says(error_of(package(model(object(1, box_mesh(), "type=\"support\""), one_item))),
                      "holds nothing to slice"));
+}
+
+TEST(ThreeMf, WhatASupportConsistsOfIsSupport) {
+    const MeshFile file =
+        read(package(model(object(1, box_mesh()) + object(2, components({{1, ""}}), "type=\"support\""),
+                           one_item + "<item objectid=\"2\"/>")),
+             {.supports = true});
+    ASSERT_EQ(file.instances.size(), 2U);
+    EXPECT_EQ(file.objects.size(), 1U);
+    EXPECT_FALSE(file.instances[0].support);
+    EXPECT_TRUE(file.instances[1].support);
 }
 
 TEST(ThreeMf, ItemsThatAreNotToBePrintedAreLeftOut) {

@@ -1,5 +1,5 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/contour/measure_vectors.hpp"
+#include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/scan/scan.hpp"
@@ -198,6 +198,37 @@ TEST(Scan, StripsTooNarrowAreNoSkin) {
     EXPECT_EQ(skin(1e-12), 0U);
     EXPECT_EQ(skin(0.04), 0U);
     EXPECT_GT(skin(0.3), 0U);
+}
+
+// Which is to say: they are scanned as parts without skins would be by these rules.
+TEST(Scan, OfSupportsGoesByTheirRulesAlone) {
+    Random random(9);
+    ScanStrategy strategy;
+    strategy.upskin.layers = 2; // all of it would be skin
+    strategy.support.contours.count = 2;
+    strategy.support.contours.start = StartPoint::random;
+    strategy.support.hatch.pattern = HatchPattern::chessboard;
+    strategy.support.hatch.order = IslandOrder::random;
+    strategy.support.hatch.distance = 0.4;
+    ScanStrategy plain;
+    plain.contours = strategy.support.contours;
+    plain.hatch = strategy.support.hatch;
+    for (int round = 0; round < rounds_within_reason(50); ++round) {
+        Layer layer = test::random_material(random, 16);
+        layer.index = static_cast<std::uint64_t>(round);
+        const std::vector<Layer> vectors = scan_support(layer, strategy);
+        const std::vector<Layer> expected = scan(layer, {}, {}, plain);
+        ASSERT_EQ(vectors.size(), support_exposures(strategy, "part").size());
+        for (std::size_t i = 0; i < vectors.size(); ++i) {
+            EXPECT_EQ(vectors[i].index, layer.index);
+            EXPECT_TRUE(std::equal(vectors[i].points.begin(), vectors[i].points.end(),
+                                   expected[i].points.begin(), expected[i].points.end()));
+            EXPECT_TRUE(std::equal(vectors[i].hatches.begin(), vectors[i].hatches.end(),
+                                   expected[i].hatches.begin(), expected[i].hatches.end()));
+        }
+    }
+    strategy.hatch.distance = 0; // also where no support asks for it
+    EXPECT_THROW(static_cast<void>(scan_support(Layer{}, strategy)), Error);
 }
 
 TEST(Scan, OfNothingIsNothing) {

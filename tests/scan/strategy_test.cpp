@@ -57,6 +57,10 @@ TEST(Strategy, RefusesValuesOutOfRangeAndNamesTheirField) {
          }},
         {"`hatch.overlap`",
          [](ScanStrategy& s) {
+             s.hatch.overlap = -0.1;
+         }},
+        {"`hatch.cell`",
+         [](ScanStrategy& s) {
              s.hatch.overlap = s.hatch.cell / 2;
          }},
         {"`hatch.speed_mm_s`",
@@ -91,6 +95,14 @@ TEST(Strategy, RefusesValuesOutOfRangeAndNamesTheirField) {
          [](ScanStrategy& s) {
              s.contours.parameters.power_w = infinite;
          }},
+        {"`support.contours.count`",
+         [](ScanStrategy& s) {
+             s.support.contours.count = most_contours + 1;
+         }},
+        {"`support.hatch.distance`",
+         [](ScanStrategy& s) {
+             s.support.hatch.distance = 0;
+         }},
     };
     for (const Bad& bad : all) {
         ScanStrategy strategy;
@@ -124,6 +136,22 @@ TEST(Strategy, TellsWhatIsExposedInItsOrder) {
     EXPECT_EQ(names(), "core contour 1, core contour 2, downskin hatch, core hatch, upskin hatch");
     strategy.contours.count = 0;
     EXPECT_EQ(names(), "downskin hatch, core hatch, upskin hatch");
+}
+
+TEST(Strategy, HasRulesOfTheirOwnForSupports) {
+    ScanStrategy strategy;
+    strategy.upskin.layers = strategy.downskin.layers = 3;
+    strategy.support.contours.count = 2;
+    strategy.support.contours.before_hatch = true;
+    strategy.support.hatch.parameters.name = "coarse";
+    const std::vector<Exposure> found = support_exposures(strategy, "foot");
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_EQ(found[0].name(), "support contour 2");
+    EXPECT_EQ(found[1].name(), "support contour 1");
+    EXPECT_EQ(found[2].name(), "support hatch");
+    EXPECT_EQ(found[2].part, "foot");
+    EXPECT_EQ(found[1].parameters, strategy.support.contours.parameters);
+    EXPECT_EQ(found[2].parameters, strategy.support.hatch.parameters);
 }
 
 } // namespace

@@ -1,8 +1,9 @@
 #pragma once
 
-// What a machine is told of vectors besides where they are.
+// What a machine is told of vectors besides where they are, and what they take: lengths, time, energy.
 
-#include "lamella/core/api.hpp"
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/point.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -67,5 +68,23 @@ struct Exposure {
 /// What a label says, the other way round: for formats that have nothing else to say it with. Its parameters
 /// are unknown.
 [[nodiscard]] std::optional<Exposure> labelled_exposure(std::string_view label);
+
+/// What a machine does for vectors.
+struct ScanFigures {
+    std::uint64_t vectors = 0;
+    double marked_mm = 0;
+    double jumped_mm = 0;
+    double build_seconds =
+        0; ///< by the speeds and delays of the parameter sets alone: what accelerates is left out
+    double energy_j = 0; ///< power by the time of marking
+
+    ScanFigures& operator+=(const ScanFigures& other) noexcept;
+};
+
+/// Of vectors executed one after the other with one parameter set, from where the beam was before, and that
+/// is moved to where it ends. Some files do not tell all speeds, and have 0 instead: what goes at such a
+/// speed counts as if it took no time. O(vectors).
+[[nodiscard]] ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
+                                          std::optional<Point2>& beam);
 
 } // namespace lamella

@@ -30,6 +30,8 @@ struct PlateInput {
     /// Of the file's parts. Where empty: what the file calls them; else the name of the file, or "part" for
     /// the only part of a plate.
     std::string label = {};
+    /// All of its parts are supports, whatever the file says of them.
+    bool support = false;
 };
 
 /// Something to be sliced once. It is already placed, but for the way along x and y of parts that share it.
@@ -45,6 +47,7 @@ struct PlatePart {
     double dx = 0; ///< mm; added to the layers of the shape
     double dy = 0;
     Box3 box;
+    bool support = false; ///< of scan vectors: exposed as such; all else treats it as a part
 };
 
 /// What became of an input file.

@@ -3,7 +3,7 @@
 // Layers that are there already: their scan vectors, written to a file.
 
 #include "lamella/contour/layer.hpp"
-#include "lamella/contour/measure_vectors.hpp"
+#include "lamella/contour/exposure.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
@@ -16,7 +16,7 @@
 
 namespace LAMELLA_API lamella {
 
-/// What one of the `exposures` of a strategy takes.
+/// What one of the `exposures` of a strategy takes, or one of its `support_exposures`.
 struct ExposureResult {
     Exposure exposure; ///< of no part: of all of them
     ScanFigures figures;
@@ -27,8 +27,9 @@ struct ExposureResult {
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
 struct ScanResult {
-    /// In the order in which they are executed, all layers and parts together. A beam goes through the parts
-    /// of a layer one after the other; how it comes from layer to layer does not count.
+    /// In the order in which they are executed, all layers and parts together, those of supports last. A beam
+    /// goes through the parts of a layer one after the other; how it comes from layer to layer does not
+    /// count.
     std::vector<ExposureResult> exposures;
     /// For each layer what each of these takes.
     std::vector<std::vector<ScanFigures>> layers;

@@ -30,6 +30,7 @@ struct LayerPart {
     /// Where the file says so, the layers are scan vectors: in the order in which they are executed, not in
     /// normal form. Numbers of the parameters that it does not say are 0.
     std::optional<Exposure> exposure = {};
+    bool support = false; ///< the file marks it so, as 3MF can
 };
 
 struct LayerFile {

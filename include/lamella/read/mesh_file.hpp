@@ -49,6 +49,7 @@ struct MeshInstance {
     std::size_t object = 0; ///< index into MeshFile::objects
     Transform placement = {};
     std::string name = {};
+    bool support = false; ///< the file marks it so; with MeshReadOptions::supports
 };
 
 struct MeshFile {

@@ -30,4 +30,8 @@ namespace LAMELLA_API lamella {
 [[nodiscard]] std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below,
                                       std::span<const Layer> above, const ScanStrategy& strategy);
 
+/// The same of a layer of a support: by the strategy's rule for these, a layer for each of its
+/// `support_exposures`.
+[[nodiscard]] std::vector<Layer> scan_support(const Layer& layer, const ScanStrategy& strategy);
+
 } // namespace lamella

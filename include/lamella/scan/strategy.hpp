@@ -83,12 +83,21 @@ struct SkinRule {
     HatchRule hatch;
 };
 
+/// All of what is a support, which need not be dense: by default wider lines, with less energy.
+struct SupportRule {
+    ContourRule contours{.parameters = {.name = "support", .power_w = 120, .speed_mm_s = 1000}};
+    HatchRule hatch{.pattern = HatchPattern::meander,
+                    .distance = 0.2,
+                    .parameters = {.name = "support", .power_w = 120, .speed_mm_s = 1000}};
+};
+
 /// All of it. By default what makes sense for 316L steel and layers of 0.03 mm.
 struct ScanStrategy {
     ContourRule contours;
     HatchRule hatch; ///< of the core
     SkinRule upskin{.hatch = {.parameters = {.name = "upskin", .power_w = 180, .speed_mm_s = 900}}};
     SkinRule downskin{.hatch = {.parameters = {.name = "downskin", .power_w = 120, .speed_mm_s = 1200}}};
+    SupportRule support; ///< of parts that are supports, which have no skins
     std::uint64_t seed = 1;
 };
 
@@ -102,5 +111,8 @@ void check_strategy(const ScanStrategy& strategy);
 
 /// What each layer of a part has, in the order in which it is executed.
 [[nodiscard]] std::vector<Exposure> exposures(const ScanStrategy& strategy, const std::string& part);
+
+/// The same of a part that is a support.
+[[nodiscard]] std::vector<Exposure> support_exposures(const ScanStrategy& strategy, const std::string& part);
 
 } // namespace lamella

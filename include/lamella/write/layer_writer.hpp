@@ -28,6 +28,7 @@ struct PartInfo {
     Box3 box = {}; ///< mm; empty where nothing is known
     /// Where set, its layers are scan vectors; see `scan`.
     std::optional<Exposure> exposure = {};
+    bool support = false; ///< is exposed as one in scan vectors; 3MF marks it
 };
 
 /// A piece of a slice file, for formats whose files are layers one after the other (LayerFormat::pieces):

@@ -1,0 +1,20 @@
+#pragma once
+
+// Supports as parts that have no skins.
+
+#include "lamella/scan/strategy.hpp"
+
+#include <cstdint>
+
+namespace lamella {
+
+/// A strategy whose core is exposed by the rule of supports.
+[[nodiscard]] inline ScanStrategy without_skins(const SupportRule& support, std::uint64_t seed) {
+    ScanStrategy strategy;
+    strategy.contours = support.contours;
+    strategy.hatch = support.hatch;
+    strategy.seed = seed;
+    return strategy;
+}
+
+} // namespace lamella
