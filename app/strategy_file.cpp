@@ -77,7 +77,7 @@ std::string meant(std::string_view word, const std::vector<std::string>& candida
 
 void take(const TomlValue& value, const std::string& name, double& into) {
     if (const auto* number = value.as<double>())
-        into = *number;
+        into = *number + 0.0; // which makes 0 of -0, as files have it
     else if (const auto* whole = value.as<std::int64_t>())
         into = static_cast<double>(*whole);
     else

@@ -42,6 +42,10 @@ std::string model_part(const OpcPackage& package) {
     return "3D/3dmodel.model";
 }
 
+// What is larger could make sums and areas overflow; no machine is near it.
+constexpr double largest = 1e30;
+constexpr double largest_unit = 1e12; ///< by which coordinates of 32 bits are multiplied
+
 /// The element that is being read, for errors.
 struct Element {
     const std::string& document;
@@ -74,8 +78,9 @@ struct Element {
             return 0;
         double number = 0;
         if (parse_number(value.data(), value.data() + value.size(), number) != value.data() + value.size() ||
-            value.empty() || !std::isfinite(number))
-            fail(fmt::format("'{}'", printable(value, 40)), "a number must stand there");
+            value.empty() || !(std::abs(number) <= largest))
+            fail(fmt::format("'{}'", printable(value, 40)),
+                 fmt::format("a number within {:g} must stand there", largest));
         return number;
     }
 };
@@ -154,8 +159,9 @@ class ToolpathModelReader {
             toolpath_ = &model_.toolpaths[id];
             *toolpath_ = {};
             toolpath_->unit = element.number("unitfactor");
-            if (!(toolpath_->unit > 0))
-                element.fail(fmt::format("a unitfactor of {}", toolpath_->unit), "it must be above 0");
+            if (!(toolpath_->unit > 0 && toolpath_->unit <= largest_unit))
+                element.fail(fmt::format("a unitfactor of {:g}", toolpath_->unit),
+                             fmt::format("it must be above 0 and at most {:g}", largest_unit));
             if (const std::string type = element.text("toolpathtype"); !type.empty() && type != "planar")
                 element.fail(fmt::format("a toolpath of type '{}'", printable(type, 40)),
                              "planar ones are read, which are made of layers");

@@ -37,11 +37,16 @@ inline void require_sound(const LayerFile& file) {
             const Layer& layer = part.layers[i];
             require_whole(layer);
             require(part.exposure || in_normal_form(layer));
+            require(std::isfinite(layer.bottom) && std::isfinite(layer.z) && std::isfinite(layer.top));
             require(layer.bottom <= layer.top);
             require(i == 0 || part.layers[i - 1].z <= layer.z);
         }
-        if (part.exposure)
-            require(part.exposure->parameters.speed_mm_s > 0);
+        if (part.exposure) {
+            const ParameterSet& set = part.exposure->parameters;
+            for (const double value : {set.power_w, set.speed_mm_s, set.jump_speed_mm_s, set.focus_mm,
+                                       set.spot_mm, set.mark_delay_us, set.jump_delay_us})
+                require(std::isfinite(value));
+        }
     }
     const LayerStack layers = file.merged();
     for (const Layer& layer : layers)
