@@ -99,8 +99,10 @@ std::optional<Exposure> exposure_of(const Section& section, std::string_view lab
     std::optional<Exposure> exposure = labelled_exposure(label);
     if (!exposure && section.parameters.speed_mm_s > 0)
         exposure = named_exposure(section.name);
-    if (exposure)
+    if (exposure) {
         exposure->parameters = section.parameters;
+        exposure->parameters.speed_mm_s = std::max(0.0, section.parameters.speed_mm_s);
+    }
     return exposure;
 }
 
