@@ -224,9 +224,9 @@ class StrategyReading {
     }
 
     /// The parameter set that a rule names.
-    std::pair<std::string, std::function<void(const TomlValue&)>> set_name(const std::string& path,
-                                                                           ParameterSet& of_rule) {
-        return {std::string(parameters_key), [this, path, &of_rule](const TomlValue& value) {
+    static std::pair<std::string, std::function<void(const TomlValue&)>> set_name(const std::string& path,
+                                                                                  ParameterSet& of_rule) {
+        return {std::string(parameters_key), [path, &of_rule](const TomlValue& value) {
                     const std::string name = fmt::format("{}.{}", path, parameters_key);
                     const auto* const text = value.as<std::string>();
                     if (text == nullptr || text->empty())
