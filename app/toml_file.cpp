@@ -1,5 +1,8 @@
 // The TOML library is visible in this source only.
 #define TOML_HEADER_ONLY 1
+// Its assertions fail on some files that its parser refuses a few lines later, such as one of "[" and a
+// control character.
+#define TOML_ASSERT(condition) static_cast<void>(0)
 
 #include "toml_file.hpp"
 

@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -129,8 +128,15 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     all.erase(std::unique(all.begin(), all.end(),
                           [](const Layer& a, const Layer& b) { return same_height(a.top, b.top); }),
               all.end());
-    for (std::size_t i = 0; i < all.size(); ++i)
-        all[i].index = i;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        Layer& plane = all[i];
+        plane.index = i;
+        // A file that leaves layers out takes those beside them for thicker than they are.
+        if (i > 0 && plane.bottom < all[i - 1].top) {
+            plane.bottom = all[i - 1].top;
+            plane.z = plane.bottom + (plane.top - plane.bottom) / 2;
+        }
+    }
     return all;
 }
 
@@ -208,7 +214,6 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
             result.parts.push_back({std::move(part.label), {}, std::move(part.exposure)});
             check_part_planes(result, planes.size(), bytes);
             limits.add_bytes(planes.size() * (sizeof(Layer) + of_empty_layer), file.path);
-            assert(part.layers.size() <= planes.size());
             result.parts.back().layers = on_planes(std::move(part.layers), planes, file.path);
         }
     return result;
