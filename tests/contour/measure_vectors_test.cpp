@@ -10,11 +10,10 @@
 namespace lamella {
 namespace {
 
-using test::layer_of;
 using test::rectangle;
 
 TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
-    Layer vectors = layer_of({rectangle(0, 0, 10, 10)}, {{{20, 0}, {23, 4}}});
+    Layer vectors = test::layer_of({rectangle(0, 0, 10, 10)}, {{{20, 0}, {23, 4}}});
     vectors.hatches = PointArray(std::vector<Point2>{{23, 4}, {23, 14}, {33, 14}, {33, 4}});
     const ParameterSet parameters{.power_w = 100,
                                   .speed_mm_s = 500,
@@ -29,11 +28,12 @@ TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
     EXPECT_DOUBLE_EQ(figures.build_seconds, 65.0 / 500 + 30.0 / 5000 + 3 * 200e-6 + 2 * 300e-6);
     EXPECT_DOUBLE_EQ(figures.energy_j, 100 * 65.0 / 500);
     EXPECT_EQ(beam, (Point2{33, 4}));
-    EXPECT_DOUBLE_EQ(measure_vectors(layer_of({}, {{{33, 14}, {33, 15}}}), parameters, beam).jumped_mm, 10);
+    EXPECT_DOUBLE_EQ(measure_vectors(test::layer_of({}, {{{33, 14}, {33, 15}}}), parameters, beam).jumped_mm,
+                     10);
 }
 
 TEST(MeasureVectors, CountsNoTimeForSpeedsThatNobodyTold) {
-    const Layer vectors = layer_of({rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 10)});
+    const Layer vectors = test::layer_of({rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 10)});
     std::optional<Point2> beam;
     ParameterSet parameters{
         .power_w = 100, .speed_mm_s = 500, .jump_speed_mm_s = 0, .mark_delay_us = 0, .jump_delay_us = 0};
