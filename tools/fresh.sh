@@ -114,7 +114,7 @@ run() {
     # A registry out of reach is no fault of ours; what else leaves the page out is.
     if [ ! -e "$root$PWD/out/rook.html" ]; then
         echo "fresh: make demo left the page out" >>"$folder/summary"
-        [ ! -e "$root$PWD/build/viewer/work/installed" ] || status=1
+        [ ! -e "$root$PWD/build/viewer/packages/installed" ] || status=1
     fi
     cat "$folder/summary"
     exit "$status"
