@@ -74,6 +74,7 @@ class Strategy(ProgramTest):
         self.check("[parameters.hach]\npower_w = 1\n", r"s\.toml:1: \[parameters\.hach\] is used nowhere; did you mean hatch\?")
         self.check("[hatch\n", r"s\.toml:1: expected TOML")
         self.check("[\x15hatch]\n", r"s\.toml:1: expected TOML")
+        self.check("[hatch]\n\u0249erlap = 1\n", r"s\.toml:2: expected TOML")
         self.check("[hatch]\ndistance = 1\ndistance = 2\n", r"s\.toml:3: expected TOML")
         self.fail_with(3, r"missing\.toml", "strategy", "check", "missing.toml")
         self.fail_with(3, r"missing\.toml", "slice", "box.stl", "--strategy", "missing.toml", "-o", "x.cli")
