@@ -6,10 +6,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/rounding.hpp"
-#include "lamella/core/execution.hpp"
-#include "lamella/slicing/plan.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -67,14 +64,5 @@ struct ContourFindings {
 [[nodiscard]] std::string open_chains_text(const Finding& finding);
 [[nodiscard]] std::string crossings_text(const Finding& finding);
 [[nodiscard]] std::string misoriented_text(const Finding& finding);
-
-/// The cuts of layers, each as far above (1) or below (-1) its own as a format may have moved it, or where
-/// they are (0).
-struct MovedCuts {
-    MovedCuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, double direction);
-
-    Plan plan;
-    std::vector<std::size_t> plane; ///< of each layer
-};
 
 } // namespace lamella

@@ -4,6 +4,7 @@
 
 #include "core/executor.hpp"
 #include "pipeline/layer_check.hpp"
+#include "pipeline/moved_cuts.hpp"
 
 #include <fmt/format.h>
 

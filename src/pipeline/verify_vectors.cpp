@@ -6,6 +6,7 @@
 #include "contour/distance.hpp"
 #include "core/executor.hpp"
 #include "pipeline/layer_check.hpp"
+#include "pipeline/moved_cuts.hpp"
 #include "polygon/edge_tree.hpp"
 
 #include <fmt/format.h>
@@ -209,7 +210,7 @@ class VectorCheck {
             const double nearest = edges_.distance_squared(segment_between(from, to), squared_ / 2);
             if (!inside_ || nearest < squared_)
                 outside_.add(1, from);
-            known_ = nearest > 0;
+            known_ = nearest >= squared_; // else it may have led across an edge
             at_ = to;
         }
 
