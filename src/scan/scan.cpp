@@ -11,6 +11,7 @@
 #include "scan/support.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <utility>
@@ -72,42 +73,47 @@ Layer without(const Layer& from, const Layer& taken) {
 /// much: so such rings do not meet at all, which takes a hundredth of the time, and no slivers are left.
 class Skin {
   public:
-    Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule) : rule_(rule) {
+    Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule) {
         if (rule.layers == 0)
             return;
-        if (neighbours.size() < rule.layers) {
-            open_ = layer;
-            grown_ = 0;
+        const bool ends = neighbours.size() < rule.layers;
+        const double grown = ends ? 0 : rule.narrowest;
+        const Layer open = ends ? layer : open_of(layer, neighbours.first(rule.layers), grown);
+        if (open.rings == 0)
             return;
-        }
-        grown_ = rule.narrowest;
-        // Walls that are steep enough leave nothing open, from layer to layer.
-        const Layer* nearer = &layer;
-        bool steep = true;
-        for (const Layer& neighbour : neighbours.first(rule.layers)) {
-            steep = steep && run_alongside(*nearer, neighbour, grown_ / rule.layers);
-            nearer = &neighbour;
-            if (steep)
-                continue;
-            const Layer open = without(layer, offset(neighbour, grown_));
-            open_ = open_.rings == 0  ? open
-                    : open.rings == 0 ? open_
-                                      : combine(open_, open, BooleanOperation::unite);
-        }
+        std::vector<Layer> moved = offsets(open, std::array{grown, grown + rule.overlap});
+        skin_ = std::move(moved[0]);
+        with_overlap_ = std::move(moved[1]);
     }
 
     /// What of an area is within the skin or closer to it than the overlap.
     [[nodiscard]] Layer of(const Layer& area) const {
-        if (open_.rings == 0 || area.rings == 0)
+        if (skin_.rings == 0 || area.rings == 0)
             return {};
-        return combine(area, offset(open_, grown_ + rule_.overlap), BooleanOperation::intersect);
+        return combine(area, with_overlap_, BooleanOperation::intersect);
     }
-    [[nodiscard]] Layer rest_of(const Layer& area) const { return without(area, offset(open_, grown_)); }
+    [[nodiscard]] Layer rest_of(const Layer& area) const { return without(area, skin_); }
 
   private:
-    const SkinRule& rule_;
-    Layer open_; ///< without what is grown
-    double grown_ = 0;
+    static Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grown) {
+        Layer all;
+        // Walls that are steep enough leave nothing open, from layer to layer.
+        const Layer* nearer = &layer;
+        bool steep = true;
+        for (const Layer& neighbour : neighbours) {
+            steep =
+                steep && run_alongside(*nearer, neighbour, grown / static_cast<double>(neighbours.size()));
+            nearer = &neighbour;
+            if (steep)
+                continue;
+            const Layer open = without(layer, offset(neighbour, grown));
+            all = all.rings == 0 ? open : open.rings == 0 ? all : combine(all, open, BooleanOperation::unite);
+        }
+        return all;
+    }
+
+    Layer skin_;
+    Layer with_overlap_;
 };
 
 } // namespace
