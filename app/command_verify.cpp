@@ -76,8 +76,7 @@ std::string verification_text(const std::string& mesh, const Verification& found
 }
 
 Json vectors_json(const VectorVerification& found) {
-    return {{"ok", found.ok()},
-            {"layers", found.layers},
+    return {{"layers", found.layers},
             {"contour_vectors", found.contour_vectors},
             {"hatch_vectors", found.hatch_vectors},
             {"open_chains", found.open_chains},
@@ -191,12 +190,10 @@ Command verify_command() {
             "clockwise by their nesting, no contour crossing another or itself. With --mesh the area of "
             "every layer is "
             "compared with the section of that mesh, computed straight from its triangles. Of scan vectors, "
-            "those "
-            "of every contour are checked so, and all have to lie within the mesh, or without one within the "
+            "contours are checked so, and all have to lie within the mesh, or without one within the "
             "outermost contour of their part; with the strategy by which they were made, as far from its "
-            "edges as "
-            "that says, none shorter than the shortest, and enough of them to fill it. Exit code 4 says that "
-            "the check failed.",
+            "edges as that says, none shorter than the shortest, and enough of them to fill it. Exit code 4 "
+            "says that the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =

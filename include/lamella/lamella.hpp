@@ -52,7 +52,6 @@
 #include "lamella/polygon/simplify.hpp"
 
 // What machines that expose them execute.
-#include "lamella/contour/exposure.hpp"
 #include "lamella/scan/scan.hpp"
 
 // Files of layers, meshes, pictures and pages.

@@ -2,8 +2,8 @@
 
 // One plane of a plate and its neighbours become scan vectors.
 
-#include "lamella/contour/layer.hpp"
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/layer.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
