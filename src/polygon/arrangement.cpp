@@ -3,6 +3,7 @@
 #include "lamella/polygon/crossings.hpp"
 
 #include "contour/distance.hpp"
+#include "polygon/close_sides.hpp"
 #include "polygon/grid.hpp"
 #include "polygon/orientation.hpp"
 #include "polygon/segment_sweep.hpp"
@@ -11,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -37,26 +39,103 @@ void merge(Arrangement& arrangement) {
     std::erase_if(sides, [](const Side& side) { return side.step == SideCount{}; });
 }
 
-/// The sides of the rings, not yet cut.
-Arrangement sides_of(std::span<const WoundRing> rings, const ClippingGrid& grid) {
-    Arrangement arrangement;
-    for (const WoundRing& ring : rings) {
-        if (ring.points.empty())
-            continue;
+/// Runs of sides, each as an open chain: what crosses there is found without the sides between.
+class OpenRuns {
+  public:
+    void begin(const Point2& p) {
+        end();
+        points_.push_back(p);
+    }
+    void go_on_to(const Point2& p) { points_.push_back(p); }
+    [[nodiscard]] bool crossed() && {
+        end();
+        layer_.points = PointArray(std::move(points_));
+        return has_crossings(layer_);
+    }
+
+  private:
+    void end() {
+        if (points_.size() > layer_.offsets.back())
+            layer_.offsets.push_back(points_.size());
+    }
+
+    Layer layer_;
+    std::vector<Point2> points_;
+};
+
+/// How close sides can be that others are drawn to when these are cut: each end and each piece moves by less
+/// than the diagonal of a unit square.
+constexpr double reach_of_cuts = 4;
+
+/// The sides of rings, not yet cut.
+class Uncut {
+  public:
+    Uncut(std::span<const WoundRing> rings, const ClippingGrid& grid) {
+        std::vector<Point2> places;
+        for (const WoundRing& ring : rings) {
+            for (const Point2& p : ring.points)
+                places.push_back(grid.place(p));
+            layer_.offsets.push_back(places.size());
+        }
+        layer_.rings = rings.size();
+        layer_.points = PointArray(std::move(places));
+        close_ = close_sides(layer_, reach_of_cuts);
+        OpenRuns runs;
+        for (std::size_t i = 0; i < rings.size(); ++i)
+            add(rings[i], i, runs);
+        arrangement.crossed = std::move(runs).crossed();
+        merge(arrangement);
+    }
+
+    Arrangement arrangement; ///< of sides that may come close to others
+    std::vector<Side> alone; ///< the rest
+
+  private:
+    void add(const WoundRing& ring, std::size_t number, OpenRuns& runs) {
+        const std::span<const Point2> places = layer_.contour(number);
+        const std::size_t n = places.size();
         const SideCount step{ring.turn, ring.left};
-        Point2 a = grid.place(ring.points.back());
-        for (const Point2& p : ring.points) {
-            const Point2 b = grid.place(p);
-            if (a < b)
-                arrangement.sides.push_back({{a, b}, step});
-            else if (b < a)
-                arrangement.sides.push_back({{b, a}, -1 * step});
-            a = b;
+        const auto after = [n](std::size_t i) {
+            return i + 1 < n ? i + 1 : 0;
+        };
+        const auto close = [&](std::size_t i) -> bool {
+            return close_[layer_.offsets[number] + i];
+        };
+        const auto rightwards = [&](std::size_t i) {
+            return places[i] < places[after(i)];
+        };
+        for (std::size_t i = 0; i < n;) {
+            arrangement.end_corners.push_back({places[i], ring.points[i]});
+            if (close(i)) {
+                if (i == 0 || !close(i - 1))
+                    runs.begin(ring.points[i]);
+                runs.go_on_to(ring.points[after(i)]);
+                if (places[i] != places[after(i)])
+                    arrangement.sides.push_back({.line = segment_between(places[i], places[after(i)]),
+                                                 .step = (rightwards(i) ? 1 : -1) * step});
+                ++i;
+                continue;
+            }
+            std::size_t last = i; // of the sides that go the same way
+            while (last + 1 < n && !close(last + 1) && rightwards(last + 1) == rightwards(i))
+                ++last;
+            const auto first = static_cast<std::uint32_t>(arrangement.corners.size());
+            for (std::size_t k = i + 1; k <= last; ++k) {
+                const std::size_t corner = rightwards(i) ? k : last + 1 + i - k;
+                arrangement.corners.push_back({places[corner], ring.points[corner]});
+            }
+            alone.push_back({.line = segment_between(places[i], places[after(last)]),
+                             .step = (rightwards(i) ? 1 : -1) * step,
+                             .alone = true,
+                             .first = first,
+                             .corners = static_cast<std::uint32_t>(last - i)});
+            i = last + 1;
         }
     }
-    merge(arrangement);
-    return arrangement;
-}
+
+    Layer layer_; ///< of places
+    std::vector<bool> close_;
+};
 
 // Snap rounding (Hobby 1999; Guibas and Marimont 1998). The plane is tiled by unit squares around the places
 // of the grid, each with its lower and its left border. Squares in which sides end or cross are hot, and each
@@ -185,9 +264,9 @@ bool cut(Arrangement& arrangement, const Places& places, const On& on) {
     const auto add_piece = [&](const Point2& a, const Point2& b, const SideCount& step) {
         assert(a != b);
         if (a < b)
-            pieces.push_back({{a, b}, step});
+            pieces.push_back({.line = {a, b}, .step = step});
         else
-            pieces.push_back({{b, a}, -1 * step}); // turned upright
+            pieces.push_back({.line = {b, a}, .step = -1 * step}); // turned upright
     };
     for (Side& side : sides) {
         cuts.clear();
@@ -214,13 +293,37 @@ bool cut(Arrangement& arrangement, const Places& places, const On& on) {
     return true;
 }
 
+/// The line of a side over a place that a sweep has come to, and did not before.
+class LinesAlong {
+  public:
+    explicit LinesAlong(const Arrangement& arrangement)
+        : arrangement_(arrangement), next_(arrangement.sides.size(), 0) {}
+
+    Segment operator()(std::uint32_t i, const Point2& at) {
+        const Side& side = arrangement_.sides[i];
+        const std::span<const Corner> corners = arrangement_.corners_of(side);
+        std::uint32_t& next = next_[i];
+        while (next < corners.size() && corners[next].place <= at)
+            ++next;
+        return {next == 0 ? side.line.lo : corners[next - 1].place,
+                next == corners.size() ? side.line.hi : corners[next].place};
+    }
+
+  private:
+    const Arrangement& arrangement_;
+    std::vector<std::uint32_t> next_; ///< corner of each side
+};
+
 /// Finds what is below each side, by a sweep from left to right. The sides meet in their ends only.
-void wind(std::vector<Side>& sides, const SideCount& around) {
+void wind(Arrangement& arrangement) {
+    std::vector<Side>& sides = arrangement.sides;
+    const SideCount around{arrangement.around, 0};
     std::vector<Segment> lines;
     lines.reserve(sides.size());
     for (const Side& side : sides)
         lines.push_back(side.line);
-    SweepStatus status(lines);
+    LinesAlong along(arrangement);
+    SweepStatus status(lines, std::ref(along));
     const std::vector<SweepEvent> events = sweep_events(lines, SweepOrder::ends_first);
     for (auto event = events.begin(); event != events.end();) {
         if (!event->begins) {
@@ -253,7 +356,19 @@ void wind(std::vector<Side>& sides, const SideCount& around) {
 struct Directed {
     Point2 from;
     Point2 to;
+    Point2 second; ///< place of it: the next one after `from`
+    Point2 last;   ///< the one before `to`
+    const Side* side;
 };
+
+Directed directed(const Arrangement& arrangement, const Side& side, bool rightwards) {
+    const std::span<const Corner> corners = arrangement.corners_of(side);
+    const auto& [lo, hi] = side.line;
+    const Point2& next_to_lo = corners.empty() ? hi : corners.front().place;
+    const Point2& next_to_hi = corners.empty() ? lo : corners.back().place;
+    return rightwards ? Directed{lo, hi, next_to_lo, next_to_hi, &side}
+                      : Directed{hi, lo, next_to_hi, next_to_lo, &side};
+}
 
 /// Whether, turning clockwise about v from the direction to u, a comes before b.
 bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const Point2& b) noexcept {
@@ -269,20 +384,20 @@ bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const P
 }
 
 /// Joins sides to rings; where several meet, so that each keeps its own wedge of material.
-std::vector<Ring> joined(std::vector<Directed> sides) {
+std::vector<std::vector<Directed>> joined(std::vector<Directed> sides) {
     std::sort(sides.begin(), sides.end(), [](const Directed& a, const Directed& b) {
-        return std::tie(a.from, a.to) < std::tie(b.from, b.to);
+        return std::tie(a.from, a.second) < std::tie(b.from, b.second);
     });
     std::vector<bool> used(sides.size(), false);
-    std::vector<Ring> rings;
+    std::vector<std::vector<Directed>> rings;
     for (std::size_t start = 0; start < sides.size(); ++start) {
         if (used[start])
             continue;
-        Ring& ring = rings.emplace_back();
+        std::vector<Directed>& ring = rings.emplace_back();
         std::size_t at = start;
         while (true) {
             used[at] = true;
-            ring.push_back(sides[at].from);
+            ring.push_back(sides[at]);
             const Point2& v = sides[at].to;
             std::size_t next = sides.size();
             const auto first = std::partition_point(sides.begin(), sides.end(),
@@ -291,7 +406,7 @@ std::vector<Ring> joined(std::vector<Directed> sides) {
                  i < sides.size() && sides[i].from == v; ++i)
                 if ((!used[i] || i == start) &&
                     (next == sides.size() ||
-                     clockwise_before(v, sides[at].from, sides[i].to, sides[next].to)))
+                     clockwise_before(v, sides[at].last, sides[i].second, sides[next].second)))
                     next = i;
             assert(next != sides.size()); // as many sides begin in a point as end there
             if (next == start || next == sides.size())
@@ -314,39 +429,47 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
         return static_cast<double>(std::abs(winding(count) + outside - (material(count.windings) ? 1 : 0)));
     };
     for (const Side& side : arrangement.sides) {
-        const auto& [lo, hi] = side.line;
-        length += distance(lo, hi);
-        excess += (off(side.below) - off(side.above())) * (hi.x - lo.x) * (lo.y + hi.y) / 2;
+        const double step = off(side.below) - off(side.above());
+        Point2 from = side.line.lo;
+        const auto go_on_to = [&](const Point2& to) {
+            length += distance(from, to);
+            excess += step * (to.x - from.x) * (from.y + to.y) / 2;
+            from = to;
+        };
+        for (const Corner& corner : arrangement.corners_of(side))
+            go_on_to(corner.place);
+        go_on_to(side.line.hi);
     }
     return std::abs(excess) <= 2 * length;
 }
 
-bool crossing(const std::vector<Ring>& rings) {
-    const std::vector<std::span<const Point2>> spans(rings.begin(), rings.end());
-    return has_crossings(layer_of(spans));
-}
+/// The corners at which sides end, by their places.
+class EndCorners {
+  public:
+    EndCorners(const Arrangement& arrangement, const ClippingGrid& grid)
+        : corners_(arrangement.end_corners), grid_(grid) {
+        std::sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) {
+            return std::tie(a.place, a.point) < std::tie(b.place, b.point);
+        });
+    }
+    /// Of several ones in a place the smallest, and where there is none the place itself.
+    [[nodiscard]] Corner at(const Point2& place) const {
+        const auto corner = std::partition_point(corners_.begin(), corners_.end(),
+                                                 [&](const Corner& c) { return c.place < place; });
+        return corner != corners_.end() && corner->place == place ? *corner
+                                                                  : Corner{place, grid_.point(place)};
+    }
 
-/// Puts the corners of the given rings back where they were before they were rounded.
-std::vector<Ring> with_corners(std::vector<Ring> rings, std::span<const WoundRing> given,
-                               const ClippingGrid& grid) {
-    std::vector<std::pair<Point2, Point2>> corners; // by their places
-    for (const WoundRing& ring : given)
-        for (const Point2& p : ring.points)
-            corners.emplace_back(grid.place(p), p);
-    std::sort(corners.begin(), corners.end()); // of several ones in a place the smallest counts
-    for (Ring& ring : rings)
-        for (Point2& p : ring) {
-            const auto corner = std::partition_point(corners.begin(), corners.end(),
-                                                     [&](const auto& c) { return c.first < p; });
-            p = corner != corners.end() && corner->first == p ? corner->second : grid.point(p);
-        }
-    return rings;
-}
+  private:
+    std::vector<Corner> corners_;
+    const ClippingGrid& grid_;
+};
 
 } // namespace
 
 Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, const ClippingGrid& grid) {
-    Arrangement arrangement = sides_of(rings, grid);
+    Uncut uncut(rings, grid);
+    Arrangement arrangement = std::move(uncut.arrangement);
     if (!arrangement.sides.empty()) {
         std::vector<Point2> hot;
         add_ends(arrangement.sides, hot);
@@ -360,8 +483,9 @@ Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, c
             });
         }
     }
+    arrangement.sides.insert(arrangement.sides.end(), uncut.alone.begin(), uncut.alone.end());
     arrangement.around = around;
-    wind(arrangement.sides, {around, 0});
+    wind(arrangement);
     return arrangement;
 }
 
@@ -374,21 +498,40 @@ bool Arrangement::bounded_by_rest(const Material& material) const {
 }
 
 std::vector<Ring> boundary(const Arrangement& arrangement, const Material& material,
-                           std::span<const WoundRing> rings, const ClippingGrid& grid) {
+                           const ClippingGrid& grid) {
     std::vector<Directed> sides;
     for (const Side& side : arrangement.sides) {
         const bool above = material(side.above().windings);
         if (above != material(side.below.windings))
-            sides.push_back(above ? Directed{side.line.lo, side.line.hi}
-                                  : Directed{side.line.hi, side.line.lo});
+            sides.push_back(directed(arrangement, side, above));
     }
-    std::vector<Ring> result = joined(std::move(sides));
-    std::vector<Ring> at_corners = with_corners(result, rings, grid);
-    if (!crossing(at_corners))
-        return at_corners;
-    for (Ring& ring : result)
-        for (Point2& p : ring)
-            p = grid.point(p);
+    const EndCorners ends(arrangement, grid);
+    std::vector<std::vector<Corner>> found;
+    OpenRuns runs;
+    for (const std::vector<Directed>& directed : joined(std::move(sides))) {
+        std::vector<Corner>& ring = found.emplace_back();
+        bool in_run = false;
+        for (const Directed& side : directed) {
+            ring.push_back(ends.at(side.from));
+            const std::span<const Corner> between = arrangement.corners_of(*side.side);
+            if (side.from == side.side->line.lo)
+                ring.insert(ring.end(), between.begin(), between.end());
+            else
+                ring.insert(ring.end(), between.rbegin(), between.rend());
+            if (!side.side->alone && !in_run)
+                runs.begin(ring.back().point);
+            if (!side.side->alone)
+                runs.go_on_to(ends.at(side.to).point);
+            in_run = !side.side->alone;
+        }
+    }
+    const bool crossed = std::move(runs).crossed(); // by corners that were put back
+    std::vector<Ring> result;
+    for (const std::vector<Corner>& corners_of_ring : found) {
+        Ring& ring = result.emplace_back();
+        for (const Corner& corner : corners_of_ring)
+            ring.push_back(crossed ? grid.point(corner.place) : corner.point);
+    }
     return result;
 }
 
@@ -398,7 +541,7 @@ std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRul
     wound.reserve(rings.size());
     for (const std::span<const Point2> ring : rings)
         wound.push_back({ring});
-    return boundary(arranged(wound, {}, grid), Material(rule), wound, grid);
+    return boundary(arranged(wound, {}, grid), Material(rule), grid);
 }
 
 Layer layer_of(std::span<const std::span<const Point2>> rings) {

@@ -41,11 +41,21 @@ struct SideCount {
     friend bool operator==(const SideCount&, const SideCount&) = default;
 };
 
-/// A piece of the boundary, on the grid. All numbers are whole.
+/// A corner of a ring, and where that is on the grid.
+struct Corner {
+    Point2 place;
+    Point2 point;
+};
+
+/// A piece of the boundary, on the grid, in the order of a sweep from left to right: a line that other sides
+/// may come close to, or some of a ring's that no others do. All numbers are whole.
 struct Side {
-    Segment line;
+    Segment line; ///< from its first place to its last one
     SideCount step;
     SideCount below = {};
+    bool alone = false;
+    std::uint32_t first = 0; ///< its corners but for the ends, in Arrangement::corners; of a line, none
+    std::uint32_t corners = 0;
 
     [[nodiscard]] SideCount above() const noexcept { return below + step; }
 };
@@ -53,9 +63,16 @@ struct Side {
 /// Sides that meet in their ends only.
 struct Arrangement {
     std::vector<Side> sides;
-    Windings around; ///< outside of all
+    std::vector<Corner> corners;     ///< of sides but for their ends, each from left to right
+    std::vector<Corner> end_corners; ///< of rings where sides end
+    Windings around;                 ///< outside of all
     /// Whether rings that are left run along one another there and back, so that nothing lies between them.
     bool walls = false;
+    bool crossed = false; ///< whether the rings do, before their corners are put on the grid
+
+    [[nodiscard]] std::span<const Corner> corners_of(const Side& side) const noexcept {
+        return std::span(corners).subspan(side.first, side.corners);
+    }
 
     /// Whether the rings as they are bound the material, up to areas that rounding to the grid can make. Not
     /// known of rings of both operands.
@@ -65,16 +82,16 @@ struct Arrangement {
 };
 
 /// The rings, in any order and each starting anywhere, cut on the grid where they meet. `around`: the
-/// windings outside of all of them. O((n + k) log n) for n points with k crossings, as far as crossings are
-/// found in that.
+/// windings outside of all of them. O(n + (m + k) log m) for n points, m sides that come close to others or
+/// turn, and k crossings, as far as these are found in that.
 [[nodiscard]] Arrangement arranged(std::span<const WoundRing> rings, const Windings& around,
                                    const ClippingGrid& grid);
 
-/// The boundary of the material in an arrangement of these rings: bodies counter-clockwise, holes clockwise,
+/// The boundary of the material in an arrangement on this grid: bodies counter-clockwise, holes clockwise,
 /// rings that meet in a point joined so that each keeps its own wedge of material. Points that were corners
 /// of the rings keep their coordinates, others lie on the grid. They do not cross.
 [[nodiscard]] std::vector<Ring> boundary(const Arrangement& arrangement, const Material& material,
-                                         std::span<const WoundRing> rings, const ClippingGrid& grid);
+                                         const ClippingGrid& grid);
 
 /// The boundary of where the winding number of the rings fulfils the rule; see `boundary`.
 [[nodiscard]] std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule,

@@ -26,6 +26,7 @@ struct Box2 {
         x1 = std::max(x1, other.x1);
         y1 = std::max(y1, other.y1);
     }
+    [[nodiscard]] Box2 grown(double by) const noexcept { return {x0 - by, y0 - by, x1 + by, y1 + by}; }
     [[nodiscard]] double width() const noexcept { return x1 - x0; }
     [[nodiscard]] double height() const noexcept { return y1 - y0; }
     [[nodiscard]] double largest_coordinate() const noexcept {

@@ -6,10 +6,10 @@
 
 namespace lamella {
 
-std::optional<ChainGrid> ChainGrid::of(const MonotoneChains& chains) {
+std::optional<ChainGrid> ChainGrid::of(const MonotoneChains& chains, double reach) {
     if (chains.all().empty())
         return std::nullopt;
-    std::optional<ChainGrid> grid(ChainGrid{chains});
+    std::optional<ChainGrid> grid(ChainGrid{chains, reach});
     grid->take_rings();
     if (!grid->sort())
         return std::nullopt;
@@ -24,7 +24,7 @@ void ChainGrid::take_rings() {
         const std::size_t n = chains.of_ring(ring).size();
         if (n == 0)
             continue;
-        all_.add(chains.box(ring));
+        all_.add(chains.box(ring).grown(reach_));
         expected += n <= few_chains ? 1 : n;
     }
     pieces_.reserve(expected + expected / 4);
@@ -38,7 +38,7 @@ void ChainGrid::take_rings() {
         const Box2& box = chains.box(ring);
         if (here.size() <= few_chains && std::max(box.width(), box.height()) <= longest) {
             pieces_.push_back({here.front().first, ring, 0, way::all, {}, {}});
-            boxes_.push_back(box);
+            boxes_.push_back(box.grown(reach_));
         } else {
             large_rings_.push_back(ring);
             for (const Chain& chain : here)
@@ -57,7 +57,7 @@ void ChainGrid::take(const Chain& chain, double longest) {
              longest);
     } else {
         pieces_.push_back(chain);
-        boxes_.push_back(box);
+        boxes_.push_back(box.grown(reach_));
     }
 }
 

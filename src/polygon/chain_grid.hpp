@@ -20,8 +20,8 @@ class ChainGrid {
   public:
     /// None for layers that have no chains or defeat a grid: extents beyond numbers, many long pieces aslant.
     /// O(chains).
-    /// The chains are to outlive the grid.
-    [[nodiscard]] static std::optional<ChainGrid> of(const MonotoneChains& chains);
+    /// The chains are to outlive the grid. Boxes are grown by `reach`, if any.
+    [[nodiscard]] static std::optional<ChainGrid> of(const MonotoneChains& chains, double reach = 0);
 
     [[nodiscard]] std::span<const Chain> pieces() const noexcept { return pieces_; }
     [[nodiscard]] static bool whole_ring(const Chain& piece) noexcept { return way::turns(piece.ways); }
@@ -42,7 +42,7 @@ class ChainGrid {
     [[nodiscard]] bool surrounded(const Point2& p, std::uint32_t ring) const noexcept;
 
   private:
-    explicit ChainGrid(const MonotoneChains& chains) : all_chains_(&chains) {}
+    ChainGrid(const MonotoneChains& chains, double reach) : all_chains_(&chains), reach_(reach) {}
     void take_rings();
     void take(const Chain& chain, double longest);
     bool sort();
@@ -51,6 +51,7 @@ class ChainGrid {
     static constexpr std::size_t few_large_rings = 16;
 
     const MonotoneChains* all_chains_;
+    double reach_;
     std::vector<Chain> pieces_;
     std::vector<Box2> boxes_;
     std::vector<std::uint32_t> large_rings_; ///< those in several pieces

@@ -80,11 +80,9 @@ class Filler {
             return;
         // Of the group itself nothing lies below the left end of its first ring.
         const Windings around = nest_.below[group.front()];
-        std::vector<std::span<const Point2>> points;
         Windings most;
         for (const std::uint32_t ring : group) {
             fates_[ring] = fate_by_left_end(ring);
-            points.push_back(layer_.contour(ring));
             most += turns_[ring];
         }
         if (material_.alike(around, most)) {
@@ -92,14 +90,12 @@ class Filler {
                 fates_[ring] = Fate::dropped;
             return;
         }
-        const std::vector<WoundRing> rings = wound(group);
         if (!grid_)
             grid_.emplace(layer_.points.span().first(layer_.offsets[layer_.rings]));
-        const bool crossed = has_crossings(layer_of(points));
-        const Arrangement arrangement = arranged(rings, around, *grid_);
-        if (!crossed && stay(group, arrangement, most))
+        const Arrangement arrangement = arranged(wound(group), around, *grid_);
+        if (!arrangement.crossed && stay(group, arrangement, most))
             return;
-        unite(group, rings, arrangement);
+        unite(group, arrangement);
     }
 
     [[nodiscard]] std::vector<WoundRing> wound(std::span<const std::uint32_t> group) const {
@@ -109,13 +105,12 @@ class Filler {
         return rings;
     }
 
-    void unite(std::span<const std::uint32_t> group, std::span<const WoundRing> rings,
-               const Arrangement& arrangement) {
+    void unite(std::span<const std::uint32_t> group, const Arrangement& arrangement) {
         for (const std::uint32_t ring : group)
             fates_[ring] = Fate::united;
         ++result_.groups_united;
         result_.rings_united += group.size();
-        for (Ring& ring : boundary(arrangement, material_, rings, *grid_))
+        for (Ring& ring : boundary(arrangement, material_, *grid_))
             united_.push_back(std::move(ring));
     }
 
@@ -125,8 +120,7 @@ class Filler {
         std::erase_if(all, [this](std::uint32_t ring) { return flat(ring); });
         united_.clear();
         result_ = {};
-        const std::vector<WoundRing> rings = wound(all);
-        unite(all, rings, arranged(rings, {}, *grid_));
+        unite(all, arranged(wound(all), {}, *grid_));
     }
 
     /// Whether rings that do not cross can stay or go each as a whole, and which.

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <iterator>
 #include <tuple>
+#include <utility>
 
 namespace lamella {
 
@@ -26,18 +27,19 @@ std::vector<SweepEvent> sweep_events(std::span<const Segment> segments, SweepOrd
     return events;
 }
 
-bool SweepStatus::Lower::operator()(std::uint32_t i, std::uint32_t j) const noexcept {
-    const Segment& s = segments[i];
-    const Segment& t = segments[j];
-    const bool s_starts_later = t.lo < s.lo;
+bool SweepStatus::Lower::operator()(std::uint32_t i, std::uint32_t j) const {
+    const bool s_starts_later = segments[j].lo < segments[i].lo;
+    const Point2& at = segments[s_starts_later ? i : j].lo;
+    const Segment s = over(i, at);
+    const Segment t = over(j, at);
     int s_side = s_starts_later ? side(t, s.lo) : -side(s, t.lo);
     if (s_side == 0)
         s_side = s_starts_later ? side(t, s.hi) : -side(s, t.hi);
     return s_side != 0 ? s_side < 0 : i < j;
 }
 
-SweepStatus::SweepStatus(std::span<const Segment> segments)
-    : order_(Lower{segments}), places_(segments.size(), order_.end()) {}
+SweepStatus::SweepStatus(std::span<const Segment> segments, Piece piece)
+    : order_(Lower{segments, std::move(piece)}), places_(segments.size(), order_.end()) {}
 
 void SweepStatus::insert(std::uint32_t segment) {
     assert(places_[segment] == order_.end());

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <span>
 #include <vector>
@@ -34,8 +35,12 @@ class SweepStatus {
   public:
     static constexpr std::uint32_t none = 0xffffffff;
 
+    /// What goes from one end of a segment to the other over a place that the line has come to, where that is
+    /// more than the segment itself: a way of several ones, from left to right.
+    using Piece = std::function<Segment(std::uint32_t segment, const Point2& at)>;
+
     /// The segments are to outlive the status.
-    explicit SweepStatus(std::span<const Segment> segments);
+    explicit SweepStatus(std::span<const Segment> segments, Piece piece = {});
 
     void insert(std::uint32_t segment);
     void erase(std::uint32_t segment);
@@ -47,7 +52,12 @@ class SweepStatus {
   private:
     struct Lower {
         std::span<const Segment> segments;
-        [[nodiscard]] bool operator()(std::uint32_t i, std::uint32_t j) const noexcept;
+        Piece piece;
+
+        [[nodiscard]] Segment over(std::uint32_t i, const Point2& at) const {
+            return piece ? piece(i, at) : segments[i];
+        }
+        [[nodiscard]] bool operator()(std::uint32_t i, std::uint32_t j) const;
     };
     using Order = std::set<std::uint32_t, Lower>;
 
