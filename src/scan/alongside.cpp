@@ -1,6 +1,9 @@
 #include "scan/alongside.hpp"
 
+#include "polygon/box2.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -103,15 +106,48 @@ bool run_alongside(std::span<const Point2> a, std::span<const Point2> b, double 
     return true;
 }
 
+Box2 box_of_ring(const Layer& layer, std::size_t ring) noexcept {
+    return layer.contour(ring).empty() ? Box2{} : box_of(layer.contour(ring));
+}
+
+bool alike(const Box2& a, const Box2& b, double within) noexcept {
+    return std::abs(a.x0 - b.x0) <= within && std::abs(a.y0 - b.y0) <= within &&
+           std::abs(a.x1 - b.x1) <= within && std::abs(a.y1 - b.y1) <= within;
+}
+
 } // namespace
 
-bool run_alongside(const Layer& a, const Layer& b, double within) {
-    if (a.rings != b.rings)
-        return false;
-    for (std::size_t i = 0; i < a.rings; ++i)
-        if (!run_alongside(a.contour(i), b.contour(i), within * within))
-            return false;
-    return true;
+std::vector<std::uint32_t> rings_alongside(const Layer& a, const Layer& b, double within) {
+    std::vector<bool> taken(b.rings, false);
+    std::vector<std::uint32_t> found(a.rings, no_ring);
+    const auto try_pair = [&](std::size_t i, std::uint32_t j) {
+        if (j < b.rings && !taken[j] && run_alongside(a.contour(i), b.contour(j), within * within)) {
+            taken[j] = true;
+            found[i] = j;
+        }
+    };
+    std::vector<Box2> boxes; // of b's rings, once some are searched for
+    std::uint32_t likely = 0;
+    for (std::size_t i = 0; i < a.rings; ++i) {
+        try_pair(i, likely);
+        if (found[i] != no_ring) {
+            likely = found[i] + 1;
+            continue;
+        }
+        for (std::size_t j = boxes.size(); j < b.rings; ++j)
+            boxes.push_back(box_of_ring(b, j));
+        const Box2 box = box_of_ring(a, i);
+        // Rings in normal form are in the order of their left ends.
+        auto next = static_cast<std::uint32_t>(
+            std::partition_point(boxes.begin(), boxes.end(),
+                                 [&](const Box2& other) { return other.x0 < box.x0 - within; }) -
+            boxes.begin());
+        for (; next < b.rings && boxes[next].x0 <= box.x0 + within && found[i] == no_ring; ++next)
+            if (alike(box, boxes[next], within))
+                try_pair(i, next);
+        likely = found[i] != no_ring ? found[i] + 1 : likely + 1;
+    }
+    return found;
 }
 
 } // namespace lamella

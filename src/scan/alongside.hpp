@@ -1,15 +1,22 @@
 #pragma once
 
-// Layers that are nearly the same.
+// Rings of one layer and of another one that are nearly the same.
 
 #include "lamella/contour/layer.hpp"
 
+#include <cstdint>
+#include <vector>
+
 namespace lamella {
 
-/// Whether each ring of a layer can be followed alongside the ring of the same number of another one, step by
-/// step, so that both are never farther apart than `within` mm. Then the material of each lies within that of
-/// the other, grown by so much: whatever is in one of them only was swept by the way from one to the other.
-/// (That the shortest way is found is not sought: true is certain, false is not.) O(points).
-[[nodiscard]] bool run_alongside(const Layer& a, const Layer& b, double within);
+/// The number of no ring.
+inline constexpr std::uint32_t no_ring = 0xffffffff;
+
+/// For each ring of a layer one of another layer that can be followed alongside, step by step, so that both
+/// are never farther apart than `within` mm, or `no_ring`; each is alongside one ring at most. What is inside
+/// of one of the two only was swept by the way between them, so it is no farther from either. (That the
+/// shortest way is found is not sought, nor all pairs: what is found is certain.) O(points) for layers in
+/// normal form whose rings have few others beside them with nearly the same box.
+[[nodiscard]] std::vector<std::uint32_t> rings_alongside(const Layer& a, const Layer& b, double within);
 
 } // namespace lamella

@@ -1,17 +1,15 @@
 #include "lamella/scan/scan.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
-#include "scan/alongside.hpp"
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
+#include "scan/skin.hpp"
 #include "scan/support.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cstddef>
 #include <utility>
@@ -59,61 +57,6 @@ class Insets {
     const Layer& layer_;
     std::vector<double> distances_;
     std::vector<Layer> moved_;
-};
-
-Layer without(const Layer& from, const Layer& taken) {
-    return taken.rings == 0 || from.rings == 0 ? from : combine(from, taken, BooleanOperation::subtract);
-}
-
-/// Where a layer has less than `rule.layers` layers of material beside it.
-///
-/// Not what the layer has and the intersection of its neighbours has not: walls of a prism have their corners
-/// in the same places on all layers, and others where edges slant across them, so its layers are the same but
-/// for roundings. What neighbours have is grown before it is taken away, and what is left is grown by as
-/// much: so such rings do not meet at all, which takes a hundredth of the time, and no slivers are left.
-class Skin {
-  public:
-    Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule) {
-        if (rule.layers == 0)
-            return;
-        const bool ends = neighbours.size() < rule.layers;
-        const double grown = ends ? 0 : rule.narrowest;
-        const Layer open = ends ? layer : open_of(layer, neighbours.first(rule.layers), grown);
-        if (open.rings == 0)
-            return;
-        std::vector<Layer> moved = offsets(open, std::array{grown, grown + rule.overlap});
-        skin_ = std::move(moved[0]);
-        with_overlap_ = std::move(moved[1]);
-    }
-
-    /// What of an area is within the skin or closer to it than the overlap.
-    [[nodiscard]] Layer of(const Layer& area) const {
-        if (skin_.rings == 0 || area.rings == 0)
-            return {};
-        return combine(area, with_overlap_, BooleanOperation::intersect);
-    }
-    [[nodiscard]] Layer rest_of(const Layer& area) const { return without(area, skin_); }
-
-  private:
-    static Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grown) {
-        Layer all;
-        // Walls that are steep enough leave nothing open, from layer to layer.
-        const Layer* nearer = &layer;
-        bool steep = true;
-        for (const Layer& neighbour : neighbours) {
-            steep =
-                steep && run_alongside(*nearer, neighbour, grown / static_cast<double>(neighbours.size()));
-            nearer = &neighbour;
-            if (steep)
-                continue;
-            const Layer open = without(layer, offset(neighbour, grown));
-            all = all.rings == 0 ? open : open.rings == 0 ? all : combine(all, open, BooleanOperation::unite);
-        }
-        return all;
-    }
-
-    Layer skin_;
-    Layer with_overlap_;
 };
 
 } // namespace

@@ -1,3 +1,4 @@
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/offset.hpp"
 
@@ -6,9 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <random>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -18,14 +22,22 @@ using test::layer_of;
 using test::rectangle;
 using test::reversed;
 
-TEST(RunAlongside, IsTrueOfEqualLayers) {
+/// Whether every ring has one alongside.
+bool run_alongside(const Layer& a, const Layer& b, double within) {
+    const std::vector<std::uint32_t> partners = rings_alongside(a, b, within);
+    EXPECT_EQ(partners.size(), a.rings);
+    return a.rings == b.rings && std::none_of(partners.begin(), partners.end(),
+                                              [](std::uint32_t partner) { return partner == no_ring; });
+}
+
+TEST(RingsAlongside, AreAllOfEqualLayers) {
     const Layer layer = layer_of({rectangle(0, 0, 4, 4), reversed(rectangle(1, 1, 3, 3))});
     EXPECT_TRUE(run_alongside(layer, layer, 0));
     EXPECT_TRUE(run_alongside(Layer{}, Layer{}, 0));
     EXPECT_FALSE(run_alongside(layer, Layer{}, 100));
 }
 
-TEST(RunAlongside, PassesOverPointsOnWalls) {
+TEST(RingsAlongside, PassOverPointsOnWalls) {
     const Contour square = rectangle(0, 0, 4, 4);
     const Contour more{{0, 0}, {1, 0}, {4, 0}, {4, 2}, {4, 4}, {3, 4}, {1, 4}, {0, 4}, {0, 1}};
     EXPECT_TRUE(run_alongside(layer_of({square}), layer_of({more}), 0));
@@ -37,7 +49,7 @@ TEST(RunAlongside, PassesOverPointsOnWalls) {
     EXPECT_FALSE(run_alongside(layer_of({moved}), layer_of({square}), 0.2));
 }
 
-TEST(RunAlongside, BeginsWhereRingsAreNearest) {
+TEST(RingsAlongside, BeginWhereTheyAreNearest) {
     const Contour square = rectangle(0, 0, 4, 4);
     for (std::size_t turn = 0; turn < 4; ++turn) {
         Contour turned;
@@ -52,7 +64,7 @@ TEST(RunAlongside, BeginsWhereRingsAreNearest) {
 }
 
 // The promise: what one layer has and the other has not lies within the distance of the other.
-TEST(RunAlongside, MeansThatEachLiesWithinTheOtherGrown) {
+TEST(RingsAlongside, LieWithinEachOtherGrown) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> jitter(-0.1, 0.1);
     std::uniform_int_distribution<int> count(3, 40);
@@ -79,6 +91,15 @@ TEST(RunAlongside, MeansThatEachLiesWithinTheOtherGrown) {
         }
     }
     EXPECT_GT(alike, 200);
+}
+
+TEST(RingsAlongside, AreOneForOne) {
+    const Layer a =
+        normal_form(layer_of({rectangle(0, 0, 1, 1), rectangle(0.01, 0, 1, 1), rectangle(5, 5, 6, 6)}));
+    const Layer b =
+        normal_form(layer_of({rectangle(5.01, 5, 6, 6), rectangle(0, 0.01, 1, 1), rectangle(8, 8, 9, 9)}));
+    EXPECT_EQ(rings_alongside(a, b, 0.1), (std::vector<std::uint32_t>{0, no_ring, 1}));
+    EXPECT_EQ(rings_alongside(b, a, 0.1), (std::vector<std::uint32_t>{0, 2, no_ring}));
 }
 
 } // namespace
