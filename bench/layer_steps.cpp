@@ -1,14 +1,14 @@
 // What does looking after layers and meshes cost? Filling layers that are clean, and layers of a part and its
-// copy half a body further, against slicing; offsets against slicing, and against Clipper's; finding
-// self-intersections against welding. Clean layers must come back bit for bit, united ones must have no
-// crossings left and, filled again, stay as they are; areas of offsets must be Clipper's.
+// copy half a body further, against slicing; offsets against slicing, and against those of Clipper, GEOS and
+// CGAL; finding self-intersections against welding. Clean layers must come back bit for bit, united ones must
+// have no crossings left and, filled again, stay as they are; areas of offsets must be those of the others.
 
 #include "experiment.hpp"
+#include "offsets_of_others.hpp"
 #include "parts.hpp"
 #include "parts/shapes.hpp"
 
 #include <fmt/format.h>
-#include <polyclipping/clipper.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -81,33 +81,19 @@ Timed fill_doubled(const Part& part, const Execution& execution) {
     return result;
 }
 
-/// Clipper's offset with mitred corners, on its grid of integers: its area. Of layers with nothing to unite.
-double area_by_clipper(const Layer& layer, double distance) {
-    constexpr double unit = 0x1p-30;
-    ClipperLib::ClipperOffset offset(OffsetCorners{}.mitre_limit);
-    for (std::size_t i = 0; i < layer.rings; ++i) {
-        ClipperLib::Path path;
-        path.reserve(layer.contour(i).size());
-        for (const Point2& p : layer.contour(i))
-            path.emplace_back(std::llround(p.x / unit), std::llround(p.y / unit));
-        offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
-    }
-    ClipperLib::Paths moved;
-    offset.Execute(moved, distance / unit);
-    double area = 0;
-    for (const ClipperLib::Path& path : moved)
-        area += ClipperLib::Area(path);
-    return area * unit * unit;
-}
-
 /// Seconds on one thread, for the same layers.
 struct Moved {
     double slice = 0;
     double ours = 0;
-    double clipper = 0;
+    double clipper = 0; ///< for all layers, reckoned from a few; so the next ones
+    double geos = 0;
+    double cgal = 0; ///< 0 where layers are too large for it
     std::uint64_t points = 0;
     bool right = true;
 };
+
+/// More points in a layer would take CGAL minutes.
+constexpr std::size_t most_points_for_cgal = 10000;
 
 Moved move_layers(const Part& part, double distance) {
     const OpenedPart opened = open_part(part, {.threads = 1});
@@ -119,19 +105,27 @@ Moved move_layers(const Part& part, double distance) {
     const auto moving = Clock::now();
     const LayerStack moved = take_steps({.offset_mm = distance}, layers, changes, {.threads = 1});
     result.ours = seconds_since(moving);
-    // Clipper takes its time: a few layers stand for all.
-    const std::size_t step = std::max<std::size_t>(1, layers.size() / 10);
-    std::size_t compared = 0;
-    for (std::size_t i = step / 2; i < layers.size(); i += step, ++compared) {
-        const auto clipping = Clock::now();
-        const double area = area_by_clipper(layers[i], distance);
-        result.clipper += seconds_since(clipping);
-        const LayerMeasure measured = measure(moved[i]);
-        result.right = result.right && !has_crossings(moved[i]) &&
-                       std::abs(measured.area_mm2 - area) <= 1e-6 * (1 + measured.perimeter_mm);
-    }
-    result.clipper *=
-        static_cast<double>(layers.size()) / static_cast<double>(std::max<std::size_t>(1, compared));
+    // Others take their time: a few layers stand for all.
+    const auto compare = [&](std::size_t count, double tolerance, const auto& area_by, double& seconds) {
+        const std::size_t step = std::max<std::size_t>(1, layers.size() / count);
+        std::size_t compared = 0;
+        for (std::size_t i = step / 2; i < layers.size(); i += step, ++compared) {
+            const auto begin = Clock::now();
+            const double area = area_by(layers[i], distance);
+            seconds += seconds_since(begin);
+            const LayerMeasure measured = measure(moved[i]);
+            result.right = result.right && !has_crossings(moved[i]) &&
+                           std::abs(measured.area_mm2 - area) <= tolerance * (1 + measured.perimeter_mm);
+        }
+        seconds *= static_cast<double>(layers.size()) / static_cast<double>(compared);
+    };
+    std::size_t largest = 0;
+    for (const Layer& layer : layers)
+        largest = std::max(largest, layer.points.size());
+    compare(10, 1e-6, area_by_clipper, result.clipper);
+    compare(10, 1e-6, area_by_geos, result.geos);
+    if (largest <= most_points_for_cgal)
+        compare(2, 1e-4, area_by_cgal, result.cgal);
     for (const Layer& layer : layers)
         result.points += layer.points.size();
     return result;
@@ -141,6 +135,8 @@ bool add_offset(Table& table, const Part& part, double distance, int rounds) {
     std::vector<double> slice;
     std::vector<double> ours;
     std::vector<double> clipper;
+    std::vector<double> geos;
+    std::vector<double> cgal;
     Moved last;
     bool right = true;
     for (int round = 0; round < rounds; ++round) {
@@ -148,14 +144,18 @@ bool add_offset(Table& table, const Part& part, double distance, int rounds) {
         slice.push_back(last.slice);
         ours.push_back(last.ours);
         clipper.push_back(last.clipper);
+        geos.push_back(last.geos);
+        cgal.push_back(last.cgal);
         right = right && last.right;
     }
-    table.add({part.name, fmt::format("{}", distance),
-               fmt::format("{:.2f}", static_cast<double>(last.points) / 1e6),
-               fmt::format("{:.4f}", median(slice)), fmt::format("{:.4f}", median(ours)),
-               fmt::format("{:.2f}", median(ours) / median(slice)),
-               fmt::format("{:.0f}", 1e9 * median(ours) / static_cast<double>(last.points)),
-               fmt::format("{:.1f}", median(clipper) / median(ours)), right ? "yes" : "WRONG"});
+    table.add(
+        {part.name, fmt::format("{}", distance),
+         fmt::format("{:.2f}", static_cast<double>(last.points) / 1e6), fmt::format("{:.4f}", median(slice)),
+         fmt::format("{:.4f}", median(ours)), fmt::format("{:.2f}", median(ours) / median(slice)),
+         fmt::format("{:.0f}", 1e9 * median(ours) / static_cast<double>(last.points)),
+         fmt::format("{:.1f}", median(clipper) / median(ours)),
+         fmt::format("{:.1f}", median(geos) / median(ours)),
+         last.cgal == 0 ? "" : fmt::format("{:.0f}", median(cgal) / median(ours)), right ? "yes" : "WRONG"});
     return right;
 }
 
@@ -223,7 +223,7 @@ int report(int argc, char** argv) {
     std::cout << fills.text() << '\n';
 
     Table moved({"part", "offset mm", "Mpoints", "slice s", "offset s", "offset / slice", "ns/point",
-                 "Clipper / ours", "checked"});
+                 "Clipper / ours", "GEOS / ours", "CGAL / ours", "checked"});
     for (const Part& part : parts)
         for (const double distance : {-0.05, 0.05})
             all_right = add_offset(moved, part, distance, rounds) && all_right;
