@@ -48,7 +48,7 @@ THIRD_PARTY_ANYWHERE = {"fmt"}
 # Of the programs.
 THIRD_PARTY_OF_CONSUMERS = {
     "mpi.h": "app/mpi_processes.cpp",
-    "polyclipping/clipper.hpp": "bench/layer_steps.cpp bench/scan.cpp",
+    "polyclipping/clipper.hpp": "bench/offsets_of_others.cpp bench/scan.cpp",
     "toml++/toml.h": "app/toml_file.cpp",
 }
 
