@@ -1,7 +1,7 @@
 #include "lamella/write/layer_page.hpp"
 
-#include "lamella/contour/measure.hpp"
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/measure.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"

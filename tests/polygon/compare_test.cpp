@@ -94,8 +94,8 @@ TEST(CompareStacks, PlanesBelongTogetherAsFarAsEitherFormatRounds) {
     const LayerStack rounded = squares({100.05 + 3e-6, 100.15 - 3e-6}, 0.1);
     const Rounding single{.single_precision = true};
     EXPECT_EQ(compare(RoundedLayers{exact}, {rounded}).planes.size(), 4U);
-    for (const StackComparison& found :
-         {compare(RoundedLayers{exact}, {rounded, single}), compare(RoundedLayers{rounded, single}, {exact})}) {
+    for (const StackComparison& found : {compare(RoundedLayers{exact}, {rounded, single}),
+                                         compare(RoundedLayers{rounded, single}, {exact})}) {
         ASSERT_EQ(found.planes.size(), 2U);
         EXPECT_TRUE(found.planes[0].agree && found.planes[1].agree);
         EXPECT_EQ(found.planes[1].first, 1U);

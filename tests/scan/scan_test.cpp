@@ -1,5 +1,5 @@
-#include "lamella/contour/measure.hpp"
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/scan/scan.hpp"

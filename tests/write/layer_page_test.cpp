@@ -1,5 +1,5 @@
-#include "lamella/contour/measure.hpp"
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/measure.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"

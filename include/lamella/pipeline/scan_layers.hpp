@@ -2,8 +2,8 @@
 
 // Layers that are there already: their scan vectors, written to a file.
 
-#include "lamella/contour/layer.hpp"
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
