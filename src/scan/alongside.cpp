@@ -66,9 +66,19 @@ std::size_t nearest_edge(std::span<const Point2> ring, const Point2& p, Point2& 
     return nearest;
 }
 
+/// Whether both can be followed from corner to corner of the same number.
+bool corner_by_corner(std::span<const Point2> a, std::span<const Point2> b, double squared) noexcept {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, squared_distance(a[i], b[i]));
+    return largest <= squared;
+}
+
 bool run_alongside(std::span<const Point2> a, std::span<const Point2> b, double squared) {
+    if (a.size() == b.size() && corner_by_corner(a, b, squared))
+        return true;
     if (a.empty() || b.empty())
-        return a.empty() && b.empty();
+        return false;
     Point2 place = b.front();
     const std::size_t corner = place == a.front() ? 0 : nearest_edge(b, a.front(), place);
     if (squared_distance(a.front(), place) > squared)

@@ -168,23 +168,29 @@ Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grow
 Skin::Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule) {
     if (rule.layers == 0 || layer.rings == 0)
         return;
-    const bool ends = neighbours.size() < rule.layers;
-    const double grown = ends ? 0 : rule.narrowest;
-    const Layer open = ends ? layer : open_of(layer, neighbours.first(rule.layers), grown);
+    if (neighbours.size() < rule.layers) {
+        whole_ = true; // the part ends there
+        return;
+    }
+    const Layer open = open_of(layer, neighbours.first(rule.layers), rule.narrowest);
     if (open.rings == 0)
         return;
-    std::vector<Layer> moved = offsets(open, std::array{grown, grown + rule.overlap});
+    std::vector<Layer> moved = offsets(open, std::array{rule.narrowest, rule.narrowest + rule.overlap});
     skin_ = std::move(moved[0]);
     with_overlap_ = std::move(moved[1]);
 }
 
 Layer Skin::of(const Layer& area) const {
+    if (whole_)
+        return area;
     if (skin_.rings == 0 || area.rings == 0)
         return {};
     return combine(Apart(area, with_overlap_).near, with_overlap_, BooleanOperation::intersect);
 }
 
 Layer Skin::rest_of(const Layer& area) const {
+    if (whole_)
+        return {};
     if (skin_.rings == 0 || area.rings == 0)
         return area;
     const Apart apart(area, skin_);

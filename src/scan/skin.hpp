@@ -16,12 +16,14 @@ class Skin {
     /// part ends.
     Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule);
 
-    /// What of an area, whose rings do not cross, is within the skin or closer to it than the overlap.
+    /// What of an area within the layer, whose rings do not cross, is within the skin or closer to it than
+    /// the overlap.
     [[nodiscard]] Layer of(const Layer& area) const;
     /// What of it is not within the skin.
     [[nodiscard]] Layer rest_of(const Layer& area) const;
 
   private:
+    bool whole_ = false; ///< all of the layer is skin
     Layer skin_;
     Layer with_overlap_;
 };
