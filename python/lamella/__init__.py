@@ -15,7 +15,7 @@ failure is a lamella.DefectWarning.
 """
 
 from . import _methods
-from ._checks import Comparison, LayerDifference, Verification, compare, verify
+from ._checks import Comparison, LayerDifference, VectorVerification, Verification, compare, verify, verify_vectors
 from ._errors import (
     CancelledError,
     DefectError,
@@ -75,6 +75,7 @@ __all__ = [
     "Stack",
     "SupportRule",
     "UsageError",
+    "VectorVerification",
     "Verification",
     "__version__",
     "compare",
@@ -89,5 +90,6 @@ __all__ = [
     "slice",
     "to_pyslm",
     "verify",
+    "verify_vectors",
     "write",
 ]

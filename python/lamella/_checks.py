@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple, Union
 
@@ -13,9 +14,11 @@ from . import _lamella
 from ._arguments import PathLike, Progress
 from ._errors import UsageError
 from ._files import as_stack
-from ._lamella import Layer, Stack
-from ._meshes import UPWARDS, MeshLike, as_mesh, placed, placing
+from ._lamella import Layer, Mesh, Stack
+from ._meshes import UPWARDS, MeshLike, Placing, as_mesh, placed, placing
+from ._scanning import StrategyLike, as_strategy
 from ._slicing import PLACES
+from ._warning import warn
 
 
 @dataclass(frozen=True)
@@ -60,18 +63,80 @@ def verify(
     """
     threads, progress = check.thread_count(threads), check.listener(progress)
     place = check.optional(check.choice, "at", at, PLACES)
-    where = placing(direction, transform)
-    if mesh is None:
-        ways = {"direction": where[0] != UPWARDS, "transform": transform is not None, "unit_mm": unit_mm is not None}
-        for name, given in ways.items():
-            if given:
-                raise UsageError(f"{name} goes with a mesh, and none is given")
     stack = as_stack("layers", layers, threads=threads, progress=progress)
-    sliced = None
-    if mesh is not None:
-        sliced = as_mesh("mesh", mesh, unit_mm=unit_mm, threads=threads, progress=progress)
-        sliced = placed(sliced, where)
+    sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
     return Verification(**_lamella.verify(stack, sliced, place or "", threads, progress))
+
+
+@dataclass(frozen=True)
+class VectorVerification:
+    """What `verify_vectors` finds."""
+
+    ok: bool  #: nothing of what follows, but for `unbounded`
+    layers: int
+    contour_vectors: int
+    hatch_vectors: int
+    open_chains: int  #: contours that are not closed; of each exposure by themselves, as the next two
+    crossings: int  #: pairs of segments that cross
+    misoriented: int  #: rings that run the wrong way round for where they lie
+    outside: int  #: vectors that leave the material, or are nearer to its edges than the strategy says
+    too_short: int  #: hatch lines shorter than the shortest of the strategy
+    miscovered: int  #: planes of a part whose lines cover more or less than they are to fill
+    cover: Optional[float]  #: what lines cover by what they are to fill, where a strategy is given
+    unbounded: int  #: vectors of which nothing tells where the material is
+    findings: List[str]  #: one line for each kind of finding, with the first layer and place
+
+
+def verify_vectors(
+    path: PathLike,
+    mesh: Optional[MeshLike] = None,
+    *,
+    strategy: StrategyLike = None,
+    at: Optional[str] = None,
+    direction: Sequence[float] = (0, 0, 1),
+    transform: Optional[npt.ArrayLike] = None,
+    unit_mm: Optional[float] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> VectorVerification:
+    """Checks a file of scan vectors: contours of each exposure closed, oriented and without crossings, and all vectors
+    within the mesh, or without one within the outermost contours of their part; with the strategy by which they were
+    made, as far from its edges as that says, none shorter than the shortest, and enough of them to fill it.
+
+    path: of a file that `lamella slice --scan` or `lamella scan` wrote, or other programs, with scan vectors.
+    mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
+    strategy: as `scan` takes it; lamella.ScanStrategy() is the one by default, None does not ask for any.
+    at: where in their thickness the layers were cut, if not where they say: "bottom", "middle" or "top".
+    threads: 0 takes one for each processor.
+    progress: called as progress(stage, done, total) now and then, from the thread that called this.
+
+    Raises InputError, and UsageError for a file without scan vectors.
+    """
+    file = check.path("path", path)
+    threads, progress = check.thread_count(threads), check.listener(progress)
+    place = check.optional(check.choice, "at", at, PLACES)
+    known = None if strategy is None else as_strategy("strategy", strategy)
+    sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
+    found, warnings = _lamella.verify_vectors(file, sliced, known, place or "", threads, progress)
+    warn(f"{os.fsdecode(file)}: {warning}" for warning in warnings)
+    return VectorVerification(**found)
+
+
+def _mesh_as_sliced(
+    mesh: Optional[MeshLike],
+    where: Placing,
+    transformed: bool,
+    unit_mm: Optional[float],
+    threads: int,
+    progress: Optional[Progress],
+) -> Optional[Mesh]:
+    if mesh is not None:
+        return placed(as_mesh("mesh", mesh, unit_mm=unit_mm, threads=threads, progress=progress), where)
+    ways = {"direction": where[0] != UPWARDS, "transform": transformed, "unit_mm": unit_mm is not None}
+    for name, given in ways.items():
+        if given:
+            raise UsageError(f"{name} goes with a mesh, and none is given")
+    return None
 
 
 @dataclass(frozen=True)

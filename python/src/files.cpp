@@ -6,6 +6,7 @@
 #include "lamella/read/file_kind.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
+#include "lamella/scan/strategy.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
@@ -17,6 +18,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -33,6 +35,11 @@ namespace {
 
 using StackPointer = std::shared_ptr<Stack>;
 
+bool holds_scan_vectors(const LayerFile& file) {
+    return std::any_of(file.parts.begin(), file.parts.end(),
+                       [](const LayerPart& part) { return part.exposure.has_value(); });
+}
+
 StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layers) {
     auto stack = std::make_shared<Stack>();
     stack->layers = shared(std::move(layers));
@@ -42,6 +49,7 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
     stack->format = file.format;
     stack->rounding = file.rounding;
     stack->rule = file.rule;
+    stack->scan_vectors = holds_scan_vectors(file);
     return stack;
 }
 
@@ -179,8 +187,25 @@ void write_mesh(const std::string& path, const std::string& extension, const Mes
     write_stl(path, TriangleSoup(std::move(triangles)));
 }
 
+/// Where in their thickness layers were cut, if not where they say.
+void cut_at(const std::string& at, LayerStack& layers, PlaneRule& rule) {
+    if (!at.empty())
+        rule = at == "top" ? PlaneRule::section_below : PlaneRule::section_above;
+    for (Layer& layer : layers) {
+        if (at == "bottom")
+            layer.z = layer.bottom;
+        else if (at == "top")
+            layer.z = layer.top;
+        else if (at == "middle")
+            layer.z = layer.bottom + (layer.top - layer.bottom) / 2;
+    }
+}
+
 py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, unsigned threads,
                   const py::object& progress) {
+    if (stack.scan_vectors)
+        throw Error(ErrorKind::usage,
+                    stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
         VerifyOptions options{.mesh = {}, .rule = stack.rule, .rounding = stack.rounding};
         Mesh sliced;
@@ -189,16 +214,7 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
             options.mesh = sliced;
         }
         LayerStack layers = plain(stack);
-        if (!at.empty())
-            options.rule = at == "top" ? PlaneRule::section_below : PlaneRule::section_above;
-        for (Layer& layer : layers) {
-            if (at == "bottom")
-                layer.z = layer.bottom;
-            else if (at == "top")
-                layer.z = layer.top;
-            else if (at == "middle")
-                layer.z = layer.bottom + (layer.top - layer.bottom) / 2;
-        }
+        cut_at(at, layers, options.rule);
         return verify(layers, options, execution);
     });
     py::dict fields;
@@ -215,6 +231,42 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
     fields["areas_agree"] = found.areas_agree;
     fields["findings"] = found.findings;
     return fields;
+}
+
+/// What is found, and the warnings of the file.
+std::pair<py::dict, py::list> vectors_verified(const std::string& path, const MeshPointer& mesh,
+                                               const std::optional<ScanStrategy>& strategy,
+                                               const std::string& at, unsigned threads,
+                                               const py::object& progress) {
+    std::vector<std::string> warnings;
+    const VectorVerification found = result_of(threads, progress, [&](const Execution& execution) {
+        LayerFile file = read_layers(path, {}, execution);
+        if (!holds_scan_vectors(file))
+            throw Error(ErrorKind::usage, path + " holds no scan vectors; lamella.verify checks layers");
+        VectorVerifyOptions options{.mesh = {}, .rule = file.rule, .rounding = file.rounding};
+        if (mesh)
+            options.mesh = mesh->mesh();
+        options.strategy = strategy;
+        for (LayerPart& part : file.parts)
+            cut_at(at, part.layers, options.rule);
+        warnings = std::move(file.warnings);
+        return verify_vectors(file.parts, options, execution);
+    });
+    py::dict fields;
+    fields["ok"] = found.ok();
+    fields["layers"] = found.layers;
+    fields["contour_vectors"] = found.contour_vectors;
+    fields["hatch_vectors"] = found.hatch_vectors;
+    fields["open_chains"] = found.open_chains;
+    fields["crossings"] = found.crossings;
+    fields["misoriented"] = found.misoriented;
+    fields["outside"] = found.outside;
+    fields["too_short"] = found.too_short;
+    fields["miscovered"] = found.miscovered;
+    fields["cover"] = found.cover;
+    fields["unbounded"] = found.unbounded;
+    fields["findings"] = found.findings;
+    return {fields, path_texts(warnings)};
 }
 
 /// The tolerance; and of each plane the numbers of its layers in the stacks, or None, same, agree, distance
@@ -255,6 +307,7 @@ void bind_files(py::module_& module) {
     module.def("file_kind", &kind_name);
     module.def("read_layers", &read_stack);
     module.def("verify", &verified);
+    module.def("verify_vectors", &vectors_verified);
     module.def("compare", &compared);
     module.def("write_mesh", &write_mesh);
     py::class_<StackWriter>(module, "StackWriter")

@@ -31,6 +31,9 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     lamella.write("box.stl", lamella.Mesh(*box_arrays()))
     lamella.write("box.json", stack())
+    scanned = list(lamella.scan(stack()))
+    names = [f"box {exposure.name}" for exposure in scanned[0].exposures]
+    lamella.write("job.cli", [lamella.Stack([s.layers[k] for s in scanned], name) for k, name in enumerate(names)])
     (tmp_path / "folder").mkdir()
     return tmp_path
 
@@ -57,6 +60,7 @@ CALLS = {
     "convert": (lamella.convert, {"source": "box.json", "target": "out.cli"}),
     "inspect": (lamella.inspect, {"part": box_arrays()}),
     "verify": (lamella.verify, {"layers": stack(), "mesh": box_arrays()}),
+    "verify_vectors": (lamella.verify_vectors, {"path": "job.cli", "mesh": box_arrays()}),
     "compare": (lamella.compare, {"first": stack(), "second": stack()}),
     "scan": (lamella.scan, {"layers": list(stack())}),
     "to_pyslm": (lamella.to_pyslm, {"layer": next(lamella.scan(stack()))}),

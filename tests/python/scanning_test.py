@@ -75,6 +75,41 @@ def test_supports_have_rules_of_their_own():
         lamella.scan(layers, support="yes")
 
 
+def test_files_of_vectors_are_verified(tmp_path):
+    strategy = {"contours": {"count": 2}}
+    layers = [square(10, z=0.05 + 0.1 * i, index=i) for i in range(5)]
+    scanned = list(lamella.scan(layers, strategy))
+    path = tmp_path / "job.cli"
+
+    def write(vectors):
+        names = [f"part {exposure.name}" for exposure in vectors[0].exposures]
+        stacks = [lamella.Stack([layer.layers[k] for layer in vectors], name) for k, name in enumerate(names)]
+        lamella.write(path, stacks)
+
+    write(scanned)
+    cube = tmp_path / "cube.stl"
+    corners = np.array([(x, y, z) for z in (0, 0.5) for y in (0, 10) for x in (0, 10)], float)
+    faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+             (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]  # fmt: skip
+    lamella.write(cube, lamella.Mesh(corners, faces))
+    found = lamella.verify_vectors(path, cube, strategy=strategy)
+    assert found.ok and found.findings == [] and found.layers == 5
+    assert found.contour_vectors == 5 * 8 and found.hatch_vectors == sum(len(s.layers[0].hatches) for s in scanned)
+    assert found.cover == pytest.approx(1, abs=0.1)
+    assert lamella.verify_vectors(path).cover is None
+    assert lamella.verify_vectors(path, (corners * 0.9, faces)).outside > 0
+    assert not lamella.verify_vectors(path, cube, strategy={"contours": {"beam_offset": 0.2}}).ok
+    with pytest.raises(lamella.UsageError, match="job.cli holds scan vectors, which lamella.verify_vectors checks"):
+        lamella.verify(path)
+    lamella.write(path, lamella.Stack(layers))
+    with pytest.raises(lamella.UsageError, match="job.cli holds no scan vectors; lamella.verify checks layers"):
+        lamella.verify_vectors(path)
+    with pytest.raises(lamella.UsageError, match="unit_mm goes with a mesh"):
+        lamella.verify_vectors(path, unit_mm=1)
+    with pytest.raises(TypeError):
+        lamella.verify_vectors(lamella.Stack(layers))
+
+
 def test_strategies_come_from_files_and_dicts(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text('[hatch]\ndistance = 0.5\nparameters = "fast"\n[parameters.fast]\nspeed_mm_s = 1500\n')
