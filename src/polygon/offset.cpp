@@ -5,7 +5,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/nesting.hpp"
 
-#include "polygon/arrangement.hpp"
+#include "polygon/boundary.hpp"
 #include "polygon/box2.hpp"
 #include "polygon/moved_rings.hpp"
 #include "polygon/overlay.hpp"

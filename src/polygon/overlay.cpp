@@ -3,6 +3,7 @@
 #include "lamella/polygon/crossings.hpp"
 
 #include "polygon/arrangement.hpp"
+#include "polygon/boundary.hpp"
 #include "polygon/clipping_grid.hpp"
 
 #include <algorithm>
