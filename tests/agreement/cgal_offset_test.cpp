@@ -25,10 +25,10 @@ namespace lamella {
 namespace {
 
 using test::Random;
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Outline = CGAL::Polygon_2<Kernel>;
-using Body = CGAL::Polygon_with_holes_2<Kernel>;
-using Material = CGAL::Polygon_set_2<Kernel>;
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+using Outline = CGAL::Polygon_2<Exact>;
+using Body = CGAL::Polygon_with_holes_2<Exact>;
+using Material = CGAL::Polygon_set_2<Exact>;
 
 /// Counter-clockwise, whichever way it runs.
 Outline outline(std::span<const Point2> ring) {
@@ -68,7 +68,7 @@ Material material_of(const std::vector<Body>& bodies) {
 }
 
 double area(const Material& material) {
-    Kernel::FT sum = 0;
+    Exact::FT sum = 0;
     for (const Body& body : bodies_of(material)) {
         sum += body.outer_boundary().area();
         for (const Outline& hole : body.holes())
@@ -84,7 +84,7 @@ double area_without(Material a, const Material& b) {
 
 /// Convex piece by convex piece: CGAL 5.5 loses itself among holes that vanish.
 Material grown(const Material& material, const Outline& by) {
-    const CGAL::Polygon_vertical_decomposition_2<Kernel> decompose;
+    const CGAL::Polygon_vertical_decomposition_2<Exact> decompose;
     Material sum;
     for (const Body& body : bodies_of(material)) {
         std::vector<Outline> pieces;
