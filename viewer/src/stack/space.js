@@ -60,6 +60,7 @@ export class Space {
   #bulkOf;
   #frame = 0;
   #changed = false; // since the last picture was begun
+  #awaited = 0; // changes that are on their way
   #rested = false; // so that a better picture than the last one is wanted
   #resting = 0;
   #picture = null; // that is being drawn
@@ -161,12 +162,22 @@ export class Space {
   }
 
   redraw() {
-    this.announceChange();
+    this.#announceChange();
     this.#wake();
   }
 
-  /** Something changed, and redraw() follows when all of it is there: what is on the screen is not to stay. */
-  announceChange() {
+  /** What is on the screen is not to stay: redraw() follows when what comes is there. */
+  async awaitChange(coming) {
+    this.#awaited += 1;
+    this.#announceChange();
+    try {
+      return await coming;
+    } finally {
+      this.#awaited -= 1;
+    }
+  }
+
+  #announceChange() {
     this.#changed = true;
     delete this.canvas.dataset.settled;
   }
@@ -284,7 +295,7 @@ export class Space {
     if (canvas.dataset.ready === undefined) performance.mark('first picture of the stack');
     canvas.dataset.ready = '';
     const seconds = (performance.now() - since) / 1000;
-    if (this.#changed) return;
+    if (this.#changed || this.#awaited > 0) return;
     if (quick || better) canvas.dataset.settled = '';
     if (better || (quick && seconds > 0.05)) return;
     this.#resting = setTimeout(() => {

@@ -170,8 +170,7 @@ export class StackView {
   async #follow() {
     const { layer: number, view } = this.#store.state;
     if (view === 'layer') return;
-    this.#space.announceChange();
-    const layer = await this.#shelf.layer(number);
+    const layer = await this.#space.awaitChange(this.#shelf.layer(number));
     if (this.#store.state.layer !== number) return;
     this.#capToPaint('top', (theme, hidden) =>
       this.#top.show(layer, this.#page.table.top[number] - this.#origin[2], this.#wallsOf(theme), hidden, theme.wallCut),
