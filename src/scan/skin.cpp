@@ -21,9 +21,9 @@ namespace {
 
 /// Which cells of a coarse grid over a layer something lies in, so that what is far from it is known for
 /// that. What is beyond the layer counts as at its edge.
-class Places {
+class Occupied {
   public:
-    explicit Places(const Layer& layer) : whole_(box_of(layer.points.span())) {}
+    explicit Occupied(const Layer& layer) : whole_(box_of(layer.points.span())) {}
 
     void add(const Box2& box) {
         for_rows(box, [](std::uint64_t& row, std::uint64_t columns) {
@@ -77,12 +77,12 @@ Layer rings_of(const Layer& layer, const Chosen& chosen) {
 /// The rings of an area that may have to do with another one, and those that do not.
 struct Apart {
     Apart(const Layer& area, const Layer& other) {
-        Places places(area);
+        Occupied occupied(area);
         for (std::size_t i = 0; i < other.rings; ++i)
-            places.add(box_of(other.contour(i)));
+            occupied.add(box_of(other.contour(i)));
         std::vector<bool> chosen(area.rings);
         for (std::size_t i = 0; i < area.rings; ++i)
-            chosen[i] = places.any_within(box_of(area.contour(i)));
+            chosen[i] = occupied.any_within(box_of(area.contour(i)));
         near = rings_of(area, [&](std::size_t i) { return chosen[i]; });
         far = rings_of(area, [&](std::size_t i) { return !chosen[i]; });
     }
@@ -100,10 +100,10 @@ std::pair<Layer, Layer> differing(const Layer& first, const Layer& second,
     std::vector<bool> of_first(first.rings, true);
     std::vector<bool> of_second(second.rings, true);
     std::vector<Box2> boxes(first.rings, Box2{}); // of pairs
-    Places places(first);
+    Occupied occupied(first);
     const auto add = [&](std::span<const Point2> ring) {
         if (!ring.empty())
-            places.add(box_of(ring).grown(reach));
+            occupied.add(box_of(ring).grown(reach));
     };
     for (std::size_t i = 0; i < first.rings; ++i) {
         if (partners[i] == no_ring) {
@@ -119,7 +119,7 @@ std::pair<Layer, Layer> differing(const Layer& first, const Layer& second,
             add(second.contour(j));
     for (std::size_t i = 0; i < first.rings; ++i)
         if (partners[i] != no_ring)
-            of_first[i] = of_second[partners[i]] = places.any_within(boxes[i]);
+            of_first[i] = of_second[partners[i]] = occupied.any_within(boxes[i]);
     return {rings_of(first, [&](std::size_t i) { return of_first[i]; }),
             rings_of(second, [&](std::size_t j) { return of_second[j]; })};
 }
@@ -166,7 +166,7 @@ Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grow
 } // namespace
 
 Skin::Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule) {
-    if (rule.layers == 0 || layer.rings == 0)
+    if (rule.layers == 0 || layer.points.empty())
         return;
     if (neighbours.size() < rule.layers) {
         whole_ = true; // the part ends there
