@@ -63,8 +63,10 @@ std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint6
         StackPointer stack =
             stack_of(file, several ? std::string() : file.parts.front().label, file.merged());
         if (several)
-            for (LayerPart& part : file.parts)
+            for (LayerPart& part : file.parts) {
                 stack->parts.push_back(stack_of(file, part.label, std::move(part.layers)));
+                stack->parts.back()->scan_vectors = part.exposure.has_value();
+            }
         warnings = std::move(file.warnings);
         return stack;
     });
@@ -208,11 +210,8 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
         VerifyOptions options{.mesh = {}, .rule = stack.rule, .rounding = stack.rounding};
-        Mesh sliced;
-        if (mesh) {
-            sliced = mesh->mesh();
-            options.mesh = sliced;
-        }
+        if (mesh)
+            options.mesh = mesh->mesh();
         LayerStack layers = plain(stack);
         cut_at(at, layers, options.rule);
         return verify(layers, options, execution);

@@ -315,11 +315,12 @@ StackPointer stack_of_layers(std::vector<LayerPointer> layers, const std::string
 py::tuple pickled(const Stack& stack) {
     return py::make_tuple(stack.layers, py::bytes(stack.label), bounds_of(stack.box), matrix_of(stack.matrix),
                           py::bytes(stack.path), stack.format, stack.rounding.step_mm,
-                          stack.rounding.single_precision, plane_rule_name(stack.rule), stack.parts);
+                          stack.rounding.single_precision, plane_rule_name(stack.rule), stack.parts,
+                          stack.scan_vectors);
 }
 
 StackPointer unpickled(const py::tuple& state) {
-    if (state.size() != 10)
+    if (state.size() != 11)
         throw Error(ErrorKind::input, "this is no pickled stack of layers");
     StackPointer stack =
         stack_of_layers(state[0].cast<std::vector<LayerPointer>>(), state[1].cast<std::string>());
@@ -330,6 +331,7 @@ StackPointer unpickled(const py::tuple& state) {
     stack->rounding = {state[6].cast<double>(), state[7].cast<bool>()};
     stack->rule = rule_named(state[8].cast<std::string>());
     stack->parts = state[9].cast<std::vector<StackPointer>>();
+    stack->scan_vectors = state[10].cast<bool>();
     return stack;
 }
 

@@ -56,7 +56,7 @@ struct Stack {
     std::string format = {};
     Rounding rounding = {}; ///< of that file
     PlaneRule rule = PlaneRule::section_above;
-    bool scan_vectors = false; ///< whether that file holds such
+    bool scan_vectors = false; ///< whether that file has some here
     /// The parts of a file that holds several.
     std::vector<std::shared_ptr<Stack>> parts = {};
 };
