@@ -111,13 +111,8 @@ Material moved(const Material& material, double distance, const Outline& by) {
     return distance > 0 ? grown(material, by) : shrunk(material, by);
 }
 
-Outline polygon_around_circle(int corners, double radius) {
-    Outline made;
-    for (int i = 0; i < corners; ++i) {
-        const double angle = 2 * std::numbers::pi * i / corners;
-        made.push_back({radius * std::cos(angle), radius * std::sin(angle)});
-    }
-    return made;
+Outline outline_of_circle(double radius) {
+    return outline(test::regular_polygon(64, radius));
 }
 
 TEST(CgalOffset, OfRectanglesIsTheSumWithASquare) {
@@ -152,10 +147,9 @@ TEST(CgalOffset, WithRoundCornersLiesBetweenSumsWithPolygons) {
             const OffsetCorners corners{.shape = OffsetCorner::round, .arc_tolerance_mm = 0.001};
             const Material found = material_of(bodies_of(offset(layer, distance, corners)));
             // Chords stay within the tolerance of the circle: between these two, less and more.
-            const Material less = moved(material, distance, polygon_around_circle(64, reach - 0.002));
-            const Material more =
-                moved(material, distance,
-                      polygon_around_circle(64, (reach + 0.002) / std::cos(std::numbers::pi / 64)));
+            const Material less = moved(material, distance, outline_of_circle(reach - 0.002));
+            const Material more = moved(material, distance,
+                                        outline_of_circle((reach + 0.002) / std::cos(std::numbers::pi / 64)));
             const Material& least = distance > 0 ? less : more;
             const Material& most = distance > 0 ? more : less;
             EXPECT_LT(area_without(least, found), 1e-7) << round << ' ' << distance;

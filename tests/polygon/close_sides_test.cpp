@@ -1,8 +1,8 @@
-#include "contour/distance.hpp"
 #include "core/orientation.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "polygon/close_sides.hpp"
+#include "polygon/segment_distance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,23 +15,17 @@
 namespace lamella {
 namespace {
 
+using test::distance_from_segment;
 using test::layer_of;
 using test::Random;
 using test::rectangle;
 using test::rounds_within_reason;
 
-double from_segment(const Point2& p, const Point2& a, const Point2& b) {
-    const double square = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
-    const double along = square == 0 ? 0 : ((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / square;
-    const double share = std::clamp(along, 0.0, 1.0);
-    return distance(p, {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
-}
-
 double between_segments(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
     if (orientation(a, b, c) * orientation(a, b, d) < 0 && orientation(c, d, a) * orientation(c, d, b) < 0)
         return 0;
-    return std::min(
-        {from_segment(a, c, d), from_segment(b, c, d), from_segment(c, a, b), from_segment(d, a, b)});
+    return std::min({distance_from_segment(a, c, d), distance_from_segment(b, c, d),
+                     distance_from_segment(c, a, b), distance_from_segment(d, a, b)});
 }
 
 /// By looking at all pairs.
@@ -54,9 +48,9 @@ std::vector<bool> closest(const Layer& layer, double reach) {
             if (s.number == t.number)
                 continue;
             const bool follows = s.next == t.number;
-            const double apart =
-                follows ? std::min(from_segment(t.to, s.from, s.to), from_segment(s.from, t.from, t.to))
-                        : between_segments(s.from, s.to, t.from, t.to);
+            const double apart = follows ? std::min(distance_from_segment(t.to, s.from, s.to),
+                                                    distance_from_segment(s.from, t.from, t.to))
+                                         : between_segments(s.from, s.to, t.from, t.to);
             if ((follows || t.next != s.number) && apart <= reach)
                 close[s.number] = close[t.number] = true;
         }

@@ -26,6 +26,7 @@ using test::diamond;
 using test::layer_of;
 using test::Random;
 using test::rectangle;
+using test::regular_polygon;
 using test::reversed;
 
 constexpr OffsetCorners mitred{};
@@ -34,15 +35,6 @@ constexpr OffsetCorners rounded{.shape = OffsetCorner::round};
 
 double area(const Layer& layer) {
     return measure(layer).area_mm2;
-}
-
-Contour polygon(int n, double radius) {
-    Contour ring;
-    for (int i = 0; i < n; ++i) {
-        const double angle = 2 * std::numbers::pi * i / n;
-        ring.push_back({radius * std::cos(angle), radius * std::sin(angle)});
-    }
-    return ring;
 }
 
 TEST(Offset, OfNothingIsTheLayerItself) {
@@ -64,7 +56,7 @@ TEST(Offset, MovesTheSidesOfBodiesOutwardsAndOfHolesInwards) {
 TEST(Offset, OfRegularPolygonsIsThatOfTheirCircles) {
     for (const int n : {4, 6, 12, 100, 1000})
         for (const double distance : {-3.0, -0.1, 0.1, 5.0}) {
-            const Layer grown = offset(normal_form(layer_of({polygon(n, 10)})), distance);
+            const Layer grown = offset(normal_form(layer_of({regular_polygon(n, 10)})), distance);
             // The inscribed circle grows by the distance, and the corners stay corners.
             const double inner = 10 * std::cos(std::numbers::pi / n) + distance;
             EXPECT_NEAR(area(grown), n * inner * inner * std::tan(std::numbers::pi / n), 1e-9) << n;
@@ -136,8 +128,9 @@ TEST(Offset, ByWhatIsNoDistanceIsRefused) {
 }
 
 TEST(Offset, OfManySidesByFarMoreThanTheirBodyWithoutLookingAtAllPairs) {
-    const Layer disc = normal_form(layer_of({polygon(100000, 10)}));
-    const Layer pierced = normal_form(layer_of({rectangle(-20, -20, 20, 20), reversed(polygon(100000, 10))}));
+    const Layer disc = normal_form(layer_of({regular_polygon(100000, 10)}));
+    const Layer pierced =
+        normal_form(layer_of({rectangle(-20, -20, 20, 20), reversed(regular_polygon(100000, 10))}));
     for (const OffsetCorners& corners : {mitred, rounded}) {
         std::uint64_t vanished = 0;
         EXPECT_EQ(offset(disc, -100, corners, &vanished).contours(), 0U);

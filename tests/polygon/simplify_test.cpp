@@ -7,6 +7,7 @@
 #include "lamella/polygon/simplify.hpp"
 
 #include "fixtures/layers.hpp"
+#include "polygon/segment_distance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,17 +20,11 @@ namespace lamella {
 namespace {
 
 using test::Contour;
+using test::distance_from_segment;
 using test::layer_of;
 using test::Random;
 using test::rectangle;
 using test::reversed;
-
-double distance(const Point2& p, const Point2& a, const Point2& b) {
-    const double square = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
-    double t = square > 0 ? ((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / square : 0;
-    t = std::clamp(t, 0.0, 1.0);
-    return std::hypot(p.x - a.x - t * (b.x - a.x), p.y - a.y - t * (b.y - a.y));
-}
 
 /// How far points along `from` are from `to`, at most: its corners, and points between them.
 double farthest(std::span<const Point2> from, std::span<const Point2> to, bool closed) {
@@ -41,7 +36,7 @@ double farthest(std::span<const Point2> from, std::span<const Point2> to, bool c
             const Point2 p{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t j = 0; j + (closed ? 0 : 1) < to.size(); ++j)
-                least = std::min(least, distance(p, to[j], to[(j + 1) % to.size()]));
+                least = std::min(least, distance_from_segment(p, to[j], to[(j + 1) % to.size()]));
             most = std::max(most, least);
         }
     return most;
