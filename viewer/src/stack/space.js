@@ -61,7 +61,7 @@ export class Space {
   #frame = 0;
   #changed = false; // since the last picture was begun
   #awaited = 0; // changes that are on their way
-  #rested = false; // so that a better picture than the last one is wanted
+  #rested = null; // which better picture than the last one is wanted: 'full' or 'finer'
   #resting = 0;
   #picture = null; // that is being drawn
   #slice = null; // that is being drawn
@@ -215,8 +215,9 @@ export class Space {
 
   #begin() {
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    const better = !this.#changed;
-    this.#changed = this.#rested = false;
+    const better = this.#changed ? null : this.#rested;
+    this.#changed = false;
+    this.#rested = null;
     clearTimeout(this.#resting);
     if (width === 0 || height === 0) return; // what is not seen now is drawn when its size changes
     if (this.camera.aspect !== width / height) {
@@ -232,7 +233,7 @@ export class Space {
     if (!quick && !better) bulk = this.#bulkOf(slicesInMotion * this.#room);
     const screen = quick || better ? Math.min(2, window.devicePixelRatio || 1) : 1;
     // Thin layers flicker less in finer pictures.
-    const density = screen * (better && quick ? 1.5 : 1);
+    const density = screen * (better === 'finer' ? 1.5 : 1);
     this.#target.setSize(Math.round(width * density), Math.round(height * density));
     const [since, camera] = [performance.now(), this.camera.clone()];
     this.#picture = { bulk, quick, better, width, height, density, camera, since, slices: 0 };
@@ -299,7 +300,7 @@ export class Space {
     if (quick || better) canvas.dataset.settled = '';
     if (better || (quick && seconds > 0.05)) return;
     this.#resting = setTimeout(() => {
-      this.#rested = true;
+      this.#rested = quick ? 'finer' : 'full';
       this.#wake();
     }, millisecondsOfRest);
   }
