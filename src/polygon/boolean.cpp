@@ -4,11 +4,14 @@
 #include "lamella/polygon/fill.hpp"
 
 #include "polygon/box2.hpp"
+#include "polygon/common.hpp"
 #include "polygon/material.hpp"
 #include "polygon/overlay.hpp"
 #include "polygon/windings.hpp"
 
+#include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
@@ -77,15 +80,15 @@ Layer with_head_and_chains_of(const Layer& first, const Rings& rings) {
     return layer;
 }
 
-} // namespace
-
-Layer combine(const Layer& first, const Layer& second, BooleanOperation operation) {
+/// `least`: as of `Material`.
+Layer combined(const Layer& first, const Layer& second, BooleanOperation operation, std::int64_t least) {
     const Layer a = normal_form(first);
     const Layer b = normal_form(second);
     Shares shares(a, b);
     const bool same = shares.first.empty() && shares.second.empty();
     if (operation == BooleanOperation::subtract || operation == BooleanOperation::exclude) {
-        drop_far(shares); // what both layers have cancels there, whatever is around it
+        if (least == 1)
+            drop_far(shares); // what both layers have cancels there, whatever is around it
     } else if (same) {
         Layer layer = fill(a, FillRule::positive).layer;
         layer.hatches = {};
@@ -98,7 +101,19 @@ Layer combine(const Layer& first, const Layer& second, BooleanOperation operatio
     rings.insert(rings.end(), shares.second.begin(), shares.second.end());
     turns.resize(rings.size(), {0, 1});
     const Layer layer = with_head_and_chains_of(a, rings);
-    return normal_form(Overlay(layer, std::move(turns)).filled(Material(operation)).filled.layer);
+    return normal_form(Overlay(layer, std::move(turns)).filled(Material(operation, least)).filled.layer);
+}
+
+} // namespace
+
+Layer combine(const Layer& first, const Layer& second, BooleanOperation operation) {
+    return combined(first, second, operation, 1);
+}
+
+Layer subtract_common(const Layer& layer, std::span<const Layer> others) {
+    assert(!others.empty());
+    return combined(layer, merged(others), BooleanOperation::subtract,
+                    static_cast<std::int64_t>(others.size()));
 }
 
 } // namespace lamella

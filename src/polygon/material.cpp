@@ -9,10 +9,11 @@ bool Material::alike(const Windings& around, const Windings& rings) const noexce
         return off == 0 || (rule_ != FillRule::evenodd && std::abs(w) > off);
     };
     const bool first = of_rule(around.first);
-    const bool second = of_rule(around.second);
+    const std::int64_t beyond = around.second - least_ + 1;
+    const bool second = of_rule(beyond);
     const bool here = made_of(first, second);
     const bool first_known = known(around.first, rings.first);
-    const bool second_known = known(around.second, rings.second);
+    const bool second_known = known(beyond, rings.second);
     return (first_known || made_of(!first, second) == here) &&
            (second_known || made_of(first, !second) == here) &&
            (first_known || second_known || made_of(!first, !second) == here);

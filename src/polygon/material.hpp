@@ -13,10 +13,12 @@ class Material {
   public:
     /// Of one operand: its union with nothing.
     explicit Material(FillRule rule) noexcept : rule_(rule) {}
-    explicit Material(BooleanOperation operation) noexcept : operation_(operation) {}
+    /// `least`: how often rings of the second operand wind at least around what counts as its material.
+    explicit Material(BooleanOperation operation, std::int64_t least = 1) noexcept
+        : operation_(operation), least_(least) {}
 
     [[nodiscard]] bool operator()(const Windings& w) const noexcept {
-        return made_of(of_rule(w.first), of_rule(w.second));
+        return made_of(of_rule(w.first), of_rule(w.second - least_ + 1));
     }
     /// Whether it is known to be everywhere or nowhere where the windings are off `around` by at most
     /// `rings`.
@@ -28,6 +30,7 @@ class Material {
 
     FillRule rule_ = FillRule::positive;
     BooleanOperation operation_ = BooleanOperation::unite;
+    std::int64_t least_ = 1;
 };
 
 } // namespace lamella

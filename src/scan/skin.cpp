@@ -5,6 +5,7 @@
 #include "lamella/polygon/offset.hpp"
 
 #include "polygon/box2.hpp"
+#include "polygon/common.hpp"
 #include "scan/alongside.hpp"
 
 #include <algorithm>
@@ -91,76 +92,91 @@ struct Apart {
     Layer far;
 };
 
-/// Of two layers the rings that have none alongside in the other one, and what is closer to these than
-/// `reach`. `partners`: for each ring of the first layer that of the second one.
-std::pair<Layer, Layer> differing(const Layer& first, const Layer& second,
-                                  std::span<const std::uint32_t> partners, double reach) {
-    if (first.rings == second.rings && std::find(partners.begin(), partners.end(), no_ring) == partners.end())
+/// For each ring of a layer whether it counts where the layer is not what another one is: it has none
+/// alongside in that one, or is closer than `reach` to a ring of either layer that has none. `partners`: for
+/// each ring that of the other layer. None where the layers are the same all over.
+std::vector<bool> differing(const Layer& layer, const Layer& other, std::span<const std::uint32_t> partners,
+                            double reach) {
+    if (layer.rings == other.rings && std::find(partners.begin(), partners.end(), no_ring) == partners.end())
         return {};
-    std::vector<bool> of_first(first.rings, true);
-    std::vector<bool> of_second(second.rings, true);
-    std::vector<Box2> boxes(first.rings, Box2{}); // of pairs
-    Occupied occupied(first);
+    std::vector<bool> alone(other.rings, true);
+    std::vector<Box2> boxes(layer.rings, Box2{}); // of pairs
+    Occupied occupied(layer);
     const auto add = [&](std::span<const Point2> ring) {
         if (!ring.empty())
             occupied.add(box_of(ring).grown(reach));
     };
-    for (std::size_t i = 0; i < first.rings; ++i) {
+    for (std::size_t i = 0; i < layer.rings; ++i) {
         if (partners[i] == no_ring) {
-            add(first.contour(i));
-        } else if (!first.contour(i).empty()) {
-            of_second[partners[i]] = false;
-            boxes[i] = box_of(first.contour(i));
-            boxes[i].add(box_of(second.contour(partners[i])));
+            add(layer.contour(i));
+        } else if (!layer.contour(i).empty()) {
+            alone[partners[i]] = false;
+            boxes[i] = box_of(layer.contour(i));
+            boxes[i].add(box_of(other.contour(partners[i])));
         }
     }
-    for (std::size_t j = 0; j < second.rings; ++j)
-        if (of_second[j])
-            add(second.contour(j));
-    for (std::size_t i = 0; i < first.rings; ++i)
-        if (partners[i] != no_ring)
-            of_first[i] = of_second[partners[i]] = occupied.any_within(boxes[i]);
-    return {rings_of(first, [&](std::size_t i) { return of_first[i]; }),
-            rings_of(second, [&](std::size_t j) { return of_second[j]; })};
+    for (std::size_t j = 0; j < other.rings; ++j)
+        if (alone[j])
+            add(other.contour(j));
+    std::vector<bool> counts(layer.rings);
+    for (std::size_t i = 0; i < layer.rings; ++i)
+        counts[i] = partners[i] == no_ring || occupied.any_within(boxes[i]);
+    return counts;
 }
 
-/// What is left of a layer without what a neighbour has, grown.
+/// A neighbour that is not the same as the layer all over.
+struct Differing {
+    std::size_t number;                  ///< 0 for the nearest one
+    std::vector<std::uint32_t> partners; ///< for each ring of the layer the neighbour's ring alongside
+};
+
+/// By how much of that more than the nearest neighbour the farthest one is grown at most.
+constexpr double spread = 0.01;
+
+/// What is left of a layer without what all its neighbours have, grown.
 ///
 /// Not what the layer has and the intersection of its neighbours has not: walls of a prism have their corners
 /// in the same places on all layers, and others where edges slant across them, so its layers are the same but
-/// for roundings. What neighbours have is grown before it is taken away, and what is left is grown by as
-/// much: so such rings do not meet at all, which takes a hundredth of the time, and no slivers are left.
+/// for roundings. What a neighbour has is grown before it is taken away, each one by a little more than the
+/// one before it, and what is left is grown by as much as the first one. So such rings do not meet at all,
+/// which takes a hundredth of the time, and no slivers are left.
 ///
 /// Rings alongside each other wind around a place alike, unless it lies between them, and then it is covered
 /// by what is grown. So whatever is left lies within rings that have none alongside, and only what is near to
 /// these is looked at.
-Layer left_open(const Layer& layer, const Layer& neighbour, std::span<const std::uint32_t> partners,
-                double grown) {
-    const auto [own, other] = differing(layer, neighbour, partners, grown * OffsetCorners{}.mitre_limit);
-    if (own.rings == 0 || other.rings == 0)
-        return own;
-    return combine(own, offset(other, grown), BooleanOperation::subtract);
-}
-
 Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grown) {
-    const double step = grown / static_cast<double>(neighbours.size());
-    std::vector<std::uint32_t> partners(
-        layer.rings); // in the neighbour that is looked at, from layer to layer
+    const auto count = static_cast<double>(neighbours.size());
+    const double reach = grown * (1 + spread) * OffsetCorners{}.mitre_limit;
+    std::vector<std::uint32_t> partners(layer.rings); // from layer to layer
     std::iota(partners.begin(), partners.end(), 0U);
-    const Layer* nearer = &layer;
-    Layer all;
-    for (const Layer& neighbour : neighbours) {
-        const std::vector<std::uint32_t> next = rings_alongside(*nearer, neighbour, step);
-        nearer = &neighbour;
+    std::vector<Differing> different;
+    std::vector<bool> chosen(layer.rings);
+    for (std::size_t k = 0; k < neighbours.size(); ++k) {
+        const std::vector<std::uint32_t> next =
+            rings_alongside(k == 0 ? layer : neighbours[k - 1], neighbours[k], grown / count);
         for (std::uint32_t& partner : partners)
             partner = partner == no_ring ? no_ring : next[partner];
-        Layer open = left_open(layer, neighbour, partners, grown);
-        if (all.rings == 0)
-            all = std::move(open);
-        else if (open.rings > 0)
-            all = combine(all, open, BooleanOperation::unite);
+        const std::vector<bool> counts = differing(layer, neighbours[k], partners, reach);
+        if (counts.empty())
+            continue;
+        different.push_back({k, partners});
+        for (std::size_t i = 0; i < layer.rings; ++i)
+            chosen[i] = chosen[i] || counts[i];
     }
-    return all;
+    const Layer own = rings_of(layer, [&](std::size_t i) { return chosen[i]; });
+    if (own.rings == 0)
+        return {};
+    std::vector<Layer> others;
+    for (const Differing& neighbour : different) {
+        const Layer& other = neighbours[neighbour.number];
+        std::vector<bool> left_out(other.rings);
+        for (std::size_t i = 0; i < layer.rings; ++i)
+            if (neighbour.partners[i] != no_ring && !chosen[i])
+                left_out[neighbour.partners[i]] = true;
+        others.push_back(offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
+                                grown * (1 + spread * static_cast<double>(neighbour.number) / count)));
+    }
+    return subtract_common(own, others);
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
+#include "polygon/common.hpp"
 #include "polygon/winding_areas.hpp"
 
 #include <gtest/gtest.h>
@@ -309,6 +310,27 @@ TEST(Combine, TakesHeadAndChainsOfTheFirstLayer) {
             ASSERT_EQ(result.open_chains(), 1U);
             EXPECT_EQ(contours(result).back(), (Contour{{0, 9}, {5, 9}}));
         }
+}
+
+TEST(SubtractCommon, LeavesWhatSomeOfTheOthersHaveNot) {
+    Random random(41);
+    double left = 0;
+    for (int round = 0; round < test::rounds_within_reason(400); ++round) {
+        const bool integers = round % 2 == 0;
+        const Layer layer = normal_layer(random_rings(random, 8, 6, 6, integers));
+        std::vector<Layer> others;
+        Layer expected;
+        for (std::int64_t k = random.integer(1, 4); k > 0; --k) {
+            const Layer other = normal_layer(random_rings(random, 8, 8, 6, integers));
+            others.push_back(fill(random.integer(0, 5) == 0 ? layer : other, FillRule::positive).layer);
+            expected = combine(expected, combine(layer, others.back(), subtract), unite);
+        }
+        const Layer found = subtract_common(layer, others);
+        EXPECT_LT(area(combine(found, expected, exclude)), 1e-6) << round;
+        EXPECT_FALSE(has_crossings(found)) << round;
+        left += area(found);
+    }
+    EXPECT_GT(left, 0);
 }
 
 TEST(Combine, OfDegenerateLayersHasNoMaterial) {

@@ -76,9 +76,9 @@ TEST(Skin, IsWhatSomeNeighbourGrownHasNot) {
         Layer open;
         for (std::uint32_t k = 0; k < rule.layers; ++k) {
             neighbours.push_back(plate.layer(random, slope));
-            open = combine(
-                open, combine(layer, offset(neighbours.back(), rule.narrowest), BooleanOperation::subtract),
-                BooleanOperation::unite);
+            const double grown = rule.narrowest * (1 + 0.01 * k / rule.layers);
+            const Layer beyond = combine(layer, offset(neighbours.back(), grown), BooleanOperation::subtract);
+            open = combine(open, beyond, BooleanOperation::unite);
         }
         const Layer area = offset(layer, -0.2);
         const Skin found(layer, neighbours, rule);
