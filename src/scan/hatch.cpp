@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -45,13 +46,25 @@ std::vector<Point2> line_by_line(const HatchLines& lines, const HatchRule& rule)
     return points;
 }
 
-std::int32_t whole(double number) noexcept {
-    return static_cast<std::int32_t>(number); // within 2^24, as check_islands made sure
+// All numbers of cells are within 2^29, as check_cells made sure. (std::floor is a call.)
+std::int32_t floor_of(double number) noexcept {
+    const auto towards_zero = static_cast<std::int32_t>(number);
+    return towards_zero - static_cast<std::int32_t>(towards_zero > number);
+}
+std::int32_t ceil_of(double number) noexcept {
+    return -floor_of(-number);
+}
+
+/// From 0 up to below n.
+template <std::int32_t n>
+std::int32_t modulo(std::int32_t number) noexcept {
+    return (number % n + n) % n;
 }
 
 // Stripes are cells in one row each. What a line has of a stripe may be too short, where it ends just beyond
 // the border of two: then the neighbour is a little longer.
-void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, Islands& islands) {
+template <class Add>
+void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, const Add& add) {
     const double width = rule.cell;
     const double more = rule.overlap / 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -61,31 +74,35 @@ void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, Islands& i
             const double end = ends[k + 1];
             if (!is_long_enough(begin, end, rule))
                 continue;
-            double first = std::floor(begin / width);
-            double last = std::max(first, std::ceil(end / width) - 1);
+            std::int32_t first = floor_of(begin / width);
+            std::int32_t last = std::max(first, ceil_of(end / width) - 1);
             if (first < last && (first + 1) * width - begin < rule.shortest)
                 ++first;
             if (first < last && end - last * width < rule.shortest)
                 --last;
-            for (double stripe = first; stripe <= last; ++stripe) {
+            for (std::int32_t stripe = first; stripe <= last; ++stripe) {
                 const double from = stripe == first ? begin : std::max(begin, stripe * width - more);
                 const double to = stripe == last ? end : std::min(end, (stripe + 1) * width + more);
-                islands.add({whole(stripe), 0}, lines, i, from, to);
+                add({stripe, 0}, i, from, to);
             }
         }
     }
 }
 
-/// What a line has of the cells along it: number k lies within `half` of pitch * (k + offset). Calls add(k,
-/// from, to).
-template <class Add>
-void cut_into_cells(std::span<const double> ends, double pitch, double offset, double half, const Add& add) {
+/// What a line has of every n-th of the cells along it, one of which is number `one`: number k lies within
+/// `half` of pitch * (k + offset). Calls add(k, from, to) where that is long enough.
+template <std::int32_t n, class Add>
+void cut_into_cells(std::span<const double> ends, double pitch, double offset, double half, std::int32_t one,
+                    const HatchRule& rule, const Add& add) {
     for (std::size_t k = 0; k < ends.size(); k += 2) {
-        const double first = std::ceil((ends[k] - half) / pitch - offset);
-        const double last = std::floor((ends[k + 1] + half) / pitch - offset);
-        for (double cell = first; cell <= last; ++cell) {
+        const std::int32_t first = ceil_of((ends[k] - half) / pitch - offset);
+        const std::int32_t last = floor_of((ends[k + 1] + half) / pitch - offset);
+        for (std::int32_t cell = first + modulo<n>(one - first); cell <= last; cell += n) {
             const double middle = pitch * (cell + offset);
-            add(whole(cell), std::max(ends[k], middle - half), std::min(ends[k + 1], middle + half));
+            const double from = std::max(ends[k], middle - half);
+            const double to = std::min(ends[k + 1], middle + half);
+            if (is_long_enough(from, to, rule))
+                add(cell, from, to);
         }
     }
 }
@@ -93,46 +110,46 @@ void cut_into_cells(std::span<const double> ends, double pitch, double offset, d
 // Of a line on the border of two rows counts the one above it. Squares of one colour have lines along the
 // frame, those of the other colour have them across: these are the squares of the first colour in the frame
 // turned by a right angle.
-void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
+template <class Add>
+void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& rule, const Add& add) {
     const double half = (rule.cell + rule.overlap) / 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const double v = lines.v(i) / rule.cell - 0.5;
         const double reach = half / rule.cell;
-        for (double row = std::floor(v - reach) + 1; row <= std::floor(v + reach); ++row)
-            cut_into_cells(
-                lines.ends(i), rule.cell, 0.5, half, [&](std::int32_t column, double from, double to) {
-                    if (((whole(row) ^ column) & 1) == 0 && is_long_enough(from, to, rule))
-                        islands.add(turns == 0 ? Cell{whole(row), column} : Cell{column, -whole(row) - 1},
-                                    lines, i, from, to);
-                });
+        for (std::int32_t row = floor_of(v - reach) + 1; row <= floor_of(v + reach); ++row)
+            cut_into_cells<2>(lines.ends(i), rule.cell, 0.5, half, row, rule,
+                              [&](std::int32_t column, double from, double to) {
+                                  add(turns == 0 ? Cell{row, column} : Cell{column, -row - 1}, i, from, to);
+                              });
     }
 }
 
 // Hexagons stand on a corner, in rows along the frame: the one in row r and place q has its middle at u =
 // cell * (q + r / 2) and v = cell * r * sqrt(3) / 2. Turned by a sixth of a turn, (q, r) comes to (-r, q +
 // r), and the same rows lie along the frame that is turned so. Of three colours, (q - r) modulo 3, each has
-// the lines of one of three directions.
-void cut_into_hexagons(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
+// the lines of one of three directions; turned once, colour c comes to -c.
+template <class Add>
+void cut_into_hexagons(const HatchLines& lines, unsigned turns, const HatchRule& rule, const Add& add) {
     const double root = std::sqrt(3.0);
     const double pitch = rule.cell * root / 2;
     const double width = rule.cell + rule.overlap;
+    const std::int32_t colour = turns == 0 ? 0 : 2; // before it is turned
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const double v = lines.v(i);
-        for (double row = std::ceil((v - width / root) / pitch);
-             row <= std::floor((v + width / root) / pitch); ++row) {
+        for (std::int32_t row = ceil_of((v - width / root) / pitch);
+             row <= floor_of((v + width / root) / pitch); ++row) {
             const double half = std::min(width / 2, width - root * std::abs(v - row * pitch));
             if (half <= 0)
                 continue;
-            cut_into_cells(
-                lines.ends(i), rule.cell, row / 2, half, [&](std::int32_t place, double from, double to) {
-                    std::int32_t q = place;
-                    std::int32_t r = whole(row);
-                    for (unsigned k = 0; k < turns; ++k)
-                        q = -std::exchange(r, q + r);
-                    const std::int32_t colour = ((q - r) % 3 + 3) % 3;
-                    if (colour == static_cast<std::int32_t>(turns) && is_long_enough(from, to, rule))
-                        islands.add({r, q + (r >> 1)}, lines, i, from, to);
-                });
+            cut_into_cells<3>(lines.ends(i), rule.cell, row / 2.0, half, row + colour, rule,
+                              [&](std::int32_t place, double from, double to) {
+                                  std::int32_t q = place;
+                                  std::int32_t r = row;
+                                  for (unsigned k = 0; k < turns; ++k)
+                                      q = -std::exchange(r, q + r);
+                                  assert(modulo<3>(q - r) == static_cast<std::int32_t>(turns));
+                                  add({r, q + (r >> 1)}, i, from, to);
+                              });
         }
     }
 }
@@ -169,29 +186,36 @@ PointArray hatch(const Layer& area, const HatchRule& rule, std::uint64_t seed) {
     if (rule.pattern == HatchPattern::lines || rule.pattern == HatchPattern::meander)
         return PointArray(line_by_line(HatchLines(area, cos_sin_degrees(degrees), rule.distance), rule));
     check_cells(area, rule);
-    Islands islands;
-    const auto add_lines = [&](unsigned turns, double by, const auto& cut) {
-        for (unsigned turn = 0; turn < turns; ++turn) {
-            const HatchLines lines(area, cos_sin_degrees(degrees + turn * by), rule.distance);
-            check_pieces(lines, area, rule);
-            cut(lines, turn);
+    const bool stripes = rule.pattern == HatchPattern::stripes;
+    const bool squares = rule.pattern == HatchPattern::chessboard;
+    std::vector<HatchLines> lines; // in each direction
+    for (unsigned turns = 0; turns < (stripes ? 1 : squares ? 2 : 3); ++turns) {
+        lines.emplace_back(area, cos_sin_degrees(degrees + turns * (squares ? 90 : 60)), rule.distance);
+        check_pieces(lines.back(), area, rule);
+    }
+    const auto cut = [&](const auto& add) {
+        for (unsigned turns = 0; turns < lines.size(); ++turns) {
+            const auto add_piece = [&](Cell cell, std::size_t i, double from, double to) {
+                add(cell, lines[turns], i, from, to);
+            };
+            if (stripes)
+                cut_into_stripes(lines[turns], rule, add_piece);
+            else if (squares)
+                cut_into_squares(lines[turns], turns, rule, add_piece);
+            else
+                cut_into_hexagons(lines[turns], turns, rule, add_piece);
         }
     };
-    switch (rule.pattern) {
-    case HatchPattern::stripes:
-        add_lines(1, 0, [&](const HatchLines& lines, unsigned) { cut_into_stripes(lines, rule, islands); });
-        return islands.in_rows();
-    case HatchPattern::chessboard:
-        add_lines(2, 90, [&](const HatchLines& lines, unsigned turn) {
-            cut_into_squares(lines, turn, rule, islands);
-        });
-        break;
-    default:
-        add_lines(3, 60, [&](const HatchLines& lines, unsigned turn) {
-            cut_into_hexagons(lines, turn, rule, islands);
-        });
-    }
-    return rule.order == IslandOrder::rows ? islands.in_rows() : islands.shuffled(seed, area.index);
+    Islands islands;
+    cut([&](Cell cell, const HatchLines&, std::size_t, double, double) { islands.count(cell); });
+    if (stripes || rule.order == IslandOrder::rows)
+        islands.order_in_rows();
+    else
+        islands.shuffle(seed, area.index);
+    cut([&](Cell cell, const HatchLines& of, std::size_t i, double from, double to) {
+        islands.put(cell, i, of.frame().point(from, of.v(i)), of.frame().point(to, of.v(i)));
+    });
+    return std::move(islands).points();
 }
 
 } // namespace lamella

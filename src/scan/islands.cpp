@@ -3,123 +3,99 @@
 #include "scan/seeded.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <numeric>
 #include <utility>
 
 namespace lamella {
 
-namespace {
-
-/// Sorts `order` by keys below `bound`, and leaves the order of equal ones. O(n) for each 11 bits of keys.
-void sort_by_keys(std::vector<std::uint32_t>& order, const std::vector<std::uint64_t>& keys,
-                  std::uint64_t bound) {
-    constexpr unsigned digit_bits = 11;
-    constexpr std::uint64_t digits = 1 << digit_bits;
-    std::vector<std::uint32_t> next_order(order.size());
-    for (unsigned shift = 0; bound >> shift != 0; shift += digit_bits) {
-        std::array<std::uint32_t, digits + 1> begins{};
-        const auto digit = [&](std::uint32_t i) {
-            return (keys[i] >> shift) & (digits - 1);
-        };
-        for (const std::uint32_t i : order)
-            ++begins[digit(i) + 1];
-        std::partial_sum(begins.begin(), begins.end(), begins.begin());
-        for (const std::uint32_t i : order)
-            next_order[begins[digit(i)]++] = i;
-        order.swap(next_order);
+// Along a line cells follow one another as along the line before it, mostly.
+std::uint32_t Islands::number_of(Cell cell) {
+    if (!cells_.empty()) {
+        const std::uint32_t guess = cells_[last_].after;
+        if (cells_[guess].cell == cell)
+            return last_ = guess;
     }
+    const std::uint64_t key =
+        std::uint64_t{static_cast<std::uint32_t>(cell.row)} << 32 | static_cast<std::uint32_t>(cell.column);
+    const auto [found, added] = number_.try_emplace(key, static_cast<std::uint32_t>(cells_.size()));
+    if (added)
+        cells_.push_back({.cell = cell});
+    cells_[last_].after = found->second;
+    return last_ = found->second;
 }
 
-} // namespace
-
-void Islands::add(Cell cell, const HatchLines& lines, std::size_t i, double from, double to) {
-    pieces_.push_back({cell, i, lines.frame().point(from, lines.v(i)), lines.frame().point(to, lines.v(i))});
+std::vector<std::uint32_t> Islands::numbers() const {
+    std::vector<std::uint32_t> numbers(cells_.size());
+    std::iota(numbers.begin(), numbers.end(), 0U);
+    return numbers;
 }
 
-std::vector<std::uint32_t> Islands::by_cell() const {
-    std::vector<std::uint32_t> order(pieces_.size());
-    std::iota(order.begin(), order.end(), 0U);
-    if (pieces_.empty())
-        return order;
-    Cell least = pieces_.front().cell;
-    Cell most = least;
-    for (const Piece& piece : pieces_) {
-        least = {std::min(least.row, piece.cell.row), std::min(least.column, piece.cell.column)};
-        most = {std::max(most.row, piece.cell.row), std::max(most.column, piece.cell.column)};
+// Every other row is what it would be, from its end.
+void Islands::order_in_rows() {
+    std::vector<std::uint32_t> order = numbers();
+    std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
+        const Cell& first = cells_[a].cell;
+        const Cell& second = cells_[b].cell;
+        const bool back = (first.row & 1) != 0 && first.row == second.row;
+        return back ? second < first : first < second;
+    });
+    std::size_t total = 0;
+    for (const std::uint32_t number : order) {
+        Place& place = cells_[number];
+        const bool back = (place.cell.row & 1) != 0;
+        place.step = back ? -1 : 1;
+        place.next = static_cast<std::ptrdiff_t>(back ? total + place.points - 1 : total);
+        total += place.points;
     }
-    const auto place = [](std::int32_t from, std::int32_t to) {
-        return static_cast<std::uint64_t>(std::int64_t{to} - from);
-    };
-    const std::uint64_t columns = place(least.column, most.column) + 1;
-    std::vector<std::uint64_t> keys(pieces_.size());
-    for (std::size_t i = 0; i < keys.size(); ++i)
-        keys[i] =
-            place(least.row, pieces_[i].cell.row) * columns + place(least.column, pieces_[i].cell.column);
-    sort_by_keys(order, keys, columns * (place(least.row, most.row) + 1) - 1);
-    return order;
+    points_.resize(total);
 }
 
-std::vector<Islands::Run> Islands::runs(const std::vector<std::uint32_t>& order) const {
-    std::vector<Run> runs;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i == 0 || pieces_[order[i]].cell != pieces_[order[i - 1]].cell)
-            runs.push_back({i, i});
-        ++runs.back().end;
-    }
-    return runs;
-}
-
-void Islands::put(const std::vector<std::uint32_t>& order, const Run& run,
-                  std::vector<Point2>& points) const {
-    bool back = false;
-    for (std::size_t i = run.begin; i < run.end; back = !back) {
-        const std::size_t line = pieces_[order[i]].line;
-        const auto begin = static_cast<std::ptrdiff_t>(points.size());
-        for (; i < run.end && pieces_[order[i]].line == line; ++i) {
-            points.push_back(pieces_[order[i]].from);
-            points.push_back(pieces_[order[i]].to);
-        }
-        if (back)
-            std::reverse(points.begin() + begin, points.end());
-    }
-}
-
-PointArray Islands::in_rows() const {
-    const std::vector<std::uint32_t> order = by_cell();
-    std::vector<Point2> points;
-    points.reserve(2 * pieces_.size());
-    std::ptrdiff_t row_begin = 0;
-    const std::vector<Run> cells = runs(order);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        put(order, cells[i], points);
-        const std::int32_t row = pieces_[order[cells[i].begin]].cell.row;
-        if (i + 1 < cells.size() && pieces_[order[cells[i + 1].begin]].cell.row == row)
-            continue;
-        if ((row & 1) != 0)
-            std::reverse(points.begin() + row_begin, points.end());
-        row_begin = static_cast<std::ptrdiff_t>(points.size());
-    }
-    return PointArray(std::move(points));
-}
-
-PointArray Islands::shuffled(std::uint64_t seed, std::uint64_t layer) const {
-    const std::vector<std::uint32_t> order = by_cell();
-    std::vector<std::pair<std::uint64_t, Run>> cells;
-    for (const Run& run : runs(order)) {
-        const Cell& cell = pieces_[order[run.begin]].cell;
-        cells.push_back({seeded(seed, {layer, static_cast<std::uint32_t>(cell.row),
+void Islands::shuffle(std::uint64_t seed, std::uint64_t layer) {
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    for (const std::uint32_t number : numbers()) {
+        const Cell& cell = cells_[number].cell;
+        order.push_back({seeded(seed, {layer, static_cast<std::uint32_t>(cell.row),
                                        static_cast<std::uint32_t>(cell.column)}),
-                         run});
+                         number});
     }
-    std::stable_sort(cells.begin(), cells.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<Point2> points;
-    points.reserve(2 * pieces_.size());
-    for (const auto& [number, run] : cells)
-        put(order, run, points);
-    return PointArray(std::move(points));
+    std::sort(order.begin(), order.end(), [this](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first < b.first : cells_[a.second].cell < cells_[b.second].cell;
+    });
+    std::size_t total = 0;
+    for (const auto& [lot, number] : order) {
+        cells_[number].next = static_cast<std::ptrdiff_t>(total);
+        total += cells_[number].points;
+    }
+    points_.resize(total);
+}
+
+void Islands::put(Cell cell, std::size_t line, const Point2& from, const Point2& to) {
+    Place& place = cells_[number_of(cell)];
+    if (place.line != line) {
+        end_line(place);
+        place.line = line;
+        place.line_begin = place.next;
+        place.back = !place.back;
+    }
+    for (const Point2& p : {from, to}) {
+        points_[static_cast<std::size_t>(place.next)] = p;
+        place.next += place.step;
+    }
+}
+
+void Islands::end_line(const Place& place) {
+    if (place.line == no_line || !place.back)
+        return;
+    const auto [begin, end] = place.step > 0 ? std::pair(place.line_begin, place.next)
+                                             : std::pair(place.next + 1, place.line_begin + 1);
+    std::reverse(points_.begin() + begin, points_.begin() + end);
+}
+
+PointArray Islands::points() && {
+    for (const Place& place : cells_)
+        end_line(place);
+    return PointArray(std::move(points_));
 }
 
 } // namespace lamella
