@@ -1,5 +1,3 @@
-#include "read/amf.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
@@ -8,6 +6,7 @@
 #include "core/lower_case.hpp"
 #include "read/amf_document.hpp"
 #include "read/assembly.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/mesh_text.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"

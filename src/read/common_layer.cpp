@@ -1,10 +1,9 @@
-#include "read/common_layer.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "read/common_layer_geometry.hpp"
 #include "read/common_layer_header.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>

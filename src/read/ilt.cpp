@@ -1,16 +1,14 @@
 // The list of parameters names the files of the archive. Each is read as any Common Layer Interface file is;
 // then all get the planes of all.
 
-#include "read/ilt.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/ilt_format.hpp"
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/parse_number.hpp"
-#include "read/common_layer.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>

@@ -6,13 +6,9 @@
 #include "container/text_place.hpp"
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
-#include "read/ilt.hpp"
+#include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
-#include "read/npz.hpp"
 #include "read/read_limits.hpp"
-#include "read/slc.hpp"
-#include "read/slices_3mf.hpp"
-#include "read/toolpath_3mf.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,3 @@
-#include "read/layered_svg.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
@@ -7,6 +5,7 @@
 #include "core/executor.hpp"
 #include "core/parse_number.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/text_pieces.hpp"
 

@@ -1,10 +1,9 @@
-#include "read/layers_json.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/json_text.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>

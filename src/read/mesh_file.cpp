@@ -7,7 +7,7 @@
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
 #include "read/mesh_formats.hpp"
-#include "read/stl.hpp"
+#include "read/mesh_readers.hpp"
 
 #include <fmt/format.h>
 

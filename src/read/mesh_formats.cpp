@@ -4,20 +4,8 @@
 
 #include "container/zip_reader.hpp"
 #include "core/lower_case.hpp"
-#include "read/amf.hpp"
-#include "read/common_layer.hpp"
-#include "read/ilt.hpp"
-#include "read/layered_svg.hpp"
-#include "read/layers_json.hpp"
-#include "read/npz.hpp"
-#include "read/obj.hpp"
-#include "read/off.hpp"
-#include "read/ovf.hpp"
-#include "read/ply.hpp"
-#include "read/slc.hpp"
-#include "read/stl.hpp"
+#include "read/layer_readers.hpp"
 #include "read/text_pieces.hpp"
-#include "read/three_mf.hpp"
 
 #include <fmt/format.h>
 

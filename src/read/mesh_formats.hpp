@@ -9,6 +9,7 @@
 #include "lamella/read/mesh_input.hpp"
 
 #include "core/byte_source.hpp"
+#include "read/mesh_readers.hpp"
 
 #include <optional>
 #include <string>
@@ -38,7 +39,7 @@ struct MeshFormatRow {
                              const Execution&) = nullptr;
     std::string_view layer_mark = {};
 
-    MeshFile (*read)(const ByteSource&, const MeshReadOptions&, const Execution&) = nullptr;
+    ReadMesh* read = nullptr;
     /// Reads batch by batch; see MeshInput::stream.
     MeshFile (*stream)(const ByteSource&, const TriangleSink&, const MeshReadOptions&, const Execution&,
                        const std::optional<RecordRange>&) = nullptr;

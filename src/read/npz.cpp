@@ -1,10 +1,9 @@
-#include "read/npz.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>

@@ -1,11 +1,10 @@
-#include "read/obj.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/coordinate_text.hpp"
 #include "read/face_mesh.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 #include "read/text_pieces.hpp"

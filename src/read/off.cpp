@@ -1,9 +1,8 @@
-#include "read/off.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "read/coordinate_text.hpp"
 #include "read/face_rows.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 #include "read/text_pieces.hpp"

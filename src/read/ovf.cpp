@@ -2,8 +2,6 @@
 // blocks of vectors do. Blocks that have part, parameters, region and kind in common are the layers of one
 // part of what is read.
 
-#include "read/ovf.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/ovf_format.hpp"
@@ -11,6 +9,7 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>

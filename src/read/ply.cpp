@@ -1,9 +1,8 @@
-#include "read/ply.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "read/coordinate_text.hpp"
 #include "read/face_rows.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/ply_binary.hpp"
 #include "read/ply_header.hpp"
 #include "read/read_limits.hpp"

@@ -2,13 +2,12 @@
 // and the sampling table follow, then layers: z of the bottom, contours. A layer of 2^32 - 1 contours is the
 // end, and its z the top of the part.
 
-#include "read/slc.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>

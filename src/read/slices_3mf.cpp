@@ -1,8 +1,6 @@
 // Slice stacks stand in the root model or, by reference, in other model parts; objects use stacks, components
 // and build items put objects somewhere. Coordinates of slices are those of their object.
 
-#include "read/slices_3mf.hpp"
-
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/transform.hpp"
 
@@ -11,6 +9,7 @@
 #include "core/executor.hpp"
 #include "core/parse_number.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_terms.hpp"
 

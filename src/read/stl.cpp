@@ -1,8 +1,7 @@
-#include "read/stl.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/stl_ascii.hpp"
 #include "read/stl_binary.hpp"
 #include "read/text_pieces.hpp"

@@ -1,10 +1,9 @@
-#include "read/three_mf.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/assembly.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/opc_package.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"

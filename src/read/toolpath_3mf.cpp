@@ -2,8 +2,6 @@
 // names parts on the plate and profiles by identifiers. Segments that have part and profile in common are the
 // layers of one part of what is read.
 
-#include "read/toolpath_3mf.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
@@ -12,6 +10,7 @@
 #include "core/executor.hpp"
 #include "core/parse_number.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_terms.hpp"
 

@@ -1,5 +1,3 @@
-#include "write/common_layer.hpp"
-
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
@@ -8,6 +6,7 @@
 #include "write/decimal.hpp"
 #include "write/float_contour.hpp"
 #include "write/grid.hpp"
+#include "write/layer_writers.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>

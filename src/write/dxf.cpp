@@ -1,9 +1,8 @@
-#include "write/dxf.hpp"
-
 #include "lamella/contour/measure.hpp"
 
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
+#include "write/layer_writers.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>

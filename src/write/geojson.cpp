@@ -1,11 +1,10 @@
-#include "write/geojson.hpp"
-
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/polygon/nesting.hpp"
 
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
+#include "write/layer_writers.hpp"
 #include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 

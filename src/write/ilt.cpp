@@ -1,13 +1,11 @@
 // An archive holds one file after the other, and layers come for all of them at once. The first one goes to
 // the archive as it comes, the others wait in a store for their turn.
 
-#include "write/ilt.hpp"
-
 #include "container/byte_store.hpp"
 #include "container/ilt_format.hpp"
 #include "container/zip_writer.hpp"
-#include "write/common_layer.hpp"
 #include "write/decimal.hpp"
+#include "write/layer_writers.hpp"
 #include "write/left_out.hpp"
 #include "write/sequential_writer.hpp"
 

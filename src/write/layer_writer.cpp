@@ -5,21 +5,7 @@
 
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
-#include "write/common_layer.hpp"
-#include "write/dxf.hpp"
-#include "write/geojson.hpp"
-#include "write/ilt.hpp"
-#include "write/layered_svg.hpp"
-#include "write/layers_json.hpp"
-#include "write/limited_writer.hpp"
-#include "write/npz.hpp"
-#include "write/ovf.hpp"
-#include "write/picture_stack.hpp"
-#include "write/sl1.hpp"
-#include "write/slc.hpp"
-#include "write/slices_3mf.hpp"
-#include "write/strict_writer.hpp"
-#include "write/toolpath_3mf.hpp"
+#include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,10 @@
-#include "write/layered_svg.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "core/atomic_directory.hpp"
 #include "core/atomic_file.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
+#include "write/layer_writers.hpp"
 #include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 

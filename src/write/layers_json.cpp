@@ -1,6 +1,5 @@
-#include "write/layers_json.hpp"
-
 #include "write/decimal.hpp"
+#include "write/layer_writers.hpp"
 #include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 

@@ -2,11 +2,10 @@
 // small and kept until the end. An array begins with its shape, so the first bytes of the points are written
 // last.
 
-#include "write/npz.hpp"
-
 #include "container/inflate.hpp"
 #include "container/text_place.hpp"
 #include "container/zip_writer.hpp"
+#include "write/layer_writers.hpp"
 #include "write/left_out.hpp"
 #include "write/sequential_writer.hpp"
 

@@ -2,8 +2,6 @@
 // has what all of them share, and a table of where work planes lie. The file's first bytes tell where that
 // is; they are written last.
 
-#include "write/ovf.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/ovf_format.hpp"
@@ -13,6 +11,7 @@
 #include "write/byte_buffer.hpp"
 #include "write/exposure_keys.hpp"
 #include "write/float_contour.hpp"
+#include "write/layer_writers.hpp"
 #include "write/left_out.hpp"
 #include "write/sequential_writer.hpp"
 

@@ -1,5 +1,3 @@
-#include "write/picture_stack.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/zip_writer.hpp"
@@ -7,6 +5,7 @@
 #include "core/atomic_file.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
+#include "write/layer_writers.hpp"
 #include "write/left_out.hpp"
 #include "write/sequential_writer.hpp"
 

@@ -1,11 +1,10 @@
-#include "write/sl1.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "container/zip_writer.hpp"
 #include "raster/relief.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
+#include "write/layer_writers.hpp"
 #include "write/left_out.hpp"
 #include "write/png.hpp"
 #include "write/sequential_writer.hpp"

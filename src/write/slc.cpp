@@ -1,9 +1,8 @@
-#include "write/slc.hpp"
-
 #include "lamella/core/error.hpp"
 
 #include "write/decimal.hpp"
 #include "write/float_contour.hpp"
+#include "write/layer_writers.hpp"
 #include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>

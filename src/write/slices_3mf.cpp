@@ -2,8 +2,6 @@
 // the objects, since readers go through the file once. A layer is formatted and compressed where it is
 // prepared and only joined to the others in order.
 
-#include "write/slices_3mf.hpp"
-
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
@@ -11,6 +9,7 @@
 #include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
+#include "write/layer_writers.hpp"
 #include "write/left_out.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"

@@ -1,6 +1,6 @@
-#include "write/strict_writer.hpp"
-
 #include "lamella/core/error.hpp"
+
+#include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
 

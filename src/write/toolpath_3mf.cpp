@@ -2,8 +2,6 @@
 // name the parts on the plate and the profiles by identifiers that are made of what the head of the file
 // says.
 
-#include "write/toolpath_3mf.hpp"
-
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
@@ -13,6 +11,7 @@
 #include "write/decimal.hpp"
 #include "write/exposure_keys.hpp"
 #include "write/grid.hpp"
+#include "write/layer_writers.hpp"
 #include "write/left_out.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"

@@ -1,4 +1,4 @@
-#include "read/amf.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/package_checks.hpp"
 
 #include <filesystem>

@@ -3,9 +3,7 @@
 #include "container/zip_reader.hpp"
 #include "container/zip_writer.hpp"
 #include "core/byte_source.hpp"
-#include "read/obj.hpp"
-#include "read/off.hpp"
-#include "read/ply.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/stl_ascii.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
+#include "read/mesh_readers.hpp"
 #include "read/package_checks.hpp"
-#include "read/three_mf.hpp"
 
 #include <filesystem>
 

@@ -1,0 +1,60 @@
+#pragma once
+
+// The formats of slice files, each in a source of its name; docs/formats.md tells what they hold.
+
+#include "lamella/write/layer_writer.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace lamella {
+
+using OpenLayerWriter = std::unique_ptr<LayerWriter>(const std::string& path, const LayerFileInfo& info,
+                                                     const LayerWriteOptions& options);
+
+/// Common Layer Interface 2.0.
+OpenLayerWriter open_common_layer_ascii;
+OpenLayerWriter open_common_layer_binary;
+/// DXF of AutoCAD Release 12, as text.
+OpenLayerWriter open_dxf;
+/// GeoJSON (RFC 7946), in millimetres.
+OpenLayerWriter open_geojson;
+/// ILT: Common Layer Interface files in a zip archive, with the parameters of each. There is no published
+/// description; files of several programs agree in what docs/formats.md tells.
+OpenLayerWriter open_ilt;
+/// SVG: one file with all layers, as Slic3r writes it.
+OpenLayerWriter open_layered_svg;
+/// A folder with `layer_00000.svg` and so on, numbered by Layer::index.
+OpenLayerWriter open_svg_layers;
+/// Everything that layers have, as JSON.
+OpenLayerWriter open_layers_json;
+/// NumPy arrays in a zip archive, as numpy.load reads them.
+OpenLayerWriter open_npz;
+/// Open Vector Format, of Digital Production Aachen: messages of Protocol Buffers, with tables of where they
+/// lie.
+OpenLayerWriter open_ovf;
+/// A folder with a PNG picture for each layer, `00000.png` and so on, numbered by Layer::index, and
+/// `manifest.json`.
+OpenLayerWriter open_picture_folder;
+/// The same in a zip archive.
+OpenLayerWriter open_picture_archive;
+/// The print jobs of Original Prusa SL1 and SL1S.
+OpenLayerWriter open_sl1;
+OpenLayerWriter open_sl1s;
+/// SLC 2.0 of 3D Systems, binary.
+OpenLayerWriter open_slc;
+/// 3MF with slice stacks (3MF Slice Extension).
+OpenLayerWriter open_slices_3mf;
+/// 3MF with toolpaths (3MF Toolpath Extension 1.0, a release candidate).
+OpenLayerWriter open_toolpath_3mf;
+
+/// The same writer, which throws Error{defect} instead of ending a file that it has warnings of.
+[[nodiscard]] std::unique_ptr<LayerWriter> strict(std::unique_ptr<LayerWriter> writer, std::string path);
+
+/// The same writer, which throws Error{limit} instead of ending a file whose layers have taken more than
+/// `most_bytes`; it does so after the layer that was too much.
+[[nodiscard]] std::unique_ptr<LayerWriter> limited(std::unique_ptr<LayerWriter> writer, std::string path,
+                                                   std::uint64_t most_bytes);
+
+} // namespace lamella
