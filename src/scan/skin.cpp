@@ -12,7 +12,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -147,19 +146,14 @@ constexpr double spread = 0.01;
 Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grown) {
     const auto count = static_cast<double>(neighbours.size());
     const double reach = grown * (1 + spread) * OffsetCorners{}.mitre_limit;
-    std::vector<std::uint32_t> partners(layer.rings); // from layer to layer
-    std::iota(partners.begin(), partners.end(), 0U);
     std::vector<Differing> different;
     std::vector<bool> chosen(layer.rings);
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
-        const std::vector<std::uint32_t> next =
-            rings_alongside(k == 0 ? layer : neighbours[k - 1], neighbours[k], grown / count);
-        for (std::uint32_t& partner : partners)
-            partner = partner == no_ring ? no_ring : next[partner];
+        std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k], grown);
         const std::vector<bool> counts = differing(layer, neighbours[k], partners, reach);
         if (counts.empty())
             continue;
-        different.push_back({k, partners});
+        different.push_back({k, std::move(partners)});
         for (std::size_t i = 0; i < layer.rings; ++i)
             chosen[i] = chosen[i] || counts[i];
     }
