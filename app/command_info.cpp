@@ -2,13 +2,13 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/read/any_file.hpp"
 #include "lamella/write/layer_page.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "diagnosis_report.hpp"
 #include "figures.hpp"
-#include "input_kind.hpp"
 #include "messages.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
@@ -145,7 +145,7 @@ int run_info(const InfoArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     MeshReadOptions options = arguments.limits.of_meshes();
     options.strict = arguments.strict;
-    const auto file = read_either(arguments.input, options, execution);
+    const auto file = read_any(arguments.input, options, execution);
     if (const auto* mesh = std::get_if<MeshFile>(&file))
         return tell_mesh(arguments, *mesh, context, execution);
     return tell_layers(arguments, std::get<LayerFile>(file), context);

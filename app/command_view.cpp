@@ -4,13 +4,11 @@
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/polygon/layer_steps.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/read/any_file.hpp"
 #include "lamella/write/layer_page.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "input_kind.hpp"
 #include "layer_file_info.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
@@ -128,7 +126,7 @@ int run_view(const ViewArguments& arguments, const Context& context) {
     const std::string output = output_of(arguments);
     check_distinct(arguments.input, output);
     const Execution execution = arguments.run.execution(context);
-    auto read = read_either(arguments.input, arguments.limits.of_meshes(), execution);
+    auto read = read_any(arguments.input, arguments.limits.of_meshes(), execution);
     auto* const layers = std::get_if<LayerFile>(&read);
     const Written written =
         layers != nullptr ? view_layers(arguments, std::move(*layers), output, execution)

@@ -71,7 +71,7 @@ void write_in_place(const std::string& path, const std::string& shown, std::stri
 
 } // namespace
 
-std::string read_text_file(const std::string& path, std::uint64_t most) {
+std::string read_text_file(const std::string& path) {
     const std::string name = input_name(path);
     const auto refuse = [&](int error) {
         throw Error(ErrorKind::input, fmt::format("{}: cannot be read: {}", name, reason(error)));
@@ -82,12 +82,8 @@ std::string read_text_file(const std::string& path, std::uint64_t most) {
         refuse(errno);
     std::string text;
     std::array<char, 1 << 16> block;
-    while (const std::size_t n = read_some(file.number, block, refuse)) {
-        if (most != 0 && text.size() + n > most)
-            throw Error(ErrorKind::limit,
-                        fmt::format("{}: takes more than the {} bytes of --max-memory", name, most));
+    while (const std::size_t n = read_some(file.number, block, refuse))
         text.append(block.data(), n);
-    }
     return text;
 }
 

@@ -2,15 +2,13 @@
 
 // Small text files and standard output.
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace lamella::app {
 
-/// The whole file; "-" is standard input. Throws Error{input}, and Error{limit} for one of more than `most`
-/// bytes; 0: any number.
-[[nodiscard]] std::string read_text_file(const std::string& path, std::uint64_t most = 0);
+/// The whole file; "-" is standard input. Throws Error{input}.
+[[nodiscard]] std::string read_text_file(const std::string& path);
 
 /// Writes to a temporary name and renames, so that nobody sees half a file; special files are written in
 /// place. "-" is standard output. Throws Error{output}.

@@ -14,7 +14,6 @@ from . import _lamella
 from ._arguments import PathLike, Progress
 from ._errors import CancelledError, InputError, UsageError
 from ._lamella import Layer, LayerStream, Mesh, Stack
-from ._meshes import read_mesh
 from ._warning import warn
 
 MESH_EXTENSIONS = (".stl", ".ply", ".obj")
@@ -79,35 +78,18 @@ def read(
     Raises InputError that names the file, the place in it, what was found, and what was
     expected.
     """
-
-    def mesh() -> Mesh:
-        return read_mesh(
-            path, unit_mm=unit_mm, strict=strict, supports=supports, max_triangles=max_triangles, max_memory=max_memory,
-            threads=threads, progress=progress,
-        )  # fmt: skip
-
-    def layers() -> Stack:
-        return read_layers(path, max_memory=max_memory, threads=threads, progress=progress)
-
-    kind = _lamella.file_kind(_head_of(check.path("path", path)))
-    if kind == "layers":
-        return layers()
-    if kind == "mesh":
-        return mesh()
-    # A 3MF file may hold either, or both: then its meshes are mostly stand-ins.
-    try:
-        return layers()
-    except InputError:
-        return mesh()
-
-
-def _head_of(path: bytes) -> bytes:
-    """The first bytes; none of what cannot be opened, which its reader reports."""
-    try:
-        with open(path, "rb") as file:
-            return file.read(4096)
-    except OSError:
-        return b""
+    read, warnings = _lamella.read_any(
+        check.path("path", path),
+        check.optional(check.positive, "unit_mm", unit_mm),
+        check.flag("strict", strict),
+        check.flag("supports", supports),
+        check.whole("max_triangles", max_triangles),
+        check.whole("max_memory", max_memory),
+        check.thread_count(threads),
+        check.listener(progress),
+    )
+    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
+    return read
 
 
 def as_stack(

@@ -296,10 +296,20 @@ def plan(
 ) -> Plan: ...
 def stream(mesh: Mesh, plan: Plan, engine: str, threads: int, progress: Optional[Progress], /) -> LayerStream: ...
 def engines() -> List[Tuple[str, str, str]]: ...
-def file_kind(head: bytes, /) -> str: ...
 def read_layers(
     path: bytes, max_memory: int, threads: int, progress: Optional[Progress], /
 ) -> Tuple[Stack, List[str]]: ...
+def read_any(
+    path: bytes,
+    unit_mm: Optional[float],
+    strict: bool,
+    supports: bool,
+    max_triangles: int,
+    max_memory: int,
+    threads: int,
+    progress: Optional[Progress],
+    /,
+) -> Tuple[Union[Mesh, Stack], List[str]]: ...
 def open_writer(
     path: bytes,
     format: str,

@@ -3,9 +3,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/compare.hpp"
-#include "lamella/read/file_kind.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/read/any_file.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"
@@ -26,6 +24,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace py = pybind11;
@@ -53,22 +52,47 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
     return stack;
 }
 
+/// With a stack of each part where there are several.
+StackPointer stack_of(LayerFile file) {
+    const bool several = file.parts.size() > 1;
+    StackPointer stack = stack_of(file, several ? std::string() : file.parts.front().label, file.merged());
+    if (several)
+        for (LayerPart& part : file.parts) {
+            stack->parts.push_back(stack_of(file, part.label, std::move(part.layers)));
+            stack->parts.back()->scan_vectors = part.exposure.has_value();
+        }
+    return stack;
+}
+
 /// The layers of the file, and its warnings.
 std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint64_t max_memory,
                                              unsigned threads, const py::object& progress) {
     std::vector<std::string> warnings;
     const StackPointer read = result_of(threads, progress, [&](const Execution& execution) {
         LayerFile file = read_layers(path, {.max_memory = max_memory}, execution);
-        const bool several = file.parts.size() > 1;
-        StackPointer stack =
-            stack_of(file, several ? std::string() : file.parts.front().label, file.merged());
-        if (several)
-            for (LayerPart& part : file.parts) {
-                stack->parts.push_back(stack_of(file, part.label, std::move(part.layers)));
-                stack->parts.back()->scan_vectors = part.exposure.has_value();
-            }
         warnings = std::move(file.warnings);
-        return stack;
+        return stack_of(std::move(file));
+    });
+    return {read, path_texts(warnings)};
+}
+
+/// The mesh or the layers of the file, and its warnings.
+std::pair<std::variant<MeshPointer, StackPointer>, py::list>
+read_either(const std::string& path, std::optional<double> unit_mm, bool strict, bool supports,
+            std::uint64_t max_triangles, std::uint64_t max_memory, unsigned threads,
+            const py::object& progress) {
+    std::vector<std::string> warnings;
+    using Either = std::variant<MeshPointer, StackPointer>;
+    const auto read = result_of(threads, progress, [&](const Execution& execution) -> Either {
+        auto file = read_any(path, {strict, supports, max_triangles, max_memory}, execution);
+        if (auto* const mesh = std::get_if<MeshFile>(&file)) {
+            MeshPointer made = source_mesh(std::move(*mesh), unit_mm, execution);
+            warnings = made->origin().warnings;
+            return made;
+        }
+        auto& layers = std::get<LayerFile>(file);
+        warnings = std::move(layers.warnings);
+        return stack_of(std::move(layers));
     });
     return {read, path_texts(warnings)};
 }
@@ -288,23 +312,11 @@ py::tuple compared(const Stack& first, const Stack& second, std::optional<double
     return py::make_tuple(found.tolerance_mm, planes);
 }
 
-const char* kind_name(const std::string& head) {
-    switch (file_kind(head)) {
-    case FileKind::layers:
-        return "layers";
-    case FileKind::either:
-        return "either";
-    case FileKind::mesh:
-        break;
-    }
-    return "mesh";
-}
-
 } // namespace
 
 void bind_files(py::module_& module) {
-    module.def("file_kind", &kind_name);
     module.def("read_layers", &read_stack);
+    module.def("read_any", &read_either);
     module.def("verify", &verified);
     module.def("verify_vectors", &vectors_verified);
     module.def("compare", &compared);

@@ -8,6 +8,7 @@
 #include "core/byte_source.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
+#include "read/opened_file.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -53,16 +54,19 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                             source.name, printable(bytes.substr(0, 16), 48), layer_marks()));
 }
 
-LayerFile read_opened(const ByteSource& opened, const LayerReadOptions& options, ReadLimits& limits,
-                      const Execution& execution) {
+} // namespace
+
+LayerFile read_opened_layers(const ByteSource& opened, const LayerReadOptions& options,
+                             const Execution& execution) {
+    ReadLimits limits(opened.name, options);
+    if (!opened.mapped)
+        limits.add_bytes(opened.bytes.size());
     if (!is_gzip(opened.bytes))
         return read_source(opened, options, limits, execution);
     const ByteSource unpacked = unpack_gzip(opened, options.max_memory, execution);
     limits.add_bytes(unpacked.bytes.size());
     return read_source(unpacked, options, limits, execution);
 }
-
-} // namespace
 
 LayerStack LayerFile::merged() const {
     if (parts.size() == 1)
@@ -79,18 +83,12 @@ LayerStack LayerFile::merged() const {
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
     const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    const ByteSource opened = open_bytes(path, most, execution);
-    ReadLimits limits(opened.name, options);
-    if (!opened.mapped)
-        limits.add_bytes(opened.bytes.size());
-    return read_opened(opened, options, limits, execution);
+    return read_opened_layers(open_bytes(path, most, execution), options, execution);
 }
 
 LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,
                       const LayerReadOptions& options, const Execution& execution) {
-    ReadLimits limits(name, options);
-    limits.add_bytes(bytes.size());
-    return read_opened(copy_bytes(bytes, name), options, limits, execution);
+    return read_opened_layers(copy_bytes(bytes, name), options, execution);
 }
 
 } // namespace lamella

@@ -8,6 +8,7 @@
 #include "core/byte_source.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/mesh_readers.hpp"
+#include "read/opened_file.hpp"
 
 #include <fmt/format.h>
 
@@ -24,9 +25,8 @@ Mesh MeshFile::mesh(const Execution& execution) const {
     return joined(all, execution);
 }
 
-namespace {
-
-MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, const Execution& execution) {
+MeshFile read_opened_mesh(const ByteSource& opened, const MeshReadOptions& options,
+                          const Execution& execution) {
     const ByteSource source =
         is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution) : opened;
     const MeshFormatRow& format = mesh_format_of(source, options);
@@ -36,17 +36,15 @@ MeshFile read_any(const ByteSource& opened, const MeshReadOptions& options, cons
     return file;
 }
 
-} // namespace
-
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {
-    MeshFile file = read_any(open_bytes(path, execution), options, execution);
+    MeshFile file = read_opened_mesh(open_bytes(path, execution), options, execution);
     file.path = path;
     return file;
 }
 
 MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, const MeshReadOptions& options,
                    const Execution& execution) {
-    MeshFile file = read_any(copy_bytes(bytes, name), options, execution);
+    MeshFile file = read_opened_mesh(copy_bytes(bytes, name), options, execution);
     file.path = name;
     return file;
 }
@@ -68,7 +66,7 @@ std::optional<std::uint64_t> MeshInput::records() const {
 }
 
 MeshFile MeshInput::read(const MeshReadOptions& options, const Execution& execution) const {
-    MeshFile file = read_any(*source_, options, execution);
+    MeshFile file = read_opened_mesh(*source_, options, execution);
     file.path = path_;
     return file;
 }

@@ -98,10 +98,12 @@ class ReadLimits(ProgramTest):
                 if arguments[0] != "view":  # which needs the viewer, too
                     self.succeed(*arguments, "--max-triangles", 12, "--max-memory", "10M")
 
-    def test_standard_input(self):
-        endless = b"$$HEADERSTART\n" + b" " * (30 * MEGABYTE)
-        self.refuse("20000000 bytes of --max-memory", "info", "-", stdin=endless)
-        self.refuse("20000000 bytes of --max-memory", "info", "-", stdin=b"solid\n" + endless)
+    def test_standard_input_that_is_too_much_waits_in_a_file(self):
+        allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (ALLOWED, ALLOWED))  # noqa: E731
+        blanks = b" " * UNPACKED
+        for content, found in [(b"$$HEADERSTART\n" + blanks, "must end with \\$\\$HEADEREND"), (b"solid\n" + blanks, "facet")]:
+            with self.subTest(found=found):
+                self.fail_with(3, f"standard input.*{found}", "info", "-", *LIMIT, stdin=content, preexec_fn=allowed)
 
     def test_limits_that_are_kept(self):
         self.succeed("slice", self.box(), "-o", "box.cli")

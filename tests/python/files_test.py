@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -67,6 +68,19 @@ def test_meshes_are_written_and_read(tmp_path, extension):
     assert (len(back), back.vertices.shape) == (36, (24, 3))
     assert np.isclose(back.volume, 1000 - 512 + 64)
     assert lamella.slice(path, 1) == lamella.slice(nested_boxes(), 1)
+
+
+@pytest.mark.parametrize("name", ["part.stl", "layers.cli"])
+@pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
+def test_a_pipe_is_read_from_its_first_byte(tmp_path, name):
+    box = lamella.Mesh(*box_arrays(1, 2, 3))
+    lamella.write(tmp_path / name, box if name == "part.stl" else lamella.slice(box, 0.5))
+    os.mkfifo(tmp_path / "pipe")
+    writer = threading.Thread(target=lambda: (tmp_path / "pipe").write_bytes((tmp_path / name).read_bytes()))
+    writer.start()
+    read = lamella.read(tmp_path / "pipe")
+    writer.join()
+    assert len(read) == (12 if name == "part.stl" else 6)
 
 
 def test_parts_stay_apart_in_files(tmp_path):

@@ -1,5 +1,4 @@
 #include "lamella/core/error.hpp"
-#include "lamella/read/file_kind.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "temporary_folder.hpp"
@@ -69,18 +68,6 @@ TEST(LayerFile, MayBePackedWithGzip) {
     ASSERT_EQ(file.parts.size(), 1U);
     ASSERT_EQ(file.parts.front().layers.size(), 1U);
     EXPECT_EQ(file.parts.front().layers[0].points.size(), 4U);
-}
-
-TEST(LayerFile, PackedWithGzipIsKnownByItsFirstBytes) {
-    const std::string content = packed(square);
-    if (content.empty())
-        GTEST_SKIP() << "no gzip program";
-    EXPECT_EQ(file_kind(content), FileKind::layers);
-    EXPECT_EQ(file_kind(content.substr(0, content.size() - 10)), FileKind::layers);
-    EXPECT_EQ(file_kind(packed("solid part\n")), FileKind::mesh);
-    EXPECT_EQ(file_kind(packed("PK\3\4 3D/3dmodel.model")), FileKind::either);
-    for (std::size_t length = 0; length < 20; ++length)
-        EXPECT_EQ(file_kind(content.substr(0, length)), FileKind::mesh) << length;
 }
 
 TEST(LayerFile, WhatIsUnpackedCountsForTheLimit) {

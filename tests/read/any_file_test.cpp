@@ -1,0 +1,111 @@
+#include "lamella/core/error.hpp"
+#include "lamella/read/any_file.hpp"
+
+#include "temporary_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <variant>
+
+namespace lamella {
+namespace {
+
+using namespace std::string_view_literals;
+
+std::variant<MeshFile, LayerFile> read_text(std::string_view text) {
+    return read_any(std::as_bytes(std::span(text)), "part");
+}
+
+constexpr std::string_view layers_as_text =
+    "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n$$LAYER/1\n"
+    "$$POLYLINE/1,1,5,0,0,2,0,2,2,0,2,0,0\n$$GEOMETRYEND\n";
+constexpr std::string_view mesh_as_text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// The text of the error that reading gives.
+std::string refusal_of(std::string_view text) {
+    try {
+        static_cast<void>(read_text(text));
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        return error.what();
+    }
+    ADD_FAILURE() << "no error: " << text;
+    return {};
+}
+
+TEST(ReadAny, GivesLayersOrAMeshByTheContent) {
+    for (const std::string_view text :
+         {layers_as_text,
+          "<svg><g slic3r:z='1'><polygon slic3r:type='contour' points='0,0 1,0 0,1'/></g></svg>"sv,
+          R"({"format": "lamella layers", "version": 1, "parts": [{}], "layers": [
+              {"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 1, 0, 0, 1]]}]}]})"sv}) {
+        const auto read = read_text(text);
+        ASSERT_TRUE(std::holds_alternative<LayerFile>(read)) << text;
+        EXPECT_GT(std::get<LayerFile>(read).parts.front().layers.size(), 0U);
+    }
+    for (const std::string_view text :
+         {mesh_as_text, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"sv,
+          "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+          "endfacet\nendsolid part\n"sv}) {
+        const auto read = read_text(text);
+        ASSERT_TRUE(std::holds_alternative<MeshFile>(read)) << text;
+        EXPECT_EQ(std::get<MeshFile>(read).stored_triangles, 1U);
+        EXPECT_EQ(std::get<MeshFile>(read).path, "part");
+    }
+}
+
+TEST(ReadAny, ReportsWhatTheReaderOfTheKindFinds) {
+    for (const std::string_view text : {"$$HEADERSTART\n"sv, "// a comment\n$$HEADERSTART"sv, "-SLCVER 2.0"sv,
+                                        "{\"layers\": []}"sv, "\xEF\xBB\xBF \r\n<svg>"sv})
+        EXPECT_EQ(refusal_of(text).find("mesh"), std::string::npos) << text;
+    for (const std::string_view text :
+         {"solid part"sv, "ply\n"sv, "OFF\n"sv, "PK"sv, "<?xml version=\"1.0\"?><amf unit=\"inch\">"sv,
+          "<!DOCTYPE html><html><svg>"sv, "\x1f\x8b\x08"sv, "$HEADER"sv})
+        EXPECT_EQ(refusal_of(text).find("slice file is expected"), std::string::npos) << text;
+}
+
+/// The content of a file with this one packed in it; "" where there is no program to do it.
+std::string packed(std::string_view content) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("part");
+    std::ofstream(path, std::ios::binary) << content;
+    if (std::system(fmt::format("gzip -n '{}'", path).c_str()) != 0)
+        return {};
+    std::ifstream file(path + ".gz", std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(ReadAny, LooksIntoWhatIsPackedWithGzip) {
+    const std::string layers = packed(layers_as_text);
+    if (layers.empty())
+        GTEST_SKIP() << "no gzip program";
+    EXPECT_TRUE(std::holds_alternative<LayerFile>(read_text(layers)));
+    EXPECT_TRUE(std::holds_alternative<MeshFile>(read_text(packed(mesh_as_text))));
+    for (std::size_t length = 1; length < layers.size(); ++length)
+        EXPECT_NE(refusal_of(std::string_view(layers).substr(0, length)), "") << length;
+}
+
+TEST(ReadAny, ReadsAPipeFromItsFirstByte) {
+    const TemporaryFolder folder;
+    for (const std::string_view text : {layers_as_text, mesh_as_text}) {
+        const std::string path = folder.file(text == mesh_as_text ? "mesh" : "layers");
+        ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+        std::thread writer([&] { std::ofstream(path, std::ios::binary) << text; });
+        const auto read = read_any(path);
+        writer.join();
+        EXPECT_EQ(std::holds_alternative<MeshFile>(read), text == mesh_as_text);
+    }
+}
+
+} // namespace
+} // namespace lamella
