@@ -23,7 +23,7 @@ enum class FileKind : std::uint8_t {
 };
 
 /// By the first bytes, not packed.
-FileKind kind_of(std::string_view head) {
+FileKind file_kind(std::string_view head) {
     if (is_zip(head)) // NumPy arrays, or a package
         return head.find(".npy") != std::string_view::npos ? FileKind::layers : FileKind::either;
     const ByteSource source{
@@ -32,15 +32,15 @@ FileKind kind_of(std::string_view head) {
     return format != nullptr && format->layers ? FileKind::layers : FileKind::mesh;
 }
 
-FileKind kind_of(const ByteSource& opened) {
+FileKind file_kind(const ByteSource& opened) {
     constexpr std::size_t enough = 4096;
-    return is_gzip(opened.bytes) ? kind_of(unpack_gzip_head(opened.bytes, enough))
-                                 : kind_of(opened.text().substr(0, enough));
+    return is_gzip(opened.bytes) ? file_kind(unpack_gzip_head(opened.bytes, enough))
+                                 : file_kind(opened.text().substr(0, enough));
 }
 
 std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const std::string& path,
                                               const MeshReadOptions& options, const Execution& execution) {
-    const FileKind kind = kind_of(opened);
+    const FileKind kind = file_kind(opened);
     if (kind != FileKind::mesh) {
         try {
             return read_opened_layers(opened, {.max_memory = options.max_memory}, execution);

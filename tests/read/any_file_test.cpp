@@ -17,7 +17,7 @@
 #include <thread>
 #include <variant>
 
-namespace lamella {
+namespace lamella::any_file_cases {
 namespace {
 
 using namespace std::string_view_literals;
@@ -108,4 +108,4 @@ TEST(ReadAny, ReadsAPipeFromItsFirstByte) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::any_file_cases
