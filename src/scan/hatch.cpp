@@ -46,7 +46,7 @@ std::vector<Point2> line_by_line(const HatchLines& lines, const HatchRule& rule)
     return points;
 }
 
-// All numbers of cells are within 2^29, as check_cells made sure. (std::floor is a call.)
+// For numbers of cells, which are within 2^30, as check_cells made sure. (std::floor is a call.)
 std::int32_t floor_of(double number) noexcept {
     const auto towards_zero = static_cast<std::int32_t>(number);
     return towards_zero - static_cast<std::int32_t>(towards_zero > number);

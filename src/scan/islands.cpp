@@ -79,6 +79,7 @@ void Islands::put(Cell cell, std::size_t line, const Point2& from, const Point2&
         place.back = !place.back;
     }
     for (const Point2& p : {from, to}) {
+        assert(place.next >= 0 && static_cast<std::size_t>(place.next) < points_.size());
         points_[static_cast<std::size_t>(place.next)] = p;
         place.next += place.step;
     }

@@ -5,9 +5,9 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <unordered_map>
 #include <vector>
 

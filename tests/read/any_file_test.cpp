@@ -1,16 +1,14 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/any_file.hpp"
 
+#include "read/gzip.hpp"
 #include "temporary_folder.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +17,8 @@
 
 namespace lamella::any_file_cases {
 namespace {
+
+using test::packed;
 
 using namespace std::string_view_literals;
 
@@ -72,17 +72,6 @@ TEST(ReadAny, ReportsWhatTheReaderOfTheKindFinds) {
          {"solid part"sv, "ply\n"sv, "OFF\n"sv, "PK"sv, "<?xml version=\"1.0\"?><amf unit=\"inch\">"sv,
           "<!DOCTYPE html><html><svg>"sv, "\x1f\x8b\x08"sv, "$HEADER"sv})
         EXPECT_EQ(refusal_of(text).find("slice file is expected"), std::string::npos) << text;
-}
-
-/// The content of a file with this one packed in it; "" where there is no program to do it.
-std::string packed(std::string_view content) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("part");
-    std::ofstream(path, std::ios::binary) << content;
-    if (std::system(fmt::format("gzip -n '{}'", path).c_str()) != 0)
-        return {};
-    std::ifstream file(path + ".gz", std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 TEST(ReadAny, LooksIntoWhatIsPackedWithGzip) {

@@ -1,34 +1,21 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 
-#include "temporary_folder.hpp"
+#include "read/gzip.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 
 namespace lamella {
 namespace {
 
+using test::packed;
+
 const std::string square =
     "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n$$LAYER/1\n"
     "$$POLYLINE/1,1,5,0,0,2,0,2,2,0,2,0,0\n$$GEOMETRYEND\n";
-
-/// The content of a file with this one packed in it; "" where there is no program to do it.
-std::string packed(const std::string& content) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("layers.cli");
-    std::ofstream(path, std::ios::binary) << content;
-    if (std::system(fmt::format("gzip -n '{}'", path).c_str()) != 0)
-        return {};
-    std::ifstream file(path + ".gz", std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 LayerFile read_packed(const std::string& content, std::uint64_t max_memory = 0) {
     return read_layers(std::as_bytes(std::span(content)), "layers.cli.gz", {.max_memory = max_memory});

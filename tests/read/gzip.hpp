@@ -1,0 +1,28 @@
+#pragma once
+
+// Texts packed with gzip, by its own program.
+
+#include "temporary_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+namespace lamella::test {
+
+/// The content of a file with this one packed in it; "" where there is no program to do it.
+inline std::string packed(std::string_view content) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("content");
+    std::ofstream(path, std::ios::binary) << content;
+    if (std::system(fmt::format("gzip -n '{}'", path).c_str()) != 0)
+        return {};
+    std::ifstream file(path + ".gz", std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+} // namespace lamella::test
