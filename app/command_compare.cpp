@@ -116,19 +116,9 @@ std::string area_text(const std::vector<AreaDifference>& differences) {
     return text;
 }
 
-/// Where no layers belong together though the lowest ones lie between the same heights: why. Else "".
-std::string cuts_apart(const LayerFile& first, const LayerFile& second, const StackComparison& found) {
-    for (const ComparedPlane& plane : found.planes)
-        if (plane.first && plane.second)
-            return {};
-    if (first.parts.front().layers.empty() || second.parts.front().layers.empty())
-        return {};
+std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
     const Layer& one = first.parts.front().layers.front();
     const Layer& other = second.parts.front().layers.front();
-    const double rounding = moved_cut(one, first.rounding) + moved_cut(other, second.rounding);
-    if (one.z == other.z || std::abs(one.bottom - other.bottom) > rounding ||
-        std::abs(one.top - other.top) > rounding)
-        return {};
     return fmt::format(
         "{} and {} are cut at different heights: the layer from z = {} to {} mm at {} mm in the first "
         "and at {} mm in the second; formats that do not keep the cut, such as CLI, are read as if it "
@@ -147,8 +137,8 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     const LayerStack stacks[2] = {first.merged(), second.merged()};
     const StackComparison found =
         compare(RoundedLayers{stacks[0], first.rounding}, {stacks[1], second.rounding}, arguments.tolerance);
-    if (const std::string reason = cuts_apart(first, second, found); !reason.empty())
-        context.messages.warn(reason);
+    if (found.cut_apart)
+        context.messages.warn(cut_apart_text(first, second));
     const double tolerance = found.tolerance_mm;
     std::vector<const ComparedPlane*> differing;
     std::uint64_t same = 0;

@@ -173,11 +173,21 @@ def compare(
     tolerance: how far contours may be apart, in millimetres; what the rounding of both formats explains unless
         given, which is nothing for stacks that were sliced.
 
+    A DefectWarning says so where no layers belong together since the lowest of both are cut at different heights.
     Raises InputError.
     """
     tolerance = check.optional(check.distance, "tolerance", tolerance)
     one, other = as_stack("first", first), as_stack("second", second)
-    tolerance, planes = _lamella.compare(one, other, tolerance)
+    tolerance, planes, cut_apart = _lamella.compare(one, other, tolerance)
+    if cut_apart:
+        low, high = one[0], other[0]
+        warn(
+            [
+                "the stacks are cut at different heights: the layer from "
+                f"z = {low.bottom:g} to {low.top:g} mm at {low.z:g} mm in the first and at {high.z:g} mm in the second; "
+                "formats that do not keep the cut, such as CLI, are read as if it were in the middle"
+            ]
+        )
     same = 0
     differences = []
     for i, j, equal, agree, distance, where in planes:

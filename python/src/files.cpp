@@ -292,8 +292,8 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     return {fields, path_texts(warnings)};
 }
 
-/// The tolerance; and of each plane the numbers of its layers in the stacks, or None, same, agree, distance
-/// and where that begins.
+/// The tolerance; of each plane the numbers of its layers in the stacks, or None, same, agree, distance and
+/// where that begins; and whether the stacks are cut apart.
 py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance) {
     StackComparison found;
     {
@@ -309,7 +309,7 @@ py::tuple compared(const Stack& first, const Stack& second, std::optional<double
                                      difference.distance_mm,
                                      std::pair(difference.where.x, difference.where.y)));
     }
-    return py::make_tuple(found.tolerance_mm, planes);
+    return py::make_tuple(found.tolerance_mm, planes, found.cut_apart);
 }
 
 } // namespace

@@ -90,6 +90,17 @@ void farthest(const Layer& from, const EdgeTree& to, double& largest, Point2& wh
     }
 }
 
+/// Whether the lowest layers lie between the same heights and are not cut at the same one.
+bool lowest_cut_apart(const RoundedLayers& first, const RoundedLayers& second) {
+    if (first.layers.empty() || second.layers.empty())
+        return false;
+    const Layer& one = first.layers.front();
+    const Layer& other = second.layers.front();
+    const double rounding = moved_cut(one, first.rounding) + moved_cut(other, second.rounding);
+    return one.z != other.z && std::abs(one.bottom - other.bottom) <= rounding &&
+           std::abs(one.top - other.top) <= rounding;
+}
+
 } // namespace
 
 bool LayerDifference::within(double tolerance_mm) const noexcept {
@@ -121,12 +132,15 @@ StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
     StackComparison result{.tolerance_mm =
                                tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
                            .planes = PlanePairs(first, second).take()};
+    bool paired = false;
     for (ComparedPlane& plane : result.planes) {
         if (!plane.first || !plane.second)
             continue;
+        paired = true;
         plane.difference = compare(first.layers[*plane.first], second.layers[*plane.second]);
         plane.agree = plane.difference.within(result.tolerance_mm);
     }
+    result.cut_apart = !paired && lowest_cut_apart(first, second);
     return result;
 }
 

@@ -126,6 +126,19 @@ TEST(CompareStacks, GrantsContoursWhatBothFormatsRound) {
                 0.001 * std::sqrt(2.0), 1e-12);
 }
 
+TEST(CompareStacks, TellsOfLayersThatAreCutElsewhereBetweenTheSameHeights) {
+    const LayerStack middle = squares({0.5, 1.5}, 1);
+    LayerStack low = middle;
+    for (Layer& layer : low)
+        layer.z = layer.bottom;
+    EXPECT_TRUE(compare(RoundedLayers{middle}, {low}).cut_apart);
+    EXPECT_FALSE(compare(RoundedLayers{middle}, {middle}).cut_apart);
+    EXPECT_FALSE(compare(RoundedLayers{middle}, {squares({2.5}, 1)}).cut_apart);
+    EXPECT_FALSE(compare(RoundedLayers{middle}, {}).cut_apart);
+    low.back() = middle.back(); // one layer belongs to another one
+    EXPECT_FALSE(compare(RoundedLayers{middle}, {low}).cut_apart);
+}
+
 TEST(CompareStacks, ALayerWithoutContoursNeedsNoPartner) {
     const LayerStack empty{at(1, 1, layer_with({}))};
     EXPECT_TRUE(compare(RoundedLayers{empty}, {}).planes.empty());

@@ -251,6 +251,12 @@ def test_comparison_tells_where_layers_differ():
     assert all(difference.second is None for difference in shorter.differences)
 
 
+def test_comparison_warns_of_other_cuts_between_the_same_heights():
+    middle, bottom = (lamella.slice(box_arrays(), 1, at=at) for at in ("middle", "bottom"))
+    with pytest.warns(lamella.DefectWarning, match=r"z = 0 to 1 mm at 0\.5 mm in the first and at 0 mm in the second"):
+        assert not lamella.compare(middle, bottom)
+
+
 def test_odd_files_are_warned_of(rook, tmp_path):
     path = tmp_path / "long.stl"
     path.write_bytes(Path(rook).read_bytes() + b"more")

@@ -23,7 +23,7 @@ using test::packed;
 using namespace std::string_view_literals;
 
 std::variant<MeshFile, LayerFile> read_text(std::string_view text) {
-    return read_any(std::as_bytes(std::span(text)), "part");
+    return read_any(std::as_bytes(std::span(text.data(), text.size())), "part");
 }
 
 constexpr std::string_view layers_as_text =

@@ -50,6 +50,9 @@ struct ComparedPlane {
 struct StackComparison {
     double tolerance_mm = 0;
     std::vector<ComparedPlane> planes; ///< in ascending z
+    /// No layers belong together, though the lowest ones of both lie between the same heights: they were cut
+    /// elsewhere between these, or are read as if they were from a format that does not keep the cut.
+    bool cut_apart = false;
 };
 
 /// Compares two stacks plane by plane. Layers belong together when their cuts are no further apart than the
