@@ -132,6 +132,9 @@ struct Differing {
 /// By how much of that more than the nearest neighbour the farthest one is grown at most.
 constexpr double spread = 0.01;
 
+/// So many neighbours at once: the rings of these cross one another, too, those of each pair.
+constexpr std::size_t most_at_once = 4;
+
 /// What is left of a layer without what all its neighbours have, grown.
 ///
 /// Not what the layer has and the intersection of its neighbours has not: walls of a prism have their corners
@@ -160,8 +163,10 @@ Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grow
     const Layer own = rings_of(layer, [&](std::size_t i) { return chosen[i]; });
     if (own.rings == 0)
         return {};
+    Layer open;
     std::vector<Layer> others;
-    for (const Differing& neighbour : different) {
+    for (std::size_t d = 0; d < different.size(); ++d) {
+        const Differing& neighbour = different[d];
         const Layer& other = neighbours[neighbour.number];
         std::vector<bool> left_out(other.rings);
         for (std::size_t i = 0; i < layer.rings; ++i)
@@ -169,8 +174,13 @@ Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grow
                 left_out[neighbour.partners[i]] = true;
         others.push_back(offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
                                 grown * (1 + spread * static_cast<double>(neighbour.number) / count)));
+        if (others.size() < most_at_once && d + 1 < different.size())
+            continue;
+        const Layer more = subtract_common(own, others);
+        open = open.rings == 0 ? more : combine(open, more, BooleanOperation::unite);
+        others.clear();
     }
-    return subtract_common(own, others);
+    return open;
 }
 
 } // namespace

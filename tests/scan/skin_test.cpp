@@ -63,12 +63,12 @@ double difference(const Layer& a, const Layer& b) {
 TEST(Skin, IsWhatSomeNeighbourGrownHasNot) {
     Random random(23);
     SkinRule rule;
-    rule.layers = 3;
     rule.narrowest = 0.12;
     rule.overlap = 0.3;
     double skin = 0;
     double rest = 0;
     for (int round = 0; round < rounds_within_reason(200); ++round) {
+        rule.layers = static_cast<std::uint32_t>(random.integer(1, 9));
         const Plate plate(random);
         const double slope = round % 2 == 0 ? 0.01 : 0;
         const Layer layer = plate.layer(random, slope);
