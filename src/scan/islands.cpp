@@ -55,9 +55,9 @@ void Islands::shuffle(std::uint64_t seed, std::uint64_t layer) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
     for (const std::uint32_t number : numbers()) {
         const Cell& cell = cells_[number].cell;
-        order.push_back({seeded(seed, {layer, static_cast<std::uint32_t>(cell.row),
-                                       static_cast<std::uint32_t>(cell.column)}),
-                         number});
+        const std::uint64_t lot = seeded(
+            seed, {layer, static_cast<std::uint32_t>(cell.row), static_cast<std::uint32_t>(cell.column)});
+        order.emplace_back(lot, number);
     }
     std::sort(order.begin(), order.end(), [this](const auto& a, const auto& b) {
         return a.first != b.first ? a.first < b.first : cells_[a.second].cell < cells_[b.second].cell;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -48,6 +49,7 @@ class Occupied {
     bool for_rows(const Box2& box, const Visit& visit) {
         const unsigned first = cell(box.x0 - whole_.x0, whole_.width());
         const unsigned last = cell(box.x1 - whole_.x0, whole_.width());
+        assert(first <= last);
         const std::uint64_t columns = (~std::uint64_t{0} >> (side - 1 - (last - first))) << first;
         const unsigned last_row = cell(box.y1 - whole_.y0, whole_.height());
         for (unsigned row = cell(box.y0 - whole_.y0, whole_.height()); row <= last_row; ++row)
