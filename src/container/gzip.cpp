@@ -116,10 +116,8 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
     return {packed.name, unpacked->bytes(), unpacked};
 }
 
-std::string unpack_gzip_head(std::span<const std::byte> packed, std::size_t most) {
-    std::string head(most, '\0');
-    head.resize(Inflater().unpack(packed, std::as_writable_bytes(std::span(head))).made);
-    return head;
+ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Execution& execution) {
+    return is_gzip(source.bytes) ? unpack_gzip(source, max_bytes, execution) : source;
 }
 
 } // namespace lamella

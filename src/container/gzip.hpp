@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 
 namespace lamella {
 
@@ -22,8 +21,8 @@ namespace lamella {
 [[nodiscard]] ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes,
                                      const Execution& execution = {});
 
-/// The first bytes of what a gzip file holds, `most` of them or as many as its own first bytes `packed` tell;
-/// fewer where they are broken.
-[[nodiscard]] std::string unpack_gzip_head(std::span<const std::byte> packed, std::size_t most);
+/// What a gzip file holds; any other source as it is.
+[[nodiscard]] ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes,
+                                  const Execution& execution = {});
 
 } // namespace lamella

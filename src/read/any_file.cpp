@@ -5,51 +5,30 @@
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
+#include "core/memory_size.hpp"
 #include "read/mesh_formats.hpp"
-#include "read/opened_file.hpp"
-#include "read/read_limits.hpp"
+#include "read/unpacked_file.hpp"
 
 #include <cstdint>
-#include <string_view>
 
 namespace lamella {
 
 namespace {
 
-enum class FileKind : std::uint8_t {
-    mesh,   ///< anything else
-    layers, ///< of a format that holds nothing else
-    either, ///< a package, which may hold a mesh, layers, or both
-};
-
-/// By the first bytes, not packed.
-FileKind file_kind(std::string_view head) {
-    if (is_zip(head)) // NumPy arrays, or a package
-        return head.find(".npy") != std::string_view::npos ? FileKind::layers : FileKind::either;
-    const ByteSource source{
-        .name = {}, .bytes = std::as_bytes(std::span(head.data(), head.size())), .owner = {}};
-    const MeshFormatRow* const format = recognised_format(source, {});
-    return format != nullptr && format->layers ? FileKind::layers : FileKind::mesh;
-}
-
-FileKind file_kind(const ByteSource& opened) {
-    constexpr std::size_t enough = 4096;
-    return is_gzip(opened.bytes) ? file_kind(unpack_gzip_head(opened.bytes, enough))
-                                 : file_kind(opened.text().substr(0, enough));
-}
-
 std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const std::string& path,
                                               const MeshReadOptions& options, const Execution& execution) {
-    const FileKind kind = file_kind(opened);
-    if (kind != FileKind::mesh) {
+    const ByteSource source = unpacked(opened, options.max_memory, execution);
+    const MeshFormatRow* const format = recognised_format(source, options);
+    const bool layers = format != nullptr && format->layers;
+    if (layers || is_zip(source.text())) {
         try {
-            return read_opened_layers(opened, {.max_memory = options.max_memory}, execution);
+            return read_unpacked_layers(source, {.max_memory = options.max_memory}, execution);
         } catch (const Error& error) {
-            if (kind == FileKind::layers || error.kind() != ErrorKind::input)
-                throw;
+            if (layers || error.kind() != ErrorKind::input)
+                throw; // else it is a package of meshes
         }
     }
-    MeshFile file = read_opened_mesh(opened, options, execution);
+    MeshFile file = read_unpacked_mesh(source, options, execution);
     file.path = path;
     return file;
 }

@@ -8,8 +8,8 @@
 #include "core/byte_source.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
-#include "read/opened_file.hpp"
 #include "read/read_limits.hpp"
+#include "read/unpacked_file.hpp"
 
 #include <fmt/format.h>
 
@@ -56,16 +56,12 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
 
 } // namespace
 
-LayerFile read_opened_layers(const ByteSource& opened, const LayerReadOptions& options,
-                             const Execution& execution) {
-    ReadLimits limits(opened.name, options);
-    if (!opened.mapped)
-        limits.add_bytes(opened.bytes.size());
-    if (!is_gzip(opened.bytes))
-        return read_source(opened, options, limits, execution);
-    const ByteSource unpacked = unpack_gzip(opened, options.max_memory, execution);
-    limits.add_bytes(unpacked.bytes.size());
-    return read_source(unpacked, options, limits, execution);
+LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
+                               const Execution& execution) {
+    ReadLimits limits(source.name, options);
+    if (!source.mapped)
+        limits.add_bytes(source.bytes.size());
+    return read_source(source, options, limits, execution);
 }
 
 LayerStack LayerFile::merged() const {
@@ -83,12 +79,14 @@ LayerStack LayerFile::merged() const {
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
     const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    return read_opened_layers(open_bytes(path, most, execution), options, execution);
+    return read_unpacked_layers(unpacked(open_bytes(path, most, execution), options.max_memory, execution),
+                                options, execution);
 }
 
 LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,
                       const LayerReadOptions& options, const Execution& execution) {
-    return read_opened_layers(copy_bytes(bytes, name), options, execution);
+    return read_unpacked_layers(unpacked(copy_bytes(bytes, name), options.max_memory, execution), options,
+                                execution);
 }
 
 } // namespace lamella

@@ -8,7 +8,7 @@
 #include "core/byte_source.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/mesh_readers.hpp"
-#include "read/opened_file.hpp"
+#include "read/unpacked_file.hpp"
 
 #include <fmt/format.h>
 
@@ -25,10 +25,8 @@ Mesh MeshFile::mesh(const Execution& execution) const {
     return joined(all, execution);
 }
 
-MeshFile read_opened_mesh(const ByteSource& opened, const MeshReadOptions& options,
-                          const Execution& execution) {
-    const ByteSource source =
-        is_gzip(opened.bytes) ? unpack_gzip(opened, options.max_memory, execution) : opened;
+MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& options,
+                            const Execution& execution) {
     const MeshFormatRow& format = mesh_format_of(source, options);
     MeshFile file = format.read(source, options, execution);
     if (file.format.empty()) // STL says which of its two forms it has
@@ -37,14 +35,16 @@ MeshFile read_opened_mesh(const ByteSource& opened, const MeshReadOptions& optio
 }
 
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {
-    MeshFile file = read_opened_mesh(open_bytes(path, execution), options, execution);
+    MeshFile file = read_unpacked_mesh(unpacked(open_bytes(path, execution), options.max_memory, execution),
+                                       options, execution);
     file.path = path;
     return file;
 }
 
 MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, const MeshReadOptions& options,
                    const Execution& execution) {
-    MeshFile file = read_opened_mesh(copy_bytes(bytes, name), options, execution);
+    MeshFile file = read_unpacked_mesh(unpacked(copy_bytes(bytes, name), options.max_memory, execution),
+                                       options, execution);
     file.path = name;
     return file;
 }
@@ -66,7 +66,7 @@ std::optional<std::uint64_t> MeshInput::records() const {
 }
 
 MeshFile MeshInput::read(const MeshReadOptions& options, const Execution& execution) const {
-    MeshFile file = read_opened_mesh(*source_, options, execution);
+    MeshFile file = read_unpacked_mesh(unpacked(*source_, options.max_memory, execution), options, execution);
     file.path = path_;
     return file;
 }

@@ -153,9 +153,7 @@ constexpr std::array rows = {
     // What is often found under the name of a mesh file, or given by mistake. Binary ones would be taken for
     // binary STL with a wrong count.
     MeshFormatRow{.first_bytes = "\x1f\x8b"sv, .advice = "is packed with gzip twice; unpack it once first"},
-    MeshFormatRow{.first_bytes = "<?xml"sv,
-                  .advice = "is an XML file of an unknown kind, no mesh file",
-                  .layers = true}, // most likely SVG, to whom has seen only its beginning
+    MeshFormatRow{.first_bytes = "<?xml"sv, .advice = "is an XML file of an unknown kind, no mesh file"},
     MeshFormatRow{.first_bytes = "version https://git-lfs"sv,
                   .advice = "is a pointer of Git LFS to the real file; fetch it with 'git lfs pull'"},
     MeshFormatRow{.first_bytes = "\xff\xfe"sv, .advice = utf16},

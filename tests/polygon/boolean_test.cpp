@@ -7,7 +7,7 @@
 
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
-#include "polygon/common.hpp"
+#include "polygon/subtract_common.hpp"
 #include "polygon/winding_areas.hpp"
 
 #include <gtest/gtest.h>
