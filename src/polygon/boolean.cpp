@@ -4,7 +4,7 @@
 #include "lamella/polygon/fill.hpp"
 
 #include "polygon/box2.hpp"
-#include "polygon/common.hpp"
+#include "polygon/subtract_common.hpp"
 #include "polygon/material.hpp"
 #include "polygon/overlay.hpp"
 #include "polygon/windings.hpp"

@@ -25,15 +25,10 @@ std::uint32_t Islands::number_of(Cell cell) {
     return last_ = found->second;
 }
 
-std::vector<std::uint32_t> Islands::numbers() const {
-    std::vector<std::uint32_t> numbers(cells_.size());
-    std::iota(numbers.begin(), numbers.end(), 0U);
-    return numbers;
-}
-
 // Every other row is what it would be, from its end.
 void Islands::order_in_rows() {
-    std::vector<std::uint32_t> order = numbers();
+    std::vector<std::uint32_t> order(cells_.size());
+    std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
         const Cell& first = cells_[a].cell;
         const Cell& second = cells_[b].cell;
@@ -53,7 +48,7 @@ void Islands::order_in_rows() {
 
 void Islands::shuffle(std::uint64_t seed, std::uint64_t layer) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-    for (const std::uint32_t number : numbers()) {
+    for (std::uint32_t number = 0; number < cells_.size(); ++number) {
         const Cell& cell = cells_[number].cell;
         const std::uint64_t lot = seeded(
             seed, {layer, static_cast<std::uint32_t>(cell.row), static_cast<std::uint32_t>(cell.column)});

@@ -54,7 +54,6 @@ class Islands {
         bool back = true; ///< whether that line is followed from its end
     };
     std::uint32_t number_of(Cell cell);
-    [[nodiscard]] std::vector<std::uint32_t> numbers() const;
     void end_line(const Place& place);
 
     std::vector<Place> cells_;

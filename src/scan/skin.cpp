@@ -5,7 +5,7 @@
 #include "lamella/polygon/offset.hpp"
 
 #include "polygon/box2.hpp"
-#include "polygon/common.hpp"
+#include "polygon/subtract_common.hpp"
 #include "scan/alongside.hpp"
 
 #include <algorithm>
@@ -143,7 +143,7 @@ constexpr std::size_t most_at_once = 4;
 /// in the same places on all layers, and others where edges slant across them, so its layers are the same but
 /// for roundings. What a neighbour has is grown before it is taken away, each one by a little more than the
 /// one before it, and what is left is grown by as much as the first one. So such rings do not meet at all,
-/// which takes a hundredth of the time, and no slivers are left.
+/// which takes a fraction of the time, and no slivers are left.
 ///
 /// Rings alongside each other wind around a place alike, unless it lies between them, and then it is covered
 /// by what is grown. So whatever is left lies within rings that have none alongside, and only what is near to

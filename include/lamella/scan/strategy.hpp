@@ -77,8 +77,8 @@ struct ContourRule {
 /// A region of the layer that has less than `layers` layers of material above it, or below.
 struct SkinRule {
     std::uint32_t layers = 0; ///< at most `most_skin_layers`; 0: there is no such region
-    /// Strips that are narrower are none: walls differ from layer to layer by roundings, and by their slope.
-    /// By default as wide as a line.
+    /// Strips that are narrower are none (for the farther layers, those narrower than up to 1.01 times that):
+    /// walls differ from layer to layer by roundings, and by their slope. By default as wide as a line.
     double narrowest = 0.1;
     double overlap = 0.1; ///< by which it is grown into the core
     HatchRule hatch;
