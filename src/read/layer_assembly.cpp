@@ -29,6 +29,15 @@ bool RawLayer::end_clean_contour(std::size_t begin, bool closed, std::uint32_t p
     return true;
 }
 
+void renumber_parts(std::span<RawLayer> layers, std::span<const std::uint32_t> places) {
+    for (RawLayer& layer : layers) {
+        for (RawLayer::Contour& contour : layer.ends)
+            contour.part = places[contour.part];
+        for (RawLayer::Hatches& hatches : layer.hatch_ends)
+            hatches.part = places[hatches.part];
+    }
+}
+
 void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
                ReadLimits& limits) {
     const auto place = [&] {

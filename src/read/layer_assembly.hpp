@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,9 @@ struct RawLayer {
 
     void end_hatches(std::uint32_t part) { hatch_ends.push_back({hatches.size(), part}); }
 };
+
+/// Gives contours and hatches other numbers of parts: places[part] instead of each.
+void renumber_parts(std::span<RawLayer> layers, std::span<const std::uint32_t> places);
 
 /// What a layer takes besides itself, even where it is empty: the list of offsets, and what owns the points.
 inline constexpr std::uint64_t of_empty_layer = 128;

@@ -77,6 +77,56 @@ struct Group {
     std::optional<double> height;
 };
 
+/// Where a group's layer lies.
+struct GroupPlace {
+    double z;
+    double bottom;
+    double top;
+    std::size_t group;
+};
+
+/// In ascending order of cuts, which need not lie as the tops of layers do. Slic3r 1.x writes the cut in its
+/// scaled units, a millionth of the millimetres; later ones the top in millimetres. Puts the groups in order.
+std::vector<GroupPlace> places_of(std::vector<Group>& groups, std::vector<std::string>& warnings) {
+    double highest = 0;
+    bool has_slice_z = false;
+    for (const Group& group : groups) {
+        highest = std::max(highest, std::abs(group.contours.z));
+        has_slice_z = has_slice_z || group.slice_z.has_value();
+    }
+    const bool legacy = !has_slice_z && highest < 0.01;
+    for (Group& group : groups)
+        group.contours.z *= legacy ? 1e6 : 1;
+    const auto below = [](const Group& a, const Group& b) {
+        return a.contours.z < b.contours.z;
+    };
+    if (!std::is_sorted(groups.begin(), groups.end(), below)) {
+        warnings.emplace_back("layers do not ascend; they were sorted");
+        std::stable_sort(groups.begin(), groups.end(), below);
+    }
+    const std::size_t n = groups.size();
+    const auto step_below = [&](std::size_t i) {
+        const auto z = [&](std::size_t k) {
+            return groups[k].contours.z;
+        };
+        if (i > 0)
+            return z(i) - z(i - 1);
+        return n > 1 ? z(1) - z(0) : std::max(0.0, z(0));
+    };
+    std::vector<GroupPlace> places(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Group& group = groups[i];
+        const double thickness = group.height.value_or(step_below(i));
+        const double top = legacy ? group.contours.z + thickness / 2 : group.contours.z;
+        const double bottom = top - thickness;
+        const double middle = bottom + thickness / 2;
+        places[i] = {legacy ? group.contours.z : group.slice_z.value_or(middle), bottom, top, i};
+    }
+    std::stable_sort(places.begin(), places.end(),
+                     [](const GroupPlace& a, const GroupPlace& b) { return a.z < b.z; });
+    return places;
+}
+
 class SvgReader {
   public:
     SvgReader(const std::string& name, std::uint64_t bytes, LayerFile& file, ReadLimits& limits)
@@ -134,7 +184,11 @@ class SvgReader {
         open_.say(file_.warnings);
         other_.say(file_.warnings);
         dropped_.say(file_.warnings);
-        set_heights();
+        const std::vector<GroupPlace> places = places_of(groups_, file_.warnings);
+        check_part_planes(file_, groups_.size(), bytes_);
+        for (std::size_t i = 0; i < places.size(); ++i)
+            add_layer(file_, groups_[places[i].group].contours, i, places[i].z, places[i].bottom,
+                      places[i].top, limits_);
     }
 
   private:
@@ -272,58 +326,6 @@ class SvgReader {
     template <class T>
     void make_room(std::vector<T>& items, std::size_t line) {
         limits_.make_room(items, 1, [&] { return fmt::format("line {}", line); });
-    }
-
-    /// Slic3r 1.x writes the cut in its scaled units, a millionth of the millimetres; later ones the top in
-    /// millimetres.
-    void set_heights() {
-        double highest = 0;
-        bool has_slice_z = false;
-        for (const Group& group : groups_) {
-            highest = std::max(highest, std::abs(group.contours.z));
-            has_slice_z = has_slice_z || group.slice_z.has_value();
-        }
-        const bool legacy = !has_slice_z && highest < 0.01;
-        for (Group& group : groups_)
-            group.contours.z *= legacy ? 1e6 : 1;
-        const auto below = [](const Group& a, const Group& b) {
-            return a.contours.z < b.contours.z;
-        };
-        if (!std::is_sorted(groups_.begin(), groups_.end(), below)) {
-            file_.warnings.emplace_back("layers do not ascend; they were sorted");
-            std::stable_sort(groups_.begin(), groups_.end(), below);
-        }
-        const std::size_t n = groups_.size();
-        const auto step_below = [&](std::size_t i) {
-            const auto z = [&](std::size_t k) {
-                return groups_[k].contours.z;
-            };
-            if (i > 0)
-                return z(i) - z(i - 1);
-            return n > 1 ? z(1) - z(0) : std::max(0.0, z(0));
-        };
-        struct Place {
-            double z;
-            double bottom;
-            double top;
-            std::size_t group;
-        };
-        std::vector<Place> places(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            const Group& group = groups_[i];
-            const double thickness = group.height.value_or(step_below(i));
-            const double top = legacy ? group.contours.z + thickness / 2 : group.contours.z;
-            const double bottom = top - thickness;
-            const double middle = bottom + thickness / 2;
-            places[i] = {legacy ? group.contours.z : group.slice_z.value_or(middle), bottom, top, i};
-        }
-        // Layers are listed by their cuts, which need not lie as their tops do.
-        std::stable_sort(places.begin(), places.end(),
-                         [](const Place& a, const Place& b) { return a.z < b.z; });
-        check_part_planes(file_, n, bytes_);
-        for (std::size_t i = 0; i < n; ++i)
-            add_layer(file_, groups_[places[i].group].contours, i, places[i].z, places[i].bottom,
-                      places[i].top, limits_);
     }
 
     const std::string& name_;

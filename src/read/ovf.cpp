@@ -46,17 +46,172 @@ struct Table {
     std::vector<std::uint64_t> positions;
 };
 
+constexpr std::size_t most_text = 4096;
+
+/// Says where a byte is, for errors that are yet to be made.
+auto at_byte(std::uint64_t place) {
+    return [place] {
+        return fmt::format("byte {}", place);
+    };
+}
+
+double finite_real(const ProtobufReader& field) {
+    const float value = field.real();
+    if (!std::isfinite(value))
+        field.fail("a number that is not finite", "it must be one");
+    return static_cast<double>(value);
+}
+
+/// What the job says of all its blocks: parameters, and the parts that they belong to.
+class JobShell {
+  public:
+    JobShell(const std::string& name, ReadLimits& limits) : name_(name), limits_(limits) {}
+
+    void read(std::string_view bytes, std::uint64_t place) {
+        ProtobufReader job = ProtobufReader::delimited(bytes, place, name_);
+        while (job.next()) {
+            if (job.field() == ovf::job::marking_params)
+                read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
+                    parameters_[key] = read_parameters(value);
+                });
+            else if (job.field() == ovf::job::parts)
+                read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
+                    labels_[key] = read_part(value);
+                });
+        }
+    }
+
+    /// 0 where it says nothing.
+    [[nodiscard]] double layer_thickness() const noexcept { return layer_thickness_; }
+    /// The key of a part, for blocks that name none.
+    [[nodiscard]] std::int64_t first_part() const { return labels_.empty() ? 0 : labels_.begin()->first; }
+    [[nodiscard]] std::string label(std::int64_t part) const {
+        const auto label = labels_.find(part);
+        return label == labels_.end() ? std::string() : printable(label->second, most_text);
+    }
+    /// Of blocks of a kind, where it has parameters.
+    [[nodiscard]] std::optional<Exposure> exposure(const BlockKind& kind) const {
+        const auto parameters = parameters_.find(kind.parameters);
+        if (parameters == parameters_.end())
+            return std::nullopt;
+        namespace lpbf = ovf::block::lpbf;
+        Exposure exposure;
+        exposure.part = label(kind.part);
+        exposure.parameters = parameters->second;
+        exposure.region = kind.structure == lpbf::of_support ? ScanRegion::support
+                          : kind.skin == lpbf::down_skin     ? ScanRegion::downskin
+                          : kind.skin == lpbf::up_skin       ? ScanRegion::upskin
+                                                             : ScanRegion::core;
+        exposure.kind = kind.area == lpbf::volume ? VectorKind::hatch : VectorKind::contour;
+        std::string& name = exposure.parameters.name;
+        name = printable(name, most_text);
+        if (kind.area == lpbf::contour)
+            exposure.contour = 1;
+        else if (kind.area == lpbf::transition_contour)
+            exposure.contour = take_number(name);
+        return exposure;
+    }
+
+  private:
+    /// The number of a contour further inwards stands behind the name of its parameters.
+    static std::uint32_t take_number(std::string& name) {
+        constexpr std::uint32_t second = 2;
+        const std::size_t blank = name.rfind(' ');
+        if (blank == std::string::npos)
+            return second;
+        std::uint32_t number = 0;
+        const char* const end = name.data() + name.size();
+        const auto [behind, error] = std::from_chars(name.data() + blank + 1, end, number);
+        if (error != std::errc() || behind != end || number < second)
+            return second;
+        name.resize(blank);
+        return number;
+    }
+
+    /// An entry of a map. What is absent is 0, or an empty message.
+    template <class Take>
+    void read_entry(const ProtobufReader& map, const Take& take) {
+        std::int64_t key = 0;
+        std::optional<ProtobufReader> value;
+        ProtobufReader entry = map.message();
+        while (entry.next()) {
+            if (entry.field() == ovf::map_entry::key)
+                key = entry.integer();
+            else if (entry.field() == ovf::map_entry::value)
+                value = entry.message();
+        }
+        limits_.add_bytes_at(node_bytes + sizeof(ParameterSet) + map.bytes().size(), at_byte(map.place()));
+        take(key, value.value_or(ProtobufReader({}, map.place(), name_)));
+    }
+
+    static ParameterSet read_parameters(ProtobufReader fields) {
+        ParameterSet set = unknown_parameters();
+        while (fields.next()) {
+            switch (fields.field()) {
+            case ovf::marking::power_w:
+                set.power_w = finite_real(fields);
+                break;
+            case ovf::marking::speed_mm_s:
+                set.speed_mm_s = finite_real(fields);
+                break;
+            case ovf::marking::focus_mm:
+                set.focus_mm = finite_real(fields);
+                break;
+            case ovf::marking::jump_speed_mm_s:
+                set.jump_speed_mm_s = finite_real(fields);
+                break;
+            case ovf::marking::jump_delay_us:
+                set.jump_delay_us = finite_real(fields);
+                break;
+            case ovf::marking::mark_delay_us:
+                set.mark_delay_us = finite_real(fields);
+                break;
+            case ovf::marking::name:
+                set.name = fields.bytes();
+                break;
+            default:
+                break;
+            }
+        }
+        return set;
+    }
+
+    /// Its label.
+    std::string read_part(ProtobufReader fields) {
+        std::string label;
+        while (fields.next()) {
+            if (fields.field() == ovf::part::name)
+                label = fields.bytes();
+            else if (fields.field() == ovf::part::strategy)
+                read_strategy(fields.message());
+        }
+        return label;
+    }
+
+    void read_strategy(ProtobufReader fields) {
+        while (fields.next())
+            if (fields.field() == ovf::part::strategy_of_part::layer_thickness_mm)
+                layer_thickness_ = finite_real(fields);
+    }
+
+    const std::string& name_;
+    ReadLimits& limits_;
+    std::map<std::int64_t, ParameterSet> parameters_;
+    std::map<std::int64_t, std::string> labels_;
+    double layer_thickness_ = 0;
+};
+
 class OvfReader {
   public:
     OvfReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
               const Execution& execution)
         : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
-          progress_(execution, Stage::read, bytes.size()) {}
+          progress_(execution, Stage::read, bytes.size()), job_(name, limits) {}
 
     void read() {
         std::uint64_t place = position_at(ovf::magic.size());
         const Table planes = read_table(place);
-        read_job(planes.shell);
+        job_.read(bytes_, planes.shell);
         for (const std::uint64_t plane : planes.positions)
             read_plane(plane);
         if (layers_.empty())
@@ -73,12 +228,6 @@ class OvfReader {
     [[noreturn]] void fail(std::uint64_t place, const std::string& found, const std::string& expected) const {
         throw Error(ErrorKind::input,
                     fmt::format("{}, byte {}: found {}; {}", name_, place, found, expected));
-    }
-
-    static auto byte(std::uint64_t place) {
-        return [place] {
-            return fmt::format("byte {}", place);
-        };
     }
 
     /// The number of 64 bits that says where something lies.
@@ -107,116 +256,29 @@ class OvfReader {
                 table.shell = position(fields.integer());
             else if (fields.field() == ovf::table::positions)
                 fields.integers([&](std::int64_t value) {
-                    limits_.make_room(table.positions, 1, byte(fields.place()));
+                    limits_.make_room(table.positions, 1, at_byte(fields.place()));
                     table.positions.push_back(position(value));
                 });
         }
         return table;
     }
 
-    void read_job(std::uint64_t place) {
-        ProtobufReader job = ProtobufReader::delimited(bytes_, place, name_);
-        while (job.next()) {
-            if (job.field() == ovf::job::marking_params)
-                read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
-                    parameters_[key] = read_parameters(value);
-                });
-            else if (job.field() == ovf::job::parts)
-                read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
-                    labels_[key] = read_part(value);
-                });
-        }
-    }
-
-    /// An entry of a map. What is absent is 0, or an empty message.
-    template <class Take>
-    void read_entry(const ProtobufReader& map, const Take& take) {
-        std::int64_t key = 0;
-        std::optional<ProtobufReader> value;
-        ProtobufReader entry = map.message();
-        while (entry.next()) {
-            if (entry.field() == ovf::map_entry::key)
-                key = entry.integer();
-            else if (entry.field() == ovf::map_entry::value)
-                value = entry.message();
-        }
-        limits_.add_bytes_at(node_bytes + sizeof(ParameterSet) + map.bytes().size(), byte(map.place()));
-        take(key, value.value_or(ProtobufReader({}, map.place(), name_)));
-    }
-
-    static double finite(const ProtobufReader& field) {
-        const float value = field.real();
-        if (!std::isfinite(value))
-            field.fail("a number that is not finite", "it must be one");
-        return static_cast<double>(value);
-    }
-
-    static ParameterSet read_parameters(ProtobufReader fields) {
-        ParameterSet set = unknown_parameters();
-        while (fields.next()) {
-            switch (fields.field()) {
-            case ovf::marking::power_w:
-                set.power_w = finite(fields);
-                break;
-            case ovf::marking::speed_mm_s:
-                set.speed_mm_s = finite(fields);
-                break;
-            case ovf::marking::focus_mm:
-                set.focus_mm = finite(fields);
-                break;
-            case ovf::marking::jump_speed_mm_s:
-                set.jump_speed_mm_s = finite(fields);
-                break;
-            case ovf::marking::jump_delay_us:
-                set.jump_delay_us = finite(fields);
-                break;
-            case ovf::marking::mark_delay_us:
-                set.mark_delay_us = finite(fields);
-                break;
-            case ovf::marking::name:
-                set.name = fields.bytes();
-                break;
-            default:
-                break;
-            }
-        }
-        return set;
-    }
-
-    /// Its label.
-    std::string read_part(ProtobufReader fields) {
-        std::string label;
-        while (fields.next()) {
-            if (fields.field() == ovf::part::name)
-                label = fields.bytes();
-            else if (fields.field() == ovf::part::strategy)
-                read_strategy(fields.message());
-        }
-        return label;
-    }
-
-    void read_strategy(ProtobufReader fields) {
-        while (fields.next())
-            if (fields.field() == ovf::part::strategy_of_part::layer_thickness_mm)
-                layer_thickness_ = finite(fields);
-    }
-
     void read_plane(std::uint64_t begin) {
         executor_.check_cancelled();
         const Table table = read_table(position_at(begin));
-        limits_.make_room(layers_, 1, byte(begin));
+        limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
         raw.place = fmt::format("byte {}", begin);
         std::uint64_t place = table.shell;
         ProtobufReader shell = ProtobufReader::delimited(bytes_, place, name_);
         while (shell.next()) {
             if (shell.field() == ovf::work_plane::z)
-                raw.z = finite(shell);
+                raw.z = finite_real(shell);
             else if (shell.type() == ProtobufType::bits_32 &&
                      (shell.field() <= ovf::work_plane::y || (shell.field() >= ovf::work_plane::x_turn &&
                                                               shell.field() <= ovf::work_plane::z_turn)) &&
                      shell.real() != 0)
-                moved_.note(byte(begin));
+                moved_.note(at_byte(begin));
         }
         for (const std::uint64_t block : table.positions)
             read_block(block, raw);
@@ -240,7 +302,7 @@ class OvfReader {
             else if (fields.field() == ovf::block::hatches)
                 hatches = fields.message();
             else if (fields.field() <= ovf::block::last_of_vectors)
-                other_vectors_.note(byte(begin));
+                other_vectors_.note(at_byte(begin));
             else if (fields.field() == ovf::block::marking_params_key)
                 kind.parameters = fields.integer();
             else if (fields.field() == ovf::block::meta_data)
@@ -286,7 +348,7 @@ class OvfReader {
         if (list.size() % item != 0)
             fail(begin, fmt::format("vectors of {} bytes", list.size()),
                  fmt::format("each point or line has {}", item));
-        limits_.make_room(to, list.size() / (2 * sizeof(float)), byte(begin));
+        limits_.make_room(to, list.size() / (2 * sizeof(float)), at_byte(begin));
         for (std::size_t at = 0; at < list.size(); at += 2 * sizeof(float)) {
             float p[2];
             std::memcpy(p, list.data() + at, sizeof p);
@@ -300,15 +362,15 @@ class OvfReader {
                            RawLayer& raw) {
         const std::size_t first = raw.points.size();
         add_points(lines, begin, 2, raw.points);
-        limits_.make_room(raw.ends, 1, byte(begin));
+        limits_.make_room(raw.ends, 1, at_byte(begin));
         const bool closed = raw.points.size() - first > 3 && raw.points.back() == raw.points[first];
         if (!raw.end_clean_contour(first, closed, slot))
-            dropped_.note(byte(begin));
+            dropped_.note(at_byte(begin));
     }
 
     void add_hatches(const ProtobufReader& hatches, std::uint64_t begin, std::uint32_t slot, RawLayer& raw) {
         add_points(hatches, begin, 4, raw.hatches);
-        limits_.make_room(raw.hatch_ends, 1, byte(begin));
+        limits_.make_room(raw.hatch_ends, 1, at_byte(begin));
         raw.end_hatches(slot);
     }
 
@@ -316,67 +378,23 @@ class OvfReader {
         const auto found = slots_.find(kind);
         if (found != slots_.end())
             return found->second;
-        limits_.add_bytes_at(node_bytes + sizeof(BlockKind) + 2 * sizeof(LayerPart), byte(begin));
+        limits_.add_bytes_at(node_bytes + sizeof(BlockKind) + 2 * sizeof(LayerPart), at_byte(begin));
         return slots_.emplace(kind, static_cast<std::uint32_t>(slots_.size())).first->second;
     }
 
     /// Parts by their keys, and exposures of each by those of their parameters.
     void number_parts() {
         if (slots_.empty())
-            slots_.emplace(BlockKind{.part = labels_.empty() ? 0 : labels_.begin()->first}, 0);
+            slots_.emplace(BlockKind{.part = job_.first_part()}, 0);
         std::vector<std::uint32_t> places(slots_.size());
         for (const auto& [kind, slot] : slots_) {
             places[slot] = static_cast<std::uint32_t>(file_.parts.size());
-            const auto label = labels_.find(kind.part);
-            LayerPart part{label == labels_.end() ? std::string() : printable(label->second, most_text), {}};
-            part.exposure = exposure_of(kind, part.label);
+            LayerPart part{job_.label(kind.part), {}, job_.exposure(kind)};
             if (part.exposure)
                 part.label = part.exposure->label();
             file_.parts.push_back(std::move(part));
         }
-        for (RawLayer& layer : layers_) {
-            for (RawLayer::Contour& contour : layer.ends)
-                contour.part = places[contour.part];
-            for (RawLayer::Hatches& hatches : layer.hatch_ends)
-                hatches.part = places[hatches.part];
-        }
-    }
-
-    std::optional<Exposure> exposure_of(const BlockKind& kind, const std::string& part) const {
-        const auto parameters = parameters_.find(kind.parameters);
-        if (parameters == parameters_.end())
-            return std::nullopt;
-        namespace lpbf = ovf::block::lpbf;
-        Exposure exposure;
-        exposure.part = part;
-        exposure.parameters = parameters->second;
-        exposure.region = kind.structure == lpbf::of_support ? ScanRegion::support
-                          : kind.skin == lpbf::down_skin     ? ScanRegion::downskin
-                          : kind.skin == lpbf::up_skin       ? ScanRegion::upskin
-                                                             : ScanRegion::core;
-        exposure.kind = kind.area == lpbf::volume ? VectorKind::hatch : VectorKind::contour;
-        std::string& name = exposure.parameters.name;
-        name = printable(name, most_text);
-        if (kind.area == lpbf::contour)
-            exposure.contour = 1;
-        else if (kind.area == lpbf::transition_contour)
-            exposure.contour = take_number(name);
-        return exposure;
-    }
-
-    /// The number of a contour further inwards stands behind the name of its parameters.
-    static std::uint32_t take_number(std::string& name) {
-        constexpr std::uint32_t second = 2;
-        const std::size_t blank = name.rfind(' ');
-        if (blank == std::string::npos)
-            return second;
-        std::uint32_t number = 0;
-        const char* const end = name.data() + name.size();
-        const auto [behind, error] = std::from_chars(name.data() + blank + 1, end, number);
-        if (error != std::errc() || behind != end || number < second)
-            return second;
-        name.resize(blank);
-        return number;
+        renumber_parts(layers_, places);
     }
 
     /// Heights are tops of layers.
@@ -385,15 +403,13 @@ class OvfReader {
         check_part_planes(file_, layers_.size(), bytes_.size());
         for (std::size_t i = 0; i < layers_.size(); ++i) {
             const double top = layers_[i].z;
-            const double first_step = layer_thickness_ > 0 ? layer_thickness_
-                                      : layers_.size() > 1 ? layers_[1].z - layers_[0].z
-                                                           : std::max(top, 0.0);
+            const double first_step = job_.layer_thickness() > 0 ? job_.layer_thickness()
+                                      : layers_.size() > 1       ? layers_[1].z - layers_[0].z
+                                                                 : std::max(top, 0.0);
             const double bottom = i > 0 ? layers_[i - 1].z : top - first_step;
             add_layer(file_, layers_[i], i, bottom + (top - bottom) / 2, bottom, top, limits_);
         }
     }
-
-    static constexpr std::size_t most_text = 4096;
 
     std::string_view bytes_;
     const std::string& name_;
@@ -401,9 +417,7 @@ class OvfReader {
     ReadLimits& limits_;
     Executor executor_;
     ProgressMeter progress_;
-    std::map<std::int64_t, ParameterSet> parameters_;
-    std::map<std::int64_t, std::string> labels_;
-    double layer_thickness_ = 0;
+    JobShell job_;
     std::vector<RawLayer> layers_;
     std::map<BlockKind, std::uint32_t> slots_;
     std::uint64_t end_of_blocks_ = 0;

@@ -135,13 +135,258 @@ const std::byte* walk(const std::vector<Step>& steps, const std::byte* at, const
     return at;
 }
 
-/// Where a run of faces begins, and how many triangles and polygons there are before it.
-struct FaceRun {
-    const std::byte* at;
-    std::uint64_t row;
-    std::uint64_t triangles;
-    std::uint64_t polygons;
+[[noreturn]] void fail_cut_off(const ByteSource& source, const PlyElement& element, std::uint64_t row) {
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{}: byte {}: the file ends within row {} of {} of the element '{}' (it is cut off, or "
+                    "its head is wrong)",
+                    source.name, source.bytes.size(), row + 1, element.rows, element.name));
+}
+
+/// The rows of faces or strips: each has a list of corners, and perhaps other values.
+template <bool swapped>
+class CornerRows {
+  public:
+    CornerRows(const ByteSource& source, const PlyElement& element, std::size_t corners)
+        : source_(source), element_(element), before_(steps_of(element, 0, corners)),
+          after_(steps_of(element, corners + 1, element.properties.size())),
+          length_type_(*element.properties[corners].list_length),
+          item_type_(element.properties[corners].type), list_{{0, length_type_, item_type_}} {}
+
+    /// The corners in a row.
+    struct List {
+        const std::byte* begin;
+        const std::byte* end;
+        std::uint64_t length;
+        const std::byte* row_end; ///< null where the file ends before
+    };
+    [[nodiscard]] List at(const std::byte* row) const {
+        const std::byte* const end = source_.bytes.data() + source_.bytes.size();
+        const std::byte* const list = walk<swapped>(before_, row, end);
+        const std::byte* const list_end = list == nullptr ? nullptr : walk<swapped>(list_, list, end);
+        if (list_end == nullptr)
+            return {};
+        return {list + ply_bytes(length_type_), list_end, whole_number_at<swapped>(list, length_type_),
+                walk<swapped>(after_, list_end, end)};
+    }
+    /// The same of row `number`, which must be there.
+    [[nodiscard]] List at(const std::byte* row, std::uint64_t number) const {
+        const List list = at(row);
+        if (list.row_end == nullptr)
+            fail_cut_off(source_, element_, number);
+        return list;
+    }
+    [[nodiscard]] std::uint64_t corner(const std::byte* item) const {
+        return whole_number_at<swapped>(item, item_type_);
+    }
+    [[nodiscard]] std::uint64_t length(const std::byte* list) const {
+        return whole_number_at<swapped>(list, length_type_);
+    }
+    [[nodiscard]] std::size_t length_bytes() const { return ply_bytes(length_type_); }
+    [[nodiscard]] std::size_t item_bytes() const { return ply_bytes(item_type_); }
+    [[nodiscard]] bool has_items_of_32_bits() const {
+        return item_type_ == PlyType::int32 || item_type_ == PlyType::uint32;
+    }
+    /// The bytes of a row before its list and after it, where these are the same in all rows.
+    [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> bytes_around_list() const {
+        const auto fixed = [](const std::vector<Step>& steps) {
+            return steps.empty() || (steps.size() == 1 && !steps[0].list_length);
+        };
+        if (!fixed(before_) || !fixed(after_))
+            return std::nullopt;
+        return std::pair{before_.empty() ? 0 : before_[0].bytes, after_.empty() ? 0 : after_[0].bytes};
+    }
+    [[nodiscard]] const ByteSource& source() const { return source_; }
+    [[nodiscard]] const PlyElement& element() const { return element_; }
+
+  private:
+    const ByteSource& source_;
+    const PlyElement& element_;
+    std::vector<Step> before_; ///< the list, in a row
+    std::vector<Step> after_;
+    PlyType length_type_;
+    PlyType item_type_;
+    std::vector<Step> list_;
 };
+
+/// Faces, each of any number of corners.
+template <bool swapped>
+class FaceRows {
+  public:
+    /// `at`: where they begin.
+    FaceRows(const CornerRows<swapped>& rows, const std::byte* at, Executor& executor)
+        : rows_(rows), executor_(executor) {
+        if (!plan_even_rows(at))
+            plan_rows(at);
+    }
+
+    [[nodiscard]] std::uint64_t triangles() const { return runs_.back().triangles; }
+    [[nodiscard]] std::uint64_t polygons() const { return runs_.back().polygons; }
+    [[nodiscard]] const std::byte* end() const { return runs_.back().at; }
+    /// Those of too few corners, by the bytes at which they begin.
+    [[nodiscard]] const Occurrences& thin() const { return thin_; }
+
+    /// To arrays that have room for all. In parallel.
+    void put(FaceMesh& faces, ProgressMeter& progress) {
+        executor_.for_chunks(runs_.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            for (std::uint64_t i = begin; i < end; ++i) {
+                if (even_ && corners_ == 3 && rows_.has_items_of_32_bits())
+                    put_triangles(runs_[i], runs_[i + 1], faces);
+                else
+                    put(runs_[i], runs_[i + 1], faces);
+                progress.add(static_cast<std::uint64_t>(runs_[i + 1].at - runs_[i].at));
+            }
+        });
+    }
+
+    /// Where the face of a triangle begins.
+    [[nodiscard]] const std::byte* place(std::uint64_t triangle) const {
+        auto run = std::upper_bound(runs_.begin(), runs_.end(), triangle,
+                                    [](auto value, const Run& one) { return value < one.triangles; });
+        --run;
+        const std::byte* at = run->at;
+        std::uint64_t before = run->triangles;
+        while (true) {
+            const auto list = rows_.at(at);
+            before += list.length < 3 ? 0 : list.length - 2;
+            if (before > triangle)
+                return at;
+            at = list.row_end;
+        }
+    }
+
+  private:
+    /// Where a run of faces begins, and how many triangles and polygons there are before it.
+    struct Run {
+        const std::byte* at;
+        std::uint64_t row;
+        std::uint64_t triangles;
+        std::uint64_t polygons;
+    };
+
+    /// Most files have triangles only, so all rows are of one size; whether they are can be seen in all rows
+    /// at the same time: where every length is that of the first row, each row begins where it was looked
+    /// for.
+    bool plan_even_rows(const std::byte* first) {
+        const auto around = rows_.bytes_around_list();
+        if (!around)
+            return false;
+        const auto [head, tail] = *around;
+        const ByteSource& source = rows_.source();
+        const auto left = static_cast<std::uint64_t>(source.bytes.data() + source.bytes.size() - first);
+        if (left < head + rows_.length_bytes())
+            return false;
+        corners_ = rows_.length(first + head);
+        constexpr std::uint64_t many = 1'000;
+        if (corners_ < 3 || corners_ > many)
+            return false;
+        row_bytes_ = head + rows_.length_bytes() + corners_ * rows_.item_bytes() + tail;
+        const std::uint64_t rows = rows_.element().rows;
+        if (rows > left / row_bytes_)
+            return false;
+        std::atomic<bool> even{true};
+        const std::byte* const first_length = first + head;
+        executor_.for_chunks(rows, chunk_rows, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            const std::byte* at = first_length + begin * row_bytes_;
+            for (std::uint64_t i = begin; i < end && even.load(std::memory_order_relaxed);
+                 ++i, at += row_bytes_)
+                if (rows_.length(at) != corners_)
+                    even = false;
+        });
+        if (!even)
+            return false;
+        even_ = true;
+        index_offset_ = head + rows_.length_bytes();
+        for (std::uint64_t row = 0;; row = std::min(row + chunk_rows, rows)) {
+            runs_.push_back(
+                {first + row * row_bytes_, row, row * (corners_ - 2), corners_ > 3 ? row : std::uint64_t{0}});
+            if (row == rows)
+                return true;
+        }
+    }
+
+    /// Goes from row to row.
+    void plan_rows(const std::byte* at) {
+        std::uint64_t triangles = 0;
+        std::uint64_t polygons = 0;
+        const std::uint64_t rows = rows_.element().rows;
+        for (std::uint64_t row = 0; row < rows; ++row) {
+            if (row % chunk_rows == 0) {
+                executor_.check_cancelled();
+                runs_.push_back({at, row, triangles, polygons});
+            }
+            const auto list = rows_.at(at, row);
+            if (list.length < 3) {
+                thin_.note(static_cast<std::size_t>(at - rows_.source().bytes.data()));
+            } else {
+                triangles += list.length - 2;
+                polygons += list.length > 3 ? 1 : 0;
+            }
+            at = list.row_end;
+        }
+        runs_.push_back({at, rows, triangles, polygons});
+    }
+
+    /// Even rows of triangles whose corners are 32-bit numbers: twelve bytes from each row. Negative numbers
+    /// become large ones, which name no vertex.
+    void put_triangles(const Run& run, const Run& next, FaceMesh& faces) const {
+        const std::byte* at = run.at + index_offset_;
+        Corners* out = faces.mesh.triangles.data() + run.triangles;
+        for (std::uint64_t row = run.row; row < next.row; ++row, at += row_bytes_)
+            *out++ = {value_at<std::uint32_t, swapped>(at), value_at<std::uint32_t, swapped>(at + 4),
+                      value_at<std::uint32_t, swapped>(at + 8)};
+    }
+
+    void put(const Run& run, const Run& next, FaceMesh& faces) const {
+        const std::byte* at = run.at;
+        Corners* out = faces.mesh.triangles.data() + run.triangles;
+        FaceFan* polygon = faces.polygons.data() + run.polygons;
+        for (std::uint64_t row = run.row; row < next.row; ++row) {
+            const auto list = rows_.at(at);
+            const auto corner = [&](std::uint64_t k) {
+                return as_vertex(rows_.corner(list.begin + k * rows_.item_bytes()));
+            };
+            if (list.length > 3)
+                *polygon++ = {static_cast<std::uint64_t>(out - faces.mesh.triangles.data()),
+                              static_cast<std::uint32_t>(list.length - 2)};
+            for (std::uint64_t k = 2; k < list.length; ++k)
+                *out++ = {corner(0), corner(k - 1), corner(k)};
+            at = list.row_end;
+        }
+    }
+
+    const CornerRows<swapped>& rows_;
+    Executor& executor_;
+    std::vector<Run> runs_; ///< and the end of the last one
+    bool even_ = false;     ///< all rows have this form:
+    std::uint64_t corners_ = 0;
+    std::uint64_t row_bytes_ = 0;
+    std::size_t index_offset_ = 0;
+    Occurrences thin_;
+};
+
+/// Calls visit(corners, row) for the triangles of all strips, the first of which begins at `at`, with where
+/// `row` begins. Returns the end.
+template <bool swapped, class Visit>
+const std::byte* for_each_in_strips(const CornerRows<swapped>& rows, const std::byte* at,
+                                    const Visit& visit) {
+    constexpr std::uint64_t negative = std::numeric_limits<std::uint64_t>::max();
+    constexpr std::uint64_t unsigned_minus_one = std::numeric_limits<std::uint32_t>::max();
+    for (std::uint64_t row = 0; row < rows.element().rows; ++row) {
+        const std::byte* const row_begin = at;
+        const auto corners = rows.at(at, row);
+        at = corners.row_end;
+        TriangleStrip strip;
+        for (const std::byte* item = corners.begin; item != corners.end; item += rows.item_bytes()) {
+            const std::uint64_t number = rows.corner(item);
+            if (number == negative || number == unsigned_minus_one)
+                strip.restart();
+            else if (const auto triangle = strip.add(as_vertex(number)))
+                visit(*triangle, row_begin);
+        }
+    }
+    return at;
+}
 
 template <bool swapped>
 class BinaryReader {
@@ -150,14 +395,8 @@ class BinaryReader {
                  ReadLimits& limits, const Execution& execution)
         : source_(source), header_(header), places_(places), remarks_(remarks), limits_(limits),
           executor_(execution), progress_(execution, Stage::read, source.bytes.size()),
-          begin_(source.bytes.data()), at_(begin_ + header.end), end_(begin_ + source.bytes.size()) {
-        const PlyElement& element = header.elements[places.face];
-        before_ = steps_of(element, 0, places.corners);
-        after_ = steps_of(element, places.corners + 1, element.properties.size());
-        length_type_ = *element.properties[places.corners].list_length;
-        item_type_ = element.properties[places.corners].type;
-        list_ = {{0, length_type_, item_type_}};
-    }
+          begin_(source.bytes.data()), at_(begin_ + header.end), end_(begin_ + source.bytes.size()),
+          rows_(source, header.elements[places.face], places.corners) {}
 
     MeshFile run() {
         const std::size_t last = std::max(places_.vertex, places_.face);
@@ -166,7 +405,7 @@ class BinaryReader {
             if (i == places_.vertex)
                 read_vertices(element);
             else if (i == places_.face)
-                places_.strips ? read_strips(element) : read_faces(element);
+                places_.strips ? read_strips() : read_faces();
             else
                 skip(element);
         }
@@ -178,21 +417,12 @@ class BinaryReader {
     }
 
   private:
-    [[noreturn]] void fail_cut_off(const PlyElement& element, std::uint64_t row) const {
-        throw Error(
-            ErrorKind::input,
-            fmt::format(
-                "{}: byte {}: the file ends within row {} of {} of the element '{}' (it is cut off, or "
-                "its head is wrong)",
-                source_.name, source_.bytes.size(), row + 1, element.rows, element.name));
-    }
-
     [[nodiscard]] std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - at_); }
 
     /// The rows of an element without lists have equal sizes; the file must have room for all of them.
     void check_room(const PlyElement& element, std::size_t row_bytes) const {
         if (row_bytes != 0 && element.rows > left() / row_bytes)
-            fail_cut_off(element, left() / row_bytes);
+            fail_cut_off(source_, element, left() / row_bytes);
     }
 
     void skip(const PlyElement& element) {
@@ -211,7 +441,7 @@ class BinaryReader {
             executor_.check_cancelled();
         const std::byte* const next = walk<swapped>(steps, at_, end_);
         if (next == nullptr)
-            fail_cut_off(element, row);
+            fail_cut_off(source_, element, row);
         at_ = next;
     }
 
@@ -274,217 +504,46 @@ class BinaryReader {
         }
     }
 
-    void read_faces(const PlyElement& element) {
-        if (!plan_even_rows(element))
-            plan_rows(element);
-
-        const FaceRun& sum = runs_.back();
+    void read_faces() {
+        FaceRows<swapped>& faces = face_rows_.emplace(rows_, at_, executor_);
         constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-        if (sum.triangles > most)
+        if (faces.triangles() > most)
             throw Error(ErrorKind::limit, fmt::format("{}: {} triangles are too many, at most {} can be held",
-                                                      source_.name, sum.triangles, most));
-        limits_.add_triangles(sum.triangles);
-        limits_.add_bytes(sum.triangles * sizeof(Corners) + sum.polygons * sizeof(FaceFan));
-        resize_in_huge_pages(executor_, faces_.mesh.triangles, sum.triangles);
-        faces_.polygons.resize(sum.polygons);
-        executor_.for_chunks(runs_.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = begin; i < end; ++i) {
-                if (even_ && item_type_is_u32() && corners_ == 3)
-                    fill_triangles(runs_[i], runs_[i + 1]);
-                else
-                    fill(runs_[i], runs_[i + 1]);
-                progress_.add(static_cast<std::uint64_t>(runs_[i + 1].at - runs_[i].at));
-            }
-        });
-        at_ = sum.at;
-        if (thin_faces_.count != 0)
-            tell_thin_faces(remarks_, fmt::format("byte {}", thin_faces_.first), thin_faces_.count);
+                                                      source_.name, faces.triangles(), most));
+        limits_.add_triangles(faces.triangles());
+        limits_.add_bytes(faces.triangles() * sizeof(Corners) + faces.polygons() * sizeof(FaceFan));
+        resize_in_huge_pages(executor_, faces_.mesh.triangles, faces.triangles());
+        faces_.polygons.resize(faces.polygons());
+        faces.put(faces_, progress_);
+        at_ = faces.end();
+        if (faces.thin().count != 0)
+            tell_thin_faces(remarks_, fmt::format("byte {}", faces.thin().first), faces.thin().count);
     }
 
-    /// The corners in a row of a face or strip.
-    struct CornerList {
-        const std::byte* begin;
-        const std::byte* end;
-        std::uint64_t length;
-        const std::byte* row_end; ///< null where the file ends before
-    };
-
-    CornerList corners_at(const std::byte* row) const {
-        const std::byte* const list = walk<swapped>(before_, row, end_);
-        const std::byte* const list_end = list == nullptr ? nullptr : walk<swapped>(list_, list, end_);
-        if (list_end == nullptr)
-            return {};
-        return {list + ply_bytes(length_type_), list_end, whole_number_at<swapped>(list, length_type_),
-                walk<swapped>(after_, list_end, end_)};
-    }
-
-    /// Calls visit(corners, row) for the triangles of all strips, where `row` begins. Returns the end.
-    template <class Visit>
-    const std::byte* for_each_in_strips(const PlyElement& element, const Visit& visit) const {
-        constexpr std::uint64_t negative = std::numeric_limits<std::uint64_t>::max();
-        constexpr std::uint64_t unsigned_minus_one = std::numeric_limits<std::uint32_t>::max();
-        const std::byte* at = strips_;
-        for (std::uint64_t row = 0; row < element.rows; ++row) {
-            const std::byte* const row_begin = at;
-            const CornerList corners = corners_at(at);
-            if (corners.row_end == nullptr)
-                fail_cut_off(element, row);
-            at = corners.row_end;
-            TriangleStrip strip;
-            for (const std::byte* item = corners.begin; item != corners.end; item += ply_bytes(item_type_)) {
-                const std::uint64_t number = whole_number_at<swapped>(item, item_type_);
-                if (number == negative || number == unsigned_minus_one) {
-                    strip.restart();
-                    continue;
-                }
-                if (const auto triangle = strip.add(as_vertex(number)))
-                    visit(*triangle, row_begin);
-            }
-        }
-        return at;
-    }
-
-    void read_strips(const PlyElement& element) {
+    void read_strips() {
         strips_ = at_;
         std::uint64_t triangles = 0;
-        at_ = for_each_in_strips(element, [&](const Corners&, const std::byte*) { ++triangles; });
+        at_ = for_each_in_strips(rows_, strips_, [&](const Corners&, const std::byte*) { ++triangles; });
         limits_.add_triangles(triangles);
         limits_.add_bytes(triangles * sizeof(Corners));
         faces_.mesh.triangles.reserve(triangles);
-        for_each_in_strips(element, [&](const Corners& triangle, const std::byte*) {
+        for_each_in_strips(rows_, strips_, [&](const Corners& triangle, const std::byte*) {
             faces_.mesh.triangles.push_back(triangle);
         });
         progress_.add(static_cast<std::uint64_t>(at_ - strips_));
     }
 
-    [[nodiscard]] bool item_type_is_u32() const {
-        return item_type_ == PlyType::int32 || item_type_ == PlyType::uint32;
-    }
-
-    /// Most files have triangles only, so all rows are of one size; whether they are can be seen in all rows
-    /// at the same time: where every length is that of the first row, each row begins where it was looked
-    /// for.
-    bool plan_even_rows(const PlyElement& element) {
-        const auto fixed = [](const std::vector<Step>& steps) {
-            return std::none_of(steps.begin(), steps.end(),
-                                [](const Step& step) { return step.list_length.has_value(); });
-        };
-        if (!fixed(before_) || !fixed(after_))
-            return false;
-        const std::size_t head = before_.empty() ? 0 : before_[0].bytes;
-        const std::size_t tail = after_.empty() ? 0 : after_[0].bytes;
-        const std::size_t length_bytes = ply_bytes(length_type_);
-        if (left() < head + length_bytes)
-            return false;
-        corners_ = whole_number_at<swapped>(at_ + head, length_type_);
-        constexpr std::uint64_t many = 1'000;
-        if (corners_ < 3 || corners_ > many)
-            return false;
-        const std::uint64_t row_bytes = head + length_bytes + corners_ * ply_bytes(item_type_) + tail;
-        if (element.rows > left() / row_bytes)
-            return false;
-        std::atomic<bool> even{true};
-        executor_.for_chunks(element.rows, chunk_rows, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            const std::byte* at = at_ + begin * row_bytes + head;
-            for (std::uint64_t i = begin; i < end && even.load(std::memory_order_relaxed);
-                 ++i, at += row_bytes)
-                if (whole_number_at<swapped>(at, length_type_) != corners_)
-                    even = false;
-        });
-        if (!even)
-            return false;
-        even_ = true;
-        row_bytes_ = row_bytes;
-        index_offset_ = head + length_bytes;
-        for (std::uint64_t row = 0;; row = std::min(row + chunk_rows, element.rows)) {
-            runs_.push_back(
-                {at_ + row * row_bytes, row, row * (corners_ - 2), corners_ > 3 ? row : std::uint64_t{0}});
-            if (row == element.rows)
-                return true;
-        }
-    }
-
-    /// Goes from row to row.
-    void plan_rows(const PlyElement& element) {
-        const std::byte* at = at_;
-        std::uint64_t triangles = 0;
-        std::uint64_t polygons = 0;
-        for (std::uint64_t row = 0; row < element.rows; ++row) {
-            if (row % chunk_rows == 0) {
-                executor_.check_cancelled();
-                runs_.push_back({at, row, triangles, polygons});
-            }
-            const std::byte* const row_begin = at;
-            const CornerList list = corners_at(at);
-            if (list.row_end == nullptr)
-                fail_cut_off(element, row);
-            at = list.row_end;
-            const std::uint64_t corners = list.length;
-            if (corners < 3) {
-                thin_faces_.note(static_cast<std::size_t>(row_begin - begin_));
-                continue;
-            }
-            triangles += corners - 2;
-            polygons += corners > 3 ? 1 : 0;
-        }
-        runs_.push_back({at, element.rows, triangles, polygons});
-    }
-
-    /// Even rows of triangles whose corners are 32-bit numbers: twelve bytes from each row. Negative numbers
-    /// become large ones, which name no vertex.
-    void fill_triangles(const FaceRun& run, const FaceRun& next) {
-        const std::byte* at = run.at + index_offset_;
-        Corners* out = faces_.mesh.triangles.data() + run.triangles;
-        for (std::uint64_t row = run.row; row < next.row; ++row, at += row_bytes_)
-            *out++ = {value_at<std::uint32_t, swapped>(at), value_at<std::uint32_t, swapped>(at + 4),
-                      value_at<std::uint32_t, swapped>(at + 8)};
-    }
-
-    void fill(const FaceRun& run, const FaceRun& next) {
-        const std::byte* at = run.at;
-        Corners* out = faces_.mesh.triangles.data() + run.triangles;
-        FaceFan* polygon = faces_.polygons.data() + run.polygons;
-        const std::size_t item_bytes = ply_bytes(item_type_);
-        for (std::uint64_t row = run.row; row < next.row; ++row) {
-            const CornerList list = corners_at(at);
-            const std::uint64_t corners = list.length;
-            const auto corner = [&](std::uint64_t k) {
-                return as_vertex(whole_number_at<swapped>(list.begin + k * item_bytes, item_type_));
-            };
-            if (corners > 3)
-                *polygon++ = {static_cast<std::uint64_t>(out - faces_.mesh.triangles.data()),
-                              static_cast<std::uint32_t>(corners - 2)};
-            for (std::uint64_t k = 2; k < corners; ++k)
-                *out++ = {corner(0), corner(k - 1), corner(k)};
-            at = list.row_end;
-        }
-    }
-
-    [[nodiscard]] std::string place_in_strips(std::uint64_t triangle) const {
+    [[nodiscard]] std::string place(std::uint64_t triangle) const {
         const std::byte* found = strips_;
         std::uint64_t count = 0;
-        for_each_in_strips(header_.elements[places_.face], [&](const Corners&, const std::byte* row) {
-            if (count++ == triangle)
-                found = row;
-        });
+        if (face_rows_)
+            found = face_rows_->place(triangle);
+        else
+            for_each_in_strips(rows_, strips_, [&](const Corners&, const std::byte* row) {
+                if (count++ == triangle)
+                    found = row;
+            });
         return fmt::format("byte {}", found - begin_);
-    }
-
-    [[nodiscard]] std::string place(std::uint64_t triangle) const {
-        if (places_.strips)
-            return place_in_strips(triangle);
-        auto run = std::upper_bound(runs_.begin(), runs_.end(), triangle,
-                                    [](auto value, const FaceRun& one) { return value < one.triangles; });
-        --run;
-        const std::byte* at = run->at;
-        std::uint64_t before = run->triangles;
-        for (std::uint64_t row = run->row;; ++row) {
-            const CornerList corners = corners_at(at);
-            before += corners.length < 3 ? 0 : corners.length - 2;
-            if (before > triangle)
-                return fmt::format("byte {}", at - begin_);
-            at = corners.row_end;
-        }
     }
 
     const ByteSource& source_;
@@ -499,18 +558,9 @@ class BinaryReader {
     const std::byte* end_;
 
     FaceMesh faces_;
-    std::vector<Step> before_; ///< the list of corners, in a row of a face
-    std::vector<Step> list_;
-    std::vector<Step> after_;
-    PlyType length_type_ = PlyType::uint8;
-    PlyType item_type_ = PlyType::int32;
+    CornerRows<swapped> rows_;
+    std::optional<FaceRows<swapped>> face_rows_;
     const std::byte* strips_ = nullptr; ///< where their rows begin
-    std::vector<FaceRun> runs_;         ///< and the end of the last one
-    bool even_ = false;                 ///< all rows have this form:
-    std::uint64_t corners_ = 0;
-    std::uint64_t row_bytes_ = 0;
-    std::size_t index_offset_ = 0;
-    Occurrences thin_faces_;
 };
 
 } // namespace

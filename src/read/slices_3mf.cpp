@@ -7,17 +7,15 @@
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
-#include "core/parse_number.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
+#include "read/three_mf_part.hpp"
 #include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -64,20 +62,19 @@ class SliceModelReader {
   public:
     using FindStack = std::function<std::shared_ptr<const Stack>(std::string_view path, std::uint32_t id)>;
 
-    SliceModelReader(std::string name, FindStack find, ReadLimits& limits)
-        : name_(std::move(name)), find_(std::move(find)), limits_(limits) {}
+    SliceModelReader(FindStack find, ReadLimits& limits) : find_(std::move(find)), limits_(limits) {}
 
-    void start(XmlName element, const XmlAttributes& attributes, std::size_t line) {
-        line_ = line;
-        if (element.space == three_mf::slices)
-            start_slice_element(element.local, attributes);
-        else if (element.space == three_mf::core)
-            start_core_element(element.local, attributes);
+    void start(const ThreeMfElement& element) {
+        line_ = element.line;
+        if (element.name.space == three_mf::slices)
+            start_slice_element(element);
+        else if (element.name.space == three_mf::core)
+            start_core_element(element);
     }
 
     void end(XmlName element) {
         if (element == XmlName{three_mf::slices, "slicestack"})
-            end_stack();
+            stack_.reset();
         else if (element == XmlName{three_mf::slices, "polygon"})
             end_polygon();
         else if (element == XmlName{three_mf::core, "object"})
@@ -95,11 +92,6 @@ class SliceModelReader {
         dropped_.say(warnings);
     }
 
-    [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-        throw Error(ErrorKind::input,
-                    fmt::format("{}, line {}: found {}; {}", name_, line_, found, expected));
-    }
-
   private:
     /// Where the parser is, as errors call it.
     auto place() const {
@@ -108,72 +100,71 @@ class SliceModelReader {
         };
     }
 
-    void start_core_element(std::string_view element, const XmlAttributes& attributes) {
-        if (element == "model") {
-            const std::string_view unit = attributes.find("unit");
-            unit_ = unit.data() == nullptr ? 1 : three_mf::unit_mm(unit).value_or(0);
-            if (unit_ == 0)
-                fail(fmt::format("the unit '{}'", printable(unit, 40)),
-                     "it must be millimeter or another of 3MF's");
-        } else if (element == "object") {
-            const std::uint32_t id = whole(attributes, "id");
-            const std::string_view name = attributes.find("name");
-            limits_.add_bytes_at(node_bytes + sizeof(Object) + name.size(), place());
-            object_ = &objects_[id];
-            *object_ = {std::string(name), nullptr, {}, attributes.find("type") == "support"};
-            if (const std::string_view stack = attributes.find(XmlName{three_mf::slices, "slicestackid"});
-                stack.data() != nullptr)
-                object_->stack = stack_of(whole_of(stack, "slicestackid"));
-        } else if (element == "component" && object_ != nullptr) {
+    void start_core_element(const ThreeMfElement& element) {
+        const std::string_view name = element.name.local;
+        if (name == "model") {
+            unit_ = element.unit_mm();
+        } else if (name == "object") {
+            const std::string_view label = element["name"].text;
+            limits_.add_bytes_at(node_bytes + sizeof(Object) + label.size(), place());
+            object_ = &objects_[element["id"].index()];
+            *object_ = {std::string(label), nullptr, {}, element["type"].text == "support"};
+            if (const ThreeMfValue stack = element[XmlName{three_mf::slices, "slicestackid"}]; stack.is_there)
+                object_->stack = stack_of(stack);
+        } else if (name == "component" && object_ != nullptr) {
             limits_.make_room(object_->components, 1, place());
-            object_->components.push_back(use(attributes));
-        } else if (element == "item") {
+            object_->components.push_back(use(element));
+        } else if (name == "item") {
             limits_.make_room(items_, 1, place());
-            items_.push_back(use(attributes));
+            items_.push_back(use(element));
         }
     }
 
-    void start_slice_element(std::string_view element, const XmlAttributes& attributes) {
-        if (element == "slicestack") {
-            stack_id_ = whole(attributes, "id");
+    void start_slice_element(const ThreeMfElement& element) {
+        const std::string_view name = element.name.local;
+        if (name == "slicestack") {
+            const std::uint32_t id = element["id"].index();
             limits_.add_bytes_at(node_bytes + sizeof(Stack), place());
             stack_ = std::make_shared<Stack>();
-            const std::string_view bottom = attributes.find("zbottom");
-            stack_->bottom = bottom.data() == nullptr ? 0 : number_of(bottom, "zbottom");
-        } else if (element == "sliceref" && stack_) {
-            append(*find_(attributes.find("slicepath"), whole(attributes, "slicestackid")));
-        } else if (element == "slice" && stack_) {
-            const double top = number(attributes, "ztop");
-            const double below = stack_->slices.empty() ? stack_->bottom : stack_->slices.back().top;
-            if (!(top > below))
-                fail(fmt::format("a slice with ztop = {}", top),
-                     fmt::format("it must lie above z = {}", below));
+            if (!stacks_.try_emplace(id, stack_).second)
+                element.fail(fmt::format("a second slice stack {}", id), "ids that differ");
+            stack_->bottom = element["zbottom"].number_or(0);
+        } else if (name == "sliceref" && stack_) {
+            append(*find_(element["slicepath"].text, element["slicestackid"].index()), element);
+        } else if (name == "slice" && stack_) {
+            const double top = element["ztop"].number();
+            if (!(top > top_of_stack()))
+                element.fail(fmt::format("a slice with ztop = {}", top),
+                             fmt::format("it to lie above z = {}", top_of_stack()));
             limits_.make_room(stack_->slices, 1, place());
             stack_->slices.emplace_back().top = top;
             vertices_.clear();
-        } else if (element == "vertex" && in_slice()) {
+        } else if (name == "vertex" && in_slice()) {
             limits_.make_room(vertices_, 1, place());
-            vertices_.push_back({number(attributes, "x"), number(attributes, "y")});
-        } else if (element == "polygon" && in_slice()) {
-            start_ = whole(attributes, "startv");
-            last_ = start_;
+            vertices_.push_back({element["x"].number(), element["y"].number()});
+        } else if (name == "polygon" && in_slice()) {
+            start_ = element["startv"].index();
             begin_ = raw().points.size();
-            limits_.make_room(raw().points, 1, place());
-            raw().points.push_back(vertex(start_));
-        } else if (element == "segment" && in_slice() && start_) {
-            last_ = whole(attributes, "v2");
-            limits_.make_room(raw().points, 1, place());
-            raw().points.push_back(vertex(*last_));
+            add_point(*start_, element);
+        } else if (name == "segment" && in_slice() && start_) {
+            add_point(element["v2"].index(), element);
         }
     }
 
     [[nodiscard]] bool in_slice() const { return stack_ && !stack_->slices.empty(); }
     RawLayer& raw() { return stack_->slices.back().raw; }
 
-    Point2 vertex(std::optional<std::uint32_t> index) const {
-        if (*index >= vertices_.size())
-            fail(fmt::format("vertex {}", *index), fmt::format("the slice has {}", vertices_.size()));
-        return vertices_[*index];
+    [[nodiscard]] double top_of_stack() const {
+        return stack_->slices.empty() ? stack_->bottom : stack_->slices.back().top;
+    }
+
+    void add_point(std::uint32_t index, const ThreeMfElement& element) {
+        if (index >= vertices_.size())
+            element.fail(fmt::format("vertex {}", index),
+                         fmt::format("less than {}, the number of vertices of the slice", vertices_.size()));
+        last_ = index;
+        limits_.make_room(raw().points, 1, place());
+        raw().points.push_back(vertices_[index]);
     }
 
     void end_polygon() {
@@ -188,81 +179,30 @@ class SliceModelReader {
         start_.reset();
     }
 
-    void end_stack() {
-        if (stack_ && !stacks_.try_emplace(stack_id_, stack_).second)
-            fail(fmt::format("a second slice stack {}", stack_id_), "ids must be unique");
-        stack_.reset();
-    }
-
     /// Stacks that are put on one another: where they do not meet, the upper one begins where the lower one
     /// ends.
-    void append(const Stack& other) {
+    void append(const Stack& other, const ThreeMfElement& element) {
         for (const Slice& slice : other.slices) {
-            const double below = stack_->slices.empty() ? stack_->bottom : stack_->slices.back().top;
-            if (!(slice.top > below))
-                fail(fmt::format("a reference to slices that end at z = {}", slice.top),
-                     fmt::format("they must lie above z = {}", below));
+            if (!(slice.top > top_of_stack()))
+                element.fail(fmt::format("a reference to slices that end at z = {}", slice.top),
+                             fmt::format("them to lie above z = {}", top_of_stack()));
             limits_.make_room(stack_->slices, 1, place());
             limits_.add_bytes_at(contour_bytes(slice.raw), place());
             stack_->slices.push_back(slice);
         }
     }
 
-    std::shared_ptr<const Stack> stack_of(std::uint32_t id) const {
-        const auto found = stacks_.find(id);
+    [[nodiscard]] std::shared_ptr<const Stack> stack_of(const ThreeMfValue& id) const {
+        const auto found = stacks_.find(id.index());
         if (found == stacks_.end())
-            fail(fmt::format("slice stack {}", id), "it must be defined before it is used");
+            id.element.fail(fmt::format("slice stack {}", id.text), "one that is defined before it is used");
         return found->second;
     }
 
-    Use use(const XmlAttributes& attributes) const {
-        Use use{whole(attributes, "objectid"), {}, line_};
-        std::string_view text = attributes.find("transform");
-        if (text.data() == nullptr)
-            return use;
-        std::array<double, 12> m{};
-        for (double& value : m) {
-            text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-            const std::size_t end = std::min(text.find_first_of(" \t\r\n"), text.size());
-            value = number_of(text.substr(0, end), "transform");
-            text.remove_prefix(end);
-        }
-        // Rows of the matrix are multiplied from the left.
-        for (std::size_t r = 0; r < 3; ++r) {
-            for (std::size_t c = 0; c < 3; ++c)
-                use.placement.linear[r][c] = m[3 * c + r];
-            use.placement.offset[r] = m[9 + r];
-        }
-        return use;
+    static Use use(const ThreeMfElement& element) {
+        return {element["objectid"].index(), element.transform(), element.line};
     }
 
-    std::uint32_t whole(const XmlAttributes& attributes, std::string_view name) const {
-        return whole_of(attributes.find(name), name);
-    }
-    std::uint32_t whole_of(std::string_view text, std::string_view name) const {
-        std::uint32_t value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (text.empty() || error != std::errc() || end != text.data() + text.size())
-            fail(fmt::format("{} = '{}'", name, printable(text, 40)), "it must be a whole number");
-        return value;
-    }
-    double number(const XmlAttributes& attributes, std::string_view name) const {
-        return number_of(attributes.find(name), name);
-    }
-    double number_of(std::string_view text, std::string_view name) const {
-        if (text.starts_with('+'))
-            text.remove_prefix(1);
-        double value = 0;
-        const char* const end = parse_number(text.data(), text.data() + text.size(), value);
-        // What lies further away could make sums and areas overflow; no part is near it.
-        constexpr double farthest = 1e30;
-        if (text.empty() || end != text.data() + text.size() || !(std::abs(value) <= farthest))
-            fail(fmt::format("{} = '{}'", name, printable(text, 40)),
-                 fmt::format("it must be a number within {}", farthest));
-        return value;
-    }
-
-    std::string name_;
     FindStack find_;
     ReadLimits& limits_;
     std::size_t line_ = 0;
@@ -271,10 +211,9 @@ class SliceModelReader {
     std::map<std::uint32_t, Object> objects_;
     std::vector<Use> items_;
     std::shared_ptr<Stack> stack_; ///< under construction
-    std::uint32_t stack_id_ = 0;
     std::vector<Point2> vertices_;
     std::optional<std::uint32_t> start_; ///< of the polygon under construction
-    std::optional<std::uint32_t> last_;
+    std::uint32_t last_ = 0;
     std::size_t begin_ = 0;
     Object* object_ = nullptr;
     Oddity open_{"contours are open"};
@@ -296,7 +235,7 @@ struct Placed {
 class PackageReader {
   public:
     PackageReader(const OpcPackage& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
-        : package_(package), zip_(package.zip()), root_(root_part()), file_(file), limits_(limits),
+        : package_(package), zip_(package.zip()), root_(root_model(package)), file_(file), limits_(limits),
           executor_(execution) {}
 
     void read() {
@@ -315,35 +254,15 @@ class PackageReader {
     }
 
   private:
-    [[nodiscard]] std::string root_part() const {
-        for (const OpcRelationship& relationship : package_.relationships(""))
-            if (relationship.type == three_mf::model_type && !relationship.external)
-                return relationship.target;
-        return "3D/3dmodel.model";
-    }
-
     std::unique_ptr<SliceModelReader> read_model(const std::string& part, SliceModelReader::FindStack find) {
-        const ZipEntry* entry = zip_.find(part);
-        if (entry == nullptr)
-            throw Error(ErrorKind::input, fmt::format("{}: found no part '{}', to which the package refers",
-                                                      zip_.name(), printable(part, 100)));
         const std::uint64_t before = zip_.unpacked();
-        const ByteSource source = zip_.read(*entry);
+        const ByteSource source = unpack_part(package_, part);
         const std::uint64_t unpacked = zip_.unpacked() - before;
         limits_.add_bytes_at(unpacked, [&] { return fmt::format("part '{}'", printable(part, 100)); });
-        auto model = std::make_unique<SliceModelReader>(source.name, std::move(find), limits_);
-        XmlHandlers handlers;
-        handlers.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
-            model->start(name, attributes, line);
-        };
-        handlers.end = [&](XmlName name) {
-            model->end(name);
-        };
-        handlers.progress = [&](std::size_t) {
-            executor_.check_cancelled();
-        };
-        parse_xml(source.text(), source.name, handlers,
-                  {.namespaces = true, .utf8_only = true, .no_document_type = true});
+        auto model = std::make_unique<SliceModelReader>(std::move(find), limits_);
+        parse_part(
+            source, [&](const ThreeMfElement& element) { model->start(element); },
+            [&](XmlName name) { model->end(name); }, executor_);
         limits_.give_back(0, unpacked);
         model->say(file_.warnings);
         return model;
@@ -531,7 +450,7 @@ class PackageReader {
 } // namespace
 
 bool is_3mf(const ZipReader& zip) {
-    return zip.find("_rels/.rels") != nullptr || zip.find("3D/3dmodel.model") != nullptr;
+    return zip.find("_rels/.rels") != nullptr || zip.find(three_mf::usual_root) != nullptr;
 }
 
 LayerFile read_slices_3mf(const OpcPackage& package, ReadLimits& limits, const Execution& execution) {

@@ -22,43 +22,40 @@ namespace lamella {
 namespace {
 
 constexpr std::string_view ticket_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/printticket";
-constexpr std::string_view usual_root = "3D/3dmodel.model";
 constexpr std::size_t longest_name = 200;
 
-class ThreeMfReader {
+[[noreturn]] void refuse_package(const std::string& file, const std::string& what) {
+    throw Error(ErrorKind::input, fmt::format("{}: {}", file, what));
+}
+
+/// The model parts of a package: the root and all that it refers to, with their meshes.
+class PartLoader {
   public:
-    ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
-        : package_(source, options.max_memory), name_(source.name), remarks_(source.name, options.strict),
-          supports_(options.supports), limits_(source.name, options), executor_(execution),
-          progress_(execution, Stage::read, bytes_of(package_.zip())) {}
-
-    MeshFile read() {
-        for (const std::string& oddity : package_.zip().oddities())
-            remarks_.add(oddity);
-        if (package_.zip().find("[Content_Types].xml") == nullptr)
-            remarks_.add("found no [Content_Types].xml in the package");
-        const std::string root = find_root();
-        load_parts(root);
-        progress_.finish();
-        for (const Part& part : parts_)
-            for (const ThreeMfModel::Remark& remark : part.model.remarks)
-                tell(remark.text, remark.offence);
-        make_nodes();
-        make_file();
-        const ThreeMfModel& model = parts_.front().model;
-        file_.unit_mm = model.unit_mm;
-        file_.name = !model.title.empty() ? model.title : file_.objects.front().name;
-        file_.warnings = remarks_.take();
-        file_.warnings.insert(file_.warnings.end(), notes_.begin(), notes_.end());
-        return std::move(file_);
-    }
-
-  private:
     struct Part {
         ByteSource bytes;
         ThreeMfModel model;
     };
 
+    PartLoader(const OpcPackage& package, Remarks& remarks, ReadLimits& limits, Executor& executor,
+               const Execution& execution)
+        : package_(package), remarks_(remarks), limits_(limits), executor_(executor),
+          progress_(execution, Stage::read, bytes_of(package.zip())) {}
+
+    void load() {
+        if (package_.zip().find("[Content_Types].xml") == nullptr)
+            remarks_.add("found no [Content_Types].xml in the package");
+        load_parts(find_root());
+        progress_.finish();
+    }
+
+    /// The root first.
+    [[nodiscard]] std::vector<Part>& parts() noexcept { return parts_; }
+    /// The number of the part that an object is used from.
+    [[nodiscard]] std::size_t part_of(const ThreeMfUse& use, std::size_t user) const {
+        return use.part.empty() ? user : part_index_.at(use.part);
+    }
+
+  private:
     /// Of all entries: which of them are needed shows late.
     static std::uint64_t bytes_of(const ZipReader& zip) {
         std::uint64_t bytes = 0;
@@ -67,42 +64,36 @@ class ThreeMfReader {
         return bytes;
     }
 
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorKind::input, fmt::format("{}: {}", name_, what));
-    }
-
-    /// What breaks a rule is for strict callers to refuse; a note is not.
-    void tell(const std::string& text, bool offence) {
-        if (offence)
-            remarks_.add(text);
-        else
-            notes_.push_back(text);
-    }
-
     std::string find_root() {
         std::vector<std::string> targets;
         for (const OpcRelationship& relationship : relationships_of("")) {
             if (relationship.type != three_mf::model_type)
                 continue;
             if (relationship.external)
-                fail("the model lies outside of the package, expected a part of it");
+                refuse_package(package_.zip().name(),
+                               "the model lies outside of the package, expected a part of it");
             targets.push_back(relationship.target);
         }
         if (targets.size() > 1)
-            fail(fmt::format("the package names {} models ('{}', '{}'), expected one", targets.size(),
-                             printable(targets[0], longest_name), printable(targets[1], longest_name)));
+            refuse_package(package_.zip().name(),
+                           fmt::format("the package names {} models ('{}', '{}'), expected one",
+                                       targets.size(), printable(targets[0], longest_name),
+                                       printable(targets[1], longest_name)));
         if (!targets.empty()) {
             if (package_.zip().find(targets.front()) == nullptr)
-                fail(fmt::format("the package names the model '{}', which is not in it",
-                                 printable(targets.front(), longest_name)));
+                refuse_package(package_.zip().name(),
+                               fmt::format("the package names the model '{}', which is not in it",
+                                           printable(targets.front(), longest_name)));
             return targets.front();
         }
-        const ZipEntry* entry = package_.zip().find(usual_root);
+        const ZipEntry* entry = package_.zip().find(three_mf::usual_root);
         for (const ZipEntry& other : package_.zip().entries())
             if (entry == nullptr && other.name.ends_with(".model"))
                 entry = &other;
         if (entry == nullptr)
-            fail("is a zip archive without a model, expected a 3MF file; unpack it and slice what is in it");
+            refuse_package(
+                package_.zip().name(),
+                "is a zip archive without a model, expected a 3MF file; unpack it and slice what is in it");
         remarks_.add(fmt::format("the package does not say which part is its model; took '{}'",
                                  printable(entry->name, longest_name)));
         return entry->name;
@@ -214,6 +205,48 @@ class ThreeMfReader {
         }
     }
 
+    const OpcPackage& package_;
+    Remarks& remarks_;
+    ReadLimits& limits_;
+    Executor& executor_;
+    ProgressMeter progress_;
+    std::vector<Part> parts_;
+    std::map<std::string, std::size_t> part_index_;
+};
+
+class ThreeMfReader {
+  public:
+    ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
+        : package_(source, options.max_memory), name_(source.name), remarks_(source.name, options.strict),
+          supports_(options.supports), limits_(source.name, options), executor_(execution),
+          loader_(package_, remarks_, limits_, executor_, execution) {}
+
+    MeshFile read() {
+        for (const std::string& oddity : package_.zip().oddities())
+            remarks_.add(oddity);
+        loader_.load();
+        for (const PartLoader::Part& part : parts_)
+            for (const ThreeMfModel::Remark& remark : part.model.remarks)
+                tell(remark.text, remark.offence);
+        make_nodes();
+        make_file();
+        const ThreeMfModel& model = parts_.front().model;
+        file_.unit_mm = model.unit_mm;
+        file_.name = !model.title.empty() ? model.title : file_.objects.front().name;
+        file_.warnings = remarks_.take();
+        file_.warnings.insert(file_.warnings.end(), notes_.begin(), notes_.end());
+        return std::move(file_);
+    }
+
+  private:
+    /// What breaks a rule is for strict callers to refuse; a note is not.
+    void tell(const std::string& text, bool offence) {
+        if (offence)
+            remarks_.add(text);
+        else
+            notes_.push_back(text);
+    }
+
     /// One node for each object of each part.
     void make_nodes() {
         std::vector<std::map<std::uint32_t, std::size_t>> numbers(parts_.size());
@@ -231,7 +264,7 @@ class ThreeMfReader {
                 nodes_.push_back(std::move(node));
             }
         const auto make_use = [&](std::size_t part, const ThreeMfUse& use) {
-            const std::size_t target = use.part.empty() ? part : part_index_.at(use.part);
+            const std::size_t target = loader_.part_of(use, part);
             const ThreeMfModel& model = parts_[part].model;
             const auto node = numbers[target].find(use.object);
             if (node == numbers[target].end())
@@ -278,7 +311,7 @@ class ThreeMfReader {
     /// The meshes that the build reaches, and where they stand.
     void make_file() {
         if (parts_[0].model.items.empty())
-            fail("holds nothing to slice: its build is empty");
+            refuse_package(name_, "holds nothing to slice: its build is empty");
         std::vector<bool> reached(nodes_.size());
         std::vector<std::size_t> open;
         for (const AssemblyUse& root : roots_)
@@ -333,7 +366,8 @@ class ThreeMfReader {
         tell_count(unused, "objects are not in the build; they were left out", false);
         file_.instances = place_meshes(name_, nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
-            fail("holds nothing to slice: no item of its build leads to a mesh that is a solid");
+            refuse_package(name_,
+                           "holds nothing to slice: no item of its build leads to a mesh that is a solid");
     }
 
     OpcPackage package_;
@@ -343,9 +377,8 @@ class ThreeMfReader {
     std::vector<std::string> notes_;
     ReadLimits limits_;
     Executor executor_;
-    ProgressMeter progress_;
-    std::vector<Part> parts_; ///< the root first
-    std::map<std::string, std::size_t> part_index_;
+    PartLoader loader_;
+    std::vector<PartLoader::Part>& parts_ = loader_.parts();
     std::vector<AssemblyNode> nodes_;
     std::vector<ThreeMfObject*> sources_; ///< of each node
     std::vector<AssemblyUse> roots_;

@@ -9,6 +9,7 @@
 #include "read/decimal_text.hpp"
 #include "read/plain_elements.hpp"
 #include "read/read_limits.hpp"
+#include "read/three_mf_part.hpp"
 #include "read/three_mf_properties.hpp"
 #include "read/three_mf_terms.hpp"
 
@@ -56,6 +57,109 @@ bool is_coordinate(double value) {
     return std::abs(value) <= farthest_coordinate;
 }
 
+/// The extensions that a <model> requires, by the prefixes that it declares.
+std::set<std::string> required_extensions(const ThreeMfElement& element,
+                                          const std::map<std::string, std::string>& spaces) {
+    std::set<std::string> required;
+    std::string_view prefixes = element["requiredextensions"].text;
+    while (!prefixes.empty()) {
+        const std::string prefix(prefixes.substr(0, prefixes.find_first_of(" \t\r\n")));
+        prefixes = trimmed(prefixes.substr(prefix.size()));
+        const auto space = spaces.find(prefix);
+        if (space == spaces.end())
+            element.fail(fmt::format("that the file requires the extension '{}' without saying what that is",
+                                     printable(prefix, 40)),
+                         "a prefix that it declares");
+        if (std::find(extensions.begin(), extensions.end(), space->second) == extensions.end())
+            element.fail(
+                fmt::format("that the file requires the extension '{}' ({}), which is not known here",
+                            printable(prefix, 40), printable(space->second, 200)),
+                "none, or one that readers of meshes get on without");
+        required.insert(space->second);
+    }
+    return required;
+}
+
+/// An <object> without what is in it.
+ThreeMfObject object_of(const ThreeMfElement& element) {
+    ThreeMfObject object;
+    object.id = element["id"].index();
+    object.line = element.line;
+    object.name = printable(element["name"].text, longest_object_name);
+    if (const ThreeMfValue type = element["type"]; type.is_there) {
+        const auto* const known =
+            std::find_if(types.begin(), types.end(), [&](const auto& row) { return row.first == type.text; });
+        if (known == types.end())
+            element.fail(fmt::format("an object of type '{}'", printable(type.text, 40)),
+                         "model, solidsupport, support, surface or other");
+        object.type = known->second;
+    }
+    return object;
+}
+
+Point3 vertex_of(const ThreeMfElement& element) {
+    return {element["x"].number(), element["y"].number(), element["z"].number()};
+}
+
+TriangleIndices triangle_of(const ThreeMfElement& element, std::size_t vertices) {
+    TriangleIndices corners;
+    constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
+    for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = element[names[k]].index();
+        if (corners[k] >= vertices)
+            element.fail(fmt::format("{} = {}", names[k], corners[k]),
+                         fmt::format("less than {}, the number of vertices", vertices));
+    }
+    return corners;
+}
+
+/// A <component> of an object, or an <item> of the build.
+ThreeMfUse use_of(const ThreeMfElement& element, bool is_root, double unit_mm) {
+    ThreeMfUse use;
+    use.line = element.line;
+    use.object = element["objectid"].index();
+    use.printable = element["printable"].text != "0";
+    if (const ThreeMfValue path = element[XmlName{three_mf::production, "path"}]; path.is_there) {
+        if (!is_root)
+            element.fail(fmt::format("path '{}' in a part that is not the root", printable(path.text, 100)),
+                         "none: only the root may refer to other parts");
+        use.part = path.text;
+    }
+    use.placement = element.transform();
+    for (double& offset : use.placement.offset)
+        offset *= unit_mm;
+    return use;
+}
+
+/// The ids of a part: all its resources share one set of them.
+class ResourceIds {
+  public:
+    /// That of a resource, unless it has none. `remark` gets what is odd about it.
+    template <class Remark>
+    std::optional<std::uint32_t> take(const ThreeMfElement& element, const Remark& remark) {
+        const bool is_object = element.name == XmlName{three_mf::core, "object"};
+        const ThreeMfValue value = element["id"];
+        if (!value.is_there && !is_object)
+            return std::nullopt;
+        const std::uint32_t id = value.index();
+        if (id == 0 || id > largest_id)
+            element.fail(fmt::format("id {}", id), fmt::format("1 to {}", largest_id));
+        const auto [other, is_new] = ids_.emplace(id, is_object);
+        if (is_new)
+            return id;
+        const std::string found = fmt::format("id {} for the second time", id);
+        if (is_object || other->second)
+            element.fail(found, "ids that differ");
+        remark("found " + found);
+        return std::nullopt;
+    }
+
+  private:
+    std::map<std::uint32_t, bool> ids_; ///< and whether an object has it
+};
+
+/// What a model is read from, one step for each element. Steps say what the element is, so that those in it
+/// are taken for what they are.
 class ModelReader {
   public:
     ModelReader(const ByteSource& source, std::string part, bool is_root, bool skim, ReadLimits& limits)
@@ -72,7 +176,7 @@ class ModelReader {
                 is_beta_ = name.space == three_mf::beta_core;
             if (is_beta_ && name.space == three_mf::beta_core)
                 name.space = three_mf::core;
-            where_.push_back(start(name, attributes));
+            where_.push_back(start({model_.source, name, attributes, line}));
         };
         handlers.end = [this](XmlName) {
             end();
@@ -92,11 +196,10 @@ class ModelReader {
                 return skim(text, place);
             };
         }
-        parse_xml(document, model_.source, handlers,
-                  {.namespaces = true, .utf8_only = true, .no_document_type = true});
-        if (!has_resources_)
+        parse_xml(document, model_.source, handlers, three_mf_rules);
+        if (!seen_.contains(Where::resources))
             fail("found no <resources>, expected one in <model>");
-        if (is_root_ && !has_build_)
+        if (is_root_ && !seen_.contains(Where::build))
             fail("found no <build>, expected one in <model>");
         model_.title = printable(trimmed(model_.title), longest_model_title);
         for (const auto& [prefix, space] : spaces_)
@@ -121,6 +224,30 @@ class ModelReader {
         build,
         elsewhere ///< in something that is passed over
     };
+    using Step = Where (ModelReader::*)(const ThreeMfElement&);
+
+    /// Which elements of the core have business where.
+    struct Rule {
+        Where in;
+        std::string_view element;
+        Step step;
+    };
+    static constexpr std::array<Rule, 14> rules() {
+        return {{{Where::model, "resources", &ModelReader::start_resources},
+                 {Where::model, "build", &ModelReader::start_build},
+                 {Where::model, "metadata", &ModelReader::start_metadata},
+                 {Where::resources, "object", &ModelReader::start_object},
+                 {Where::resources, "basematerials", &ModelReader::pass_over},
+                 {Where::object, "mesh", &ModelReader::start_mesh},
+                 {Where::object, "components", &ModelReader::start_components},
+                 {Where::object, "metadatagroup", &ModelReader::pass_over},
+                 {Where::mesh, "vertices", &ModelReader::start_vertices},
+                 {Where::mesh, "triangles", &ModelReader::start_triangles},
+                 {Where::vertices, "vertex", &ModelReader::add_vertex},
+                 {Where::triangles, "triangle", &ModelReader::add_triangle},
+                 {Where::components, "component", &ModelReader::add_component},
+                 {Where::build, "item", &ModelReader::add_item}}};
+    }
 
     [[noreturn]] void fail(const std::string& what) const {
         throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", model_.source, line_, what));
@@ -140,84 +267,32 @@ class ModelReader {
         count_.add(triangles, bytes, [this] { return here(); });
     }
 
-    Where start(XmlName name, const XmlAttributes& attributes) {
+    Where start(const ThreeMfElement& element) {
         if (where_.empty())
-            return start_model(name, attributes);
+            return start_model(element);
         const Where in = where_.back();
         std::optional<std::uint32_t> id;
-        if (in == Where::resources)
-            id = take_id(name, attributes);
+        if (in == Where::resources) {
+            count(0, node_bytes);
+            id = ids_.take(element, [this](const std::string& what) { remark(what); });
+        }
         if (in == Where::resources || in == Where::elsewhere)
-            if (const auto wrong = properties_.check(name, attributes, id))
+            if (const auto wrong = properties_.check(element.name, element.attributes, id))
                 remark(*wrong);
         if (in == Where::elsewhere || in == Where::title)
             return Where::elsewhere;
-        if (name == XmlName{three_mf::beams, "beamlattice"} && in == Where::mesh) {
+        if (element.name == XmlName{three_mf::beams, "beamlattice"} && in == Where::mesh) {
             if (required_.contains(std::string(three_mf::beams)))
                 fail("found a beam lattice; those cannot be read, and the file requires it");
             remark("found a beam lattice; its beams were left out");
         }
-        if (name.space != three_mf::core)
+        if (element.name.space != three_mf::core)
             return Where::elsewhere;
-        const std::string_view element = name.local;
-        switch (in) {
-        case Where::model:
-            if (element == "resources")
-                return start_resources();
-            if (element == "build")
-                return start_build();
-            if (element == "metadata")
-                return start_metadata(attributes);
-            break;
-        case Where::resources:
-            if (element == "object")
-                return start_object(attributes);
-            if (element == "basematerials")
-                return Where::elsewhere;
-            break;
-        case Where::object:
-            if (element == "mesh")
-                return start_mesh();
-            if (element == "components")
-                return start_components();
-            if (element == "metadatagroup")
-                return Where::elsewhere;
-            break;
-        case Where::mesh:
-            if (element == "vertices")
-                return once(Where::vertices, has_vertices_, "<vertices>");
-            if (element == "triangles")
-                return once(Where::triangles, has_triangles_, "<triangles>");
-            break;
-        case Where::vertices:
-            if (element == "vertex") {
-                add_vertex(attributes);
-                return Where::elsewhere;
-            }
-            break;
-        case Where::triangles:
-            if (element == "triangle") {
-                add_triangle(attributes);
-                return Where::elsewhere;
-            }
-            break;
-        case Where::components:
-            if (element == "component") {
-                object().components.push_back(use(attributes));
-                return Where::elsewhere;
-            }
-            break;
-        case Where::build:
-            if (element == "item") {
-                model_.items.push_back(use(attributes));
-                return Where::elsewhere;
-            }
-            break;
-        default:
-            break;
-        }
+        for (const Rule& rule : rules())
+            if (rule.in == in && rule.element == element.name.local)
+                return (this->*rule.step)(element);
         remark(fmt::format("found <{}>, which has no business here; it was passed over",
-                           printable(element, 40)));
+                           printable(element.name.local, 40)));
         return Where::elsewhere;
     }
 
@@ -228,54 +303,40 @@ class ModelReader {
             fail(fmt::format("found object {} with neither a mesh nor components", object().id));
     }
 
-    Where start_model(XmlName name, const XmlAttributes& attributes) {
-        if (name != XmlName{three_mf::core, "model"})
-            fail(fmt::format("found <{}> of namespace '{}', expected <model> of '{}'",
-                             printable(name.local, 40), printable(name.space, 100), three_mf::core));
+    Where start_model(const ThreeMfElement& element) {
+        if (element.name != XmlName{three_mf::core, "model"})
+            element.fail(fmt::format("<{}> of namespace '{}'", printable(element.name.local, 40),
+                                     printable(element.name.space, 100)),
+                         fmt::format("<model> of '{}'", three_mf::core));
         if (is_beta_)
             remark(fmt::format("found a file of the beta of 3MF ('{}'); its meshes, components and build are "
                                "taken as today's",
                                three_mf::beta_core));
-        if (const std::string_view unit = attributes.find("unit"); unit.data() != nullptr) {
-            const std::optional<double> known = three_mf::unit_mm(unit);
-            if (!known)
-                fail(fmt::format("found unit '{}', expected micron, millimeter, centimeter, inch, foot or "
-                                 "meter",
-                                 printable(unit, 40)));
-            model_.unit_mm = *known;
-        }
-        if (attributes.find(XmlName{xml_space, "space"}).data() != nullptr)
+        model_.unit_mm = element.unit_mm();
+        if (element[XmlName{xml_space, "space"}].is_there)
             remark("found xml:space, which 3MF files must not use");
-        std::string_view prefixes = attributes.find("requiredextensions");
-        while (!(prefixes = trimmed(prefixes)).empty()) {
-            const std::string prefix(prefixes.substr(0, prefixes.find_first_of(" \t\r\n")));
-            prefixes.remove_prefix(prefix.size());
-            const auto space = spaces_.find(prefix);
-            if (space == spaces_.end())
-                fail(fmt::format("the file requires the extension '{}' without saying what that is",
-                                 printable(prefix, 40)));
-            if (std::find(extensions.begin(), extensions.end(), space->second) == extensions.end())
-                fail(fmt::format("the file requires the extension '{}' ({}), which is not known here",
-                                 printable(prefix, 40), printable(space->second, 200)));
-            required_.insert(space->second);
-        }
+        required_ = required_extensions(element, spaces_);
         return Where::model;
     }
 
-    Where start_resources() {
-        if (std::exchange(has_resources_, true))
-            fail("found a second <resources>, expected one");
-        return Where::resources;
+    Where pass_over(const ThreeMfElement&) { return Where::elsewhere; }
+
+    /// What must not come twice.
+    Where once(Where what, const ThreeMfElement& element) {
+        if (!seen_.insert(what).second)
+            element.fail(fmt::format("a second <{}>", element.name.local), "one");
+        return what;
     }
 
-    Where start_build() {
-        if (std::exchange(has_build_, true))
-            fail("found a second <build>, expected one");
-        return is_root_ ? Where::build : Where::elsewhere; // that of other parts does not count
+    Where start_resources(const ThreeMfElement& element) { return once(Where::resources, element); }
+
+    Where start_build(const ThreeMfElement& element) {
+        const Where build = once(Where::build, element);
+        return is_root_ ? build : Where::elsewhere; // that of other parts does not count
     }
 
-    Where start_metadata(const XmlAttributes& attributes) {
-        const std::string_view name = attributes.find("name");
+    Where start_metadata(const ThreeMfElement& element) {
+        const std::string_view name = element.attributes.find("name");
         count(0, node_bytes + name.size());
         if (name.data() == nullptr)
             remark("found metadata without a name");
@@ -284,74 +345,39 @@ class ModelReader {
         return name == "Title" && model_.title.empty() ? Where::title : Where::elsewhere;
     }
 
-    /// All resources share one set of ids.
-    std::optional<std::uint32_t> take_id(XmlName name, const XmlAttributes& attributes) {
-        const bool is_object = name == XmlName{three_mf::core, "object"};
-        const std::string_view text = attributes.find("id");
-        if (text.data() == nullptr && !is_object)
-            return std::nullopt;
-        const std::uint32_t id = number(attributes, "id");
-        if (id == 0 || id > largest_id)
-            fail(fmt::format("found id {}, expected 1 to {}", id, largest_id));
-        count(0, node_bytes + (is_object ? sizeof(ThreeMfObject) : 0));
-        const auto [other, is_new] = ids_.emplace(id, is_object);
-        if (is_new)
-            return id;
-        const std::string what = fmt::format("found id {} for the second time", id);
-        if (is_object || other->second)
-            fail(what);
-        remark(what);
-        return std::nullopt;
-    }
-
-    Where start_object(const XmlAttributes& attributes) {
-        ThreeMfObject object;
-        object.id = number(attributes, "id");
-        object.line = line_;
-        object.name = printable(trimmed(attributes.find("name")), longest_object_name);
-        if (const std::string_view type = attributes.find("type"); type.data() != nullptr) {
-            const auto* const known =
-                std::find_if(types.begin(), types.end(), [&](const auto& row) { return row.first == type; });
-            if (known == types.end())
-                fail(fmt::format(
-                    "found an object of type '{}', expected model, solidsupport, support, surface "
-                    "or other",
-                    printable(type, 40)));
-            object.type = known->second;
-        }
-        if (attributes.find("pindex").data() != nullptr && attributes.find("pid").data() == nullptr)
+    Where start_object(const ThreeMfElement& element) {
+        count(0, sizeof(ThreeMfObject));
+        model_.objects.push_back(object_of(element));
+        if (element["pindex"].is_there && !element["pid"].is_there)
             remark("found pindex without pid");
-        if (attributes.find(XmlName{three_mf::slices, "meshresolution"}) == "lowres")
+        if (element[XmlName{three_mf::slices, "meshresolution"}].text == "lowres")
             remark(fmt::format("object {} is meant to be taken from its slices; its mesh is only a coarse "
                                "stand-in",
-                               object.id));
-        model_.objects.push_back(std::move(object));
-        has_vertices_ = has_triangles_ = false;
+                               object().id));
+        seen_.erase(Where::vertices);
+        seen_.erase(Where::triangles);
         return Where::object;
     }
 
-    Where start_mesh() {
-        if (object().is_mesh || !object().components.empty())
-            fail(fmt::format(
-                "found a second content of object {}, expected one mesh or one list of components",
-                object().id));
+    Where start_mesh(const ThreeMfElement& element) {
+        require_no_content(element);
         object().is_mesh = true;
         return Where::mesh;
     }
 
-    Where start_components() {
-        if (object().is_mesh || !object().components.empty())
-            fail(fmt::format(
-                "found a second content of object {}, expected one mesh or one list of components",
-                object().id));
+    Where start_components(const ThreeMfElement& element) {
+        require_no_content(element);
         return Where::components;
     }
 
-    Where once(Where next, bool& seen, std::string_view what) {
-        if (std::exchange(seen, true))
-            fail(fmt::format("found a second {} in the mesh of object {}, expected one", what, object().id));
-        return next;
+    void require_no_content(const ThreeMfElement& element) {
+        if (object().is_mesh || !object().components.empty())
+            element.fail(fmt::format("a second content of object {}", object().id),
+                         "one mesh or one list of components");
     }
+
+    Where start_vertices(const ThreeMfElement& element) { return once(Where::vertices, element); }
+    Where start_triangles(const ThreeMfElement& element) { return once(Where::triangles, element); }
 
     /// Leaves a run of vertices or triangles to others.
     std::size_t skim(std::string_view document, std::size_t place) {
@@ -364,26 +390,19 @@ class ModelReader {
                                      : take_run(document, place, "</triangles", text.triangles);
     }
 
-    void add_vertex(const XmlAttributes& attributes) {
+    Where add_vertex(const ThreeMfElement& element) {
         require_all_by_parser();
         count(0, sizeof(Point3));
-        object().mesh.vertices.push_back(
-            {coordinate(attributes, "x"), coordinate(attributes, "y"), coordinate(attributes, "z")});
+        object().mesh.vertices.push_back(vertex_of(element));
+        return Where::elsewhere;
     }
 
-    void add_triangle(const XmlAttributes& attributes) {
+    Where add_triangle(const ThreeMfElement& element) {
         require_all_by_parser();
         count(1, sizeof(TriangleIndices));
         IndexedMesh& mesh = object().mesh;
-        TriangleIndices corners;
-        constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
-        for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = number(attributes, names[k]);
-            if (corners[k] >= mesh.vertices.size())
-                fail(fmt::format("found {} = {}, expected less than {}, the number of vertices", names[k],
-                                 corners[k], mesh.vertices.size()));
-        }
-        mesh.triangles.push_back(corners);
+        mesh.triangles.push_back(triangle_of(element, mesh.vertices.size()));
+        return Where::elsewhere;
     }
 
     /// Where runs are skimmed no vertex may come past the parser: their order would be lost.
@@ -392,75 +411,16 @@ class ModelReader {
             fail("found a mesh that is not written plainly");
     }
 
-    ThreeMfUse use(const XmlAttributes& attributes) {
+    Where add_component(const ThreeMfElement& element) {
         count(0, sizeof(ThreeMfUse));
-        ThreeMfUse use;
-        use.line = line_;
-        use.object = number(attributes, "objectid");
-        use.printable = trimmed(attributes.find("printable")) != "0";
-        if (const std::string_view path = attributes.find(XmlName{three_mf::production, "path"});
-            path.data() != nullptr) {
-            if (!is_root_)
-                fail(fmt::format("found path '{}' in a part that is not the root; only the root may refer to "
-                                 "other parts",
-                                 printable(path, 100)));
-            use.part = path;
-        }
-        if (const std::string_view numbers = attributes.find("transform"); numbers.data() != nullptr)
-            use.placement = transform(numbers);
-        return use;
+        object().components.push_back(use_of(element, is_root_, model_.unit_mm));
+        return Where::elsewhere;
     }
 
-    /// Twelve numbers, row by row of a matrix that rows are multiplied with from the left.
-    [[nodiscard]] Transform transform(std::string_view text) const {
-        std::array<double, 12> m{};
-        std::string_view rest = trimmed(text);
-        for (double& number : m) {
-            const char* const stop = read_decimal(rest.data(), rest.data() + rest.size(), number);
-            if (stop == nullptr || !is_coordinate(number) ||
-                (stop != rest.data() + rest.size() && trimmed({stop, 1}).size() == 1))
-                fail(fmt::format("found transform '{}', expected 12 numbers with blanks between them",
-                                 printable(text, 200)));
-            rest = trimmed(rest.substr(static_cast<std::size_t>(stop - rest.data())));
-        }
-        if (!rest.empty())
-            fail(fmt::format("found transform '{}', expected 12 numbers and no more", printable(text, 200)));
-        Transform map;
-        for (std::size_t to = 0; to < 3; ++to) {
-            for (std::size_t from = 0; from < 3; ++from)
-                map.linear[to][from] = m[3 * from + to];
-            map.offset[to] = m[9 + to] * model_.unit_mm;
-        }
-        if (!(std::abs(map.determinant()) > 0))
-            fail(fmt::format("found transform '{}', which flattens what it is applied to",
-                             printable(text, 200)));
-        return map;
-    }
-
-    [[nodiscard]] double coordinate(const XmlAttributes& attributes, std::string_view name) const {
-        const std::string_view text = trimmed(value(attributes, name));
-        double number = 0;
-        if (read_decimal(text.data(), text.data() + text.size(), number) != text.data() + text.size() ||
-            text.empty() || !is_coordinate(number))
-            fail(fmt::format("found {} = '{}', expected a number within {}", name, printable(text, 40),
-                             farthest_coordinate));
-        return number;
-    }
-
-    [[nodiscard]] std::uint32_t number(const XmlAttributes& attributes, std::string_view name) const {
-        const std::string_view text = trimmed(value(attributes, name));
-        std::uint32_t number = 0;
-        if (read_index(text.data(), text.data() + text.size(), number) != text.data() + text.size() ||
-            text.empty())
-            fail(fmt::format("found {} = '{}', expected a whole number", name, printable(text, 40)));
-        return number;
-    }
-
-    [[nodiscard]] std::string_view value(const XmlAttributes& attributes, std::string_view name) const {
-        const std::string_view text = attributes.find(name);
-        if (text.data() == nullptr)
-            fail(fmt::format("found an element without {}, expected a number there", name));
-        return text;
+    Where add_item(const ThreeMfElement& element) {
+        count(0, sizeof(ThreeMfUse));
+        model_.items.push_back(use_of(element, is_root_, model_.unit_mm));
+        return Where::elsewhere;
     }
 
     [[nodiscard]] ThreeMfObject& object() { return model_.objects.back(); }
@@ -472,15 +432,12 @@ class ModelReader {
     GrowingMeshCount count_;
     std::size_t line_ = 1;
     std::vector<Where> where_;
+    std::set<Where> seen_; ///< of those that must not come twice; vertices and triangles: in this object
     std::map<std::string, std::string> spaces_; ///< prefixes that the root element declares
     std::set<std::string> required_;
     std::set<std::string> metadata_;
-    std::map<std::uint32_t, bool> ids_; ///< and whether an object has it
+    ResourceIds ids_;
     ThreeMfProperties properties_;
-    bool has_resources_ = false;
-    bool has_build_ = false;
-    bool has_vertices_ = false;
-    bool has_triangles_ = false;
 };
 
 bool read_model_vertices(std::string_view run, const MeshText& text, std::span<Point3> vertices) {

@@ -21,6 +21,8 @@ inline constexpr std::string_view materials = "http://schemas.microsoft.com/3dma
 
 /// Of the relationship by which a package names its model.
 inline constexpr std::string_view model_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+/// Where nearly all packages have it.
+inline constexpr std::string_view usual_root = "3D/3dmodel.model";
 
 /// The millimetres of a unit by its name, if it is one.
 [[nodiscard]] inline std::optional<double> unit_mm(std::string_view name) noexcept {
