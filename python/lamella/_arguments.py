@@ -194,3 +194,26 @@ def listener(progress: Any) -> Optional[Progress]:
     if progress is not None and not callable(progress):
         refuse_type("progress", "a function of (stage, done, total)", progress)
     return progress  # type: ignore[no-any-return]
+
+
+def reading(
+    file: Any,
+    unit_mm: Any,
+    strict: Any,
+    supports: Any,
+    max_triangles: Any,
+    max_memory: Any,
+    threads: Any,
+    progress: Any,
+) -> Tuple[bytes, Optional[float], bool, bool, int, int, int, Optional[Progress]]:
+    """Those of a file that may hold a mesh."""
+    return (
+        path("path", file),
+        optional(positive, "unit_mm", unit_mm),
+        flag("strict", strict),
+        flag("supports", supports),
+        whole("max_triangles", max_triangles),
+        whole("max_memory", max_memory),
+        thread_count(threads),
+        listener(progress),
+    )

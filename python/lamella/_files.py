@@ -79,14 +79,7 @@ def read(
     expected.
     """
     read, warnings = _lamella.read_any(
-        check.path("path", path),
-        check.optional(check.positive, "unit_mm", unit_mm),
-        check.flag("strict", strict),
-        check.flag("supports", supports),
-        check.whole("max_triangles", max_triangles),
-        check.whole("max_memory", max_memory),
-        check.thread_count(threads),
-        check.listener(progress),
+        *check.reading(path, unit_mm, strict, supports, max_triangles, max_memory, threads, progress)
     )
     warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
     return read

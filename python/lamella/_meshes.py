@@ -75,14 +75,7 @@ def read_mesh(
     progress: Optional[Progress] = None,
 ) -> Mesh:
     mesh = _lamella.read_mesh(
-        check.path("path", path),
-        check.optional(check.positive, "unit_mm", unit_mm),
-        check.flag("strict", strict),
-        check.flag("supports", supports),
-        check.whole("max_triangles", max_triangles),
-        check.whole("max_memory", max_memory),
-        check.thread_count(threads),
-        check.listener(progress),
+        *check.reading(path, unit_mm, strict, supports, max_triangles, max_memory, threads, progress)
     )
     warn(f"{mesh.path}: {warning}" for warning in mesh.warnings)
     return mesh
