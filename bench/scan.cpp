@@ -149,11 +149,12 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     job.slice = seconds_since(slicing);
     const auto scanning = Clock::now();
     std::vector<Layer> reversed(layers.rbegin(), layers.rend());
+    ScanMemory memory;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::size_t below = std::min<std::size_t>(i, strategy.downskin.layers);
         const std::size_t above = std::min<std::size_t>(layers.size() - 1 - i, strategy.upskin.layers);
         for (const Layer& vectors : scan(layers[i], std::span(reversed).subspan(layers.size() - i, below),
-                                         std::span(layers).subspan(i + 1, above), strategy))
+                                         std::span(layers).subspan(i + 1, above), strategy, &memory))
             job.vectors += vectors.points.size() + vectors.hatches.size() / 2;
     }
     job.scan = seconds_since(scanning);

@@ -33,8 +33,8 @@ std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const S
 }
 
 PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
-                        const ScanStrategy& strategy) {
-    assert(supports.size() == plane.parts.size());
+                        const ScanStrategy& strategy, std::vector<ScanMemory>& memories) {
+    assert(supports.size() == plane.parts.size() && memories.size() == plane.parts.size());
     const std::vector<Exposure> each = plane_exposures(supports, strategy);
     const auto of_supports = static_cast<std::size_t>(
         std::find_if(each.begin(), each.end(),
@@ -44,9 +44,10 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
     vectors.figures.resize(each.size());
     std::optional<Point2> beam;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
-        std::vector<Layer> scanned = supports[part] ? scan_support(plane.parts[part], strategy)
+        ScanMemory* const memory = &memories[part];
+        std::vector<Layer> scanned = supports[part] ? scan_support(plane.parts[part], strategy, memory)
                                                     : scan(plane.parts[part], layers_of(part, plane.below),
-                                                           layers_of(part, plane.above), strategy);
+                                                           layers_of(part, plane.above), strategy, memory);
         const std::size_t first = supports[part] ? of_supports : 0;
         assert(scanned.size() == (supports[part] ? each.size() : of_supports) - first);
         for (std::size_t i = 0; i < scanned.size(); ++i) {

@@ -29,8 +29,8 @@ struct PlaneVectors {
 [[nodiscard]] std::vector<Exposure> plane_exposures(const std::vector<bool>& supports,
                                                     const ScanStrategy& strategy);
 
-/// See `scan`. The beam goes through the parts one after the other.
+/// See `scan`. The beam goes through the parts one after the other. `memories`: of each part.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
-                                      const ScanStrategy& strategy);
+                                      const ScanStrategy& strategy, std::vector<ScanMemory>& memories);
 
 } // namespace lamella

@@ -68,12 +68,13 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
     for (Exposure& exposure : plane_exposures(supports, strategy))
         result.exposures.push_back({std::move(exposure), {}});
     result.layers.resize(stacks.size());
+    std::vector<ScanMemory> memories(supports.size());
     std::atomic<std::uint64_t> nanoseconds{0};
     const std::unique_ptr<LayerWriter> writer =
         open_layer_writer(path, format, with_exposures(info, strategy), options);
     const auto vectors_of = [&](std::size_t i) {
         const Stopwatch scanning;
-        PlaneVectors vectors = scan_plane(stacks.plane(i, strategy), supports, strategy);
+        PlaneVectors vectors = scan_plane(stacks.plane(i, strategy), supports, strategy, memories);
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
                               std::memory_order_relaxed);
         result.layers[i] = std::move(vectors.figures);

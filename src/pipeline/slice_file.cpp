@@ -290,8 +290,8 @@ class LayerWay {
     /// part whether it is one.
     LayerWay(const FileJob& job, const Plan& plan, PlaneRange sliced, PlaneRange mine,
              const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output)
-        : job_(job), supports_(supports), first_index_(plan.layers.front().index), mine_(mine),
-          totals_(totals), output_(output),
+        : job_(job), supports_(supports), memories_(supports.size()), first_index_(plan.layers.front().index),
+          mine_(mine), totals_(totals), output_(output),
           window_(sliced, mine, job.scan ? job.scan->downskin.layers : 0,
                   job.scan ? job.scan->upskin.layers : 0,
                   [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {}
@@ -346,7 +346,7 @@ class LayerWay {
 
     std::vector<Layer> vectors_of(const PlaneLayers& plane) {
         const Stopwatch scanning;
-        PlaneVectors vectors = scan_plane(plane, supports_, *job_.scan);
+        PlaneVectors vectors = scan_plane(plane, supports_, *job_.scan, memories_);
         count(scanning, scan_nanoseconds_);
         totals_.add(plane.parts.front().index, vectors.figures);
         return std::move(vectors.layers);
@@ -354,6 +354,7 @@ class LayerWay {
 
     const FileJob& job_;
     const std::vector<bool>& supports_;
+    std::vector<ScanMemory> memories_; ///< of each part
     std::uint64_t first_index_;
     PlaneRange mine_;
     LayerTotals& totals_;

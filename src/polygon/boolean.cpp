@@ -4,9 +4,9 @@
 #include "lamella/polygon/fill.hpp"
 
 #include "polygon/box2.hpp"
-#include "polygon/subtract_common.hpp"
 #include "polygon/material.hpp"
 #include "polygon/overlay.hpp"
+#include "polygon/subtract_common.hpp"
 #include "polygon/windings.hpp"
 
 #include <cassert>

@@ -76,6 +76,42 @@ class Groups {
     std::uint64_t news_ = 0;
 };
 
+/// Puts all rings in groups, connected by boxes that meet.
+void group_by_boxes(const MonotoneChains& chains, Groups& groups) {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t ring = 0; ring < chains.rings(); ++ring)
+        if (!chains.of_ring(ring).empty())
+            order.push_back(ring);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(chains.box(a).x0, a) < std::tie(chains.box(b).x0, b);
+    });
+    // What is open at the sweep's abscissa, by the groups' intervals of y: disjoint, or they would be
+    // one.
+    struct Open {
+        double y0;
+        double y1;
+        double x1;
+        std::uint32_t ring;
+    };
+    const auto by_y = [](const Open& a, const Open& b) {
+        return a.y1 < b.y0;
+    };
+    std::set<Open, decltype(by_y)> open(by_y);
+    for (const std::uint32_t ring : order) {
+        Open here{chains.box(ring).y0, chains.box(ring).y1, chains.box(ring).x1, ring};
+        groups.connect(ring, ring);
+        for (auto other = open.find(here); other != open.end(); other = open.find(here)) {
+            if (other->x1 >= chains.box(ring).x0) {
+                groups.connect(ring, other->ring);
+                here = {std::min(here.y0, other->y0), std::max(here.y1, other->y1),
+                        std::max(here.x1, other->x1), ring};
+            }
+            open.erase(other);
+        }
+        open.insert(here);
+    }
+}
+
 class ContactSearch {
   public:
     ContactSearch(const Layer& layer, const MonotoneChains& chains)
@@ -84,7 +120,7 @@ class ContactSearch {
     Contacts run(const ChainGrid* grid) && {
         const bool searched = grid != nullptr && search(*grid);
         if (!searched && !all_.all().empty() && (found_ || !free_of_contacts()))
-            group_by_boxes();
+            group_by_boxes(all_, groups_);
         return groups_.contacts();
     }
 
@@ -297,42 +333,6 @@ class ContactSearch {
         }
         assert(status.empty());
         return true;
-    }
-
-    /// Puts all rings in groups, connected by boxes that meet.
-    void group_by_boxes() {
-        std::vector<std::uint32_t> order;
-        for (std::uint32_t ring = 0; ring < layer_.rings; ++ring)
-            if (!all_.of_ring(ring).empty())
-                order.push_back(ring);
-        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return std::tie(all_.box(a).x0, a) < std::tie(all_.box(b).x0, b);
-        });
-        // What is open at the sweep's abscissa, by the groups' intervals of y: disjoint, or they would be
-        // one.
-        struct Open {
-            double y0;
-            double y1;
-            double x1;
-            std::uint32_t ring;
-        };
-        const auto by_y = [](const Open& a, const Open& b) {
-            return a.y1 < b.y0;
-        };
-        std::set<Open, decltype(by_y)> open(by_y);
-        for (const std::uint32_t ring : order) {
-            Open here{all_.box(ring).y0, all_.box(ring).y1, all_.box(ring).x1, ring};
-            groups_.connect(ring, ring);
-            for (auto other = open.find(here); other != open.end(); other = open.find(here)) {
-                if (other->x1 >= all_.box(ring).x0) {
-                    groups_.connect(ring, other->ring);
-                    here = {std::min(here.y0, other->y0), std::max(here.y1, other->y1),
-                            std::max(here.x1, other->x1), ring};
-                }
-                open.erase(other);
-            }
-            open.insert(here);
-        }
     }
 
     const Layer& layer_;

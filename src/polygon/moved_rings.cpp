@@ -49,9 +49,10 @@ struct MovedSide {
 
 /// Between a side and the next one.
 struct Turn {
-    double sine = 0; ///< positive where strips part
-    double cosine = 1;
-    double cut = 0; ///< how much of both sides is cut off where strips overlap
+    double sine; ///< positive to the left
+    double cosine;
+    double
+        mitre; ///< 1 / (1 + cosine), infinite for a fold: corners of parallels lie at that times both normals
 };
 
 /// Where a moved side ends.
@@ -101,19 +102,79 @@ double arc_tolerance(double reach, const OffsetCorners& corners) noexcept {
     return std::max(corners.arc_tolerance_mm, reach / 4096);
 }
 
+Point2 with_length(double length, const Point2& p) noexcept {
+    return (length / std::sqrt(p.x * p.x + p.y * p.y)) * p;
+}
+
+/// Puts the points between corner + n and corner + m on the arc of this radius around the corner. `cosine`:
+/// of the angle between them. `tolerance`: of chords.
+void add_arc(const Point2& corner, const Point2& n, const Point2& m, double radius, double cosine,
+             double tolerance, std::vector<Point2>& out) {
+    const double half = std::sqrt((1 + cosine) / 2);
+    if (radius * (1 - half) <= tolerance)
+        return;
+    const Point2 middle = with_length(radius, n + m);
+    add_arc(corner, n, middle, radius, half, tolerance, out);
+    out.push_back(corner + middle);
+    add_arc(corner, middle, m, radius, half, tolerance, out);
+}
+
+/// The sides of a ring, and how it turns between them: what is the same for all distances.
+class RingSides {
+  public:
+    void look_at(std::span<const Point2> ring) {
+        sides_.clear();
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Point2& a = ring[i];
+            const Point2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
+            if (a != b)
+                sides_.push_back(side_between(a, b));
+        }
+        turns_.resize(sides_.size());
+        for (std::size_t i = 0; i < sides_.size(); ++i) {
+            const Point2& u = sides_[i].direction;
+            const Point2& v = sides_[after(i)].direction;
+            const double cosine = u.x * v.x + u.y * v.y;
+            turns_[i] = {u.x * v.y - u.y * v.x, cosine, 1 / (1 + cosine)};
+        }
+    }
+
+    [[nodiscard]] std::size_t size() const noexcept { return sides_.size(); }
+    [[nodiscard]] const MovedSide& operator[](std::size_t i) const noexcept { return sides_[i]; }
+    /// Behind a side.
+    [[nodiscard]] const Turn& turn(std::size_t i) const noexcept { return turns_[i]; }
+    [[nodiscard]] std::size_t after(std::size_t i) const noexcept {
+        return i + 1 == sides_.size() ? 0 : i + 1;
+    }
+    [[nodiscard]] std::size_t before(std::size_t i) const noexcept {
+        return (i == 0 ? sides_.size() : i) - 1;
+    }
+    [[nodiscard]] std::size_t longest() const noexcept {
+        const auto shorter = [](const MovedSide& a, const MovedSide& b) {
+            return a.length < b.length;
+        };
+        return static_cast<std::size_t>(std::max_element(sides_.begin(), sides_.end(), shorter) -
+                                        sides_.begin());
+    }
+
+  private:
+    std::vector<MovedSide> sides_;
+    std::vector<Turn> turns_;
+};
+
 class RingMover {
   public:
     /// `rounding`: how far off places may be.
-    RingMover(double distance, const OffsetCorners& corners, double rounding)
-        : distance_(distance), reach_(std::abs(distance)), corners_(corners),
+    RingMover(const RingSides& sides, double distance, const OffsetCorners& corners, double rounding)
+        : sides_(sides), distance_(distance), reach_(std::abs(distance)), corners_(corners),
           least_mitre_(2 / (corners.mitre_limit * corners.mitre_limit)),
           tolerance_(arc_tolerance(reach_, corners)), rounding_(rounding) {}
 
-    void move(std::span<const Point2> ring, std::vector<Point2>& out) {
-        find_sides(ring);
+    /// The ring of the sides as they are now.
+    void move(std::vector<Point2>& out) {
         if (sides_.size() < 2)
             return;
-        find_turns();
+        find_cuts();
         if (all_stay()) {
             for (std::size_t i = 0; i < sides_.size(); ++i)
                 turn_from(i, out);
@@ -127,40 +188,25 @@ class RingMover {
     }
 
   private:
-    [[nodiscard]] std::size_t after(std::size_t i) const noexcept {
-        return i + 1 == sides_.size() ? 0 : i + 1;
-    }
-    [[nodiscard]] std::size_t before(std::size_t i) const noexcept {
-        return (i == 0 ? sides_.size() : i) - 1;
+    [[nodiscard]] std::size_t after(std::size_t i) const noexcept { return sides_.after(i); }
+
+    /// Positive where strips part behind a side.
+    [[nodiscard]] double parting(std::size_t i) const noexcept {
+        return distance_ > 0 ? sides_.turn(i).sine : -sides_.turn(i).sine;
     }
 
-    void find_sides(std::span<const Point2> ring) {
-        sides_.clear();
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Point2& a = ring[i];
-            const Point2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
-            if (a != b)
-                sides_.push_back(side_between(a, b));
-        }
-    }
-
-    void find_turns() {
-        turns_.resize(sides_.size());
+    void find_cuts() {
+        cuts_.resize(sides_.size());
         for (std::size_t i = 0; i < sides_.size(); ++i) {
-            const Point2& u = sides_[i].direction;
-            const Point2& v = sides_[after(i)].direction;
-            const double sine = u.x * v.y - u.y * v.x;
-            const double cosine = u.x * v.x + u.y * v.y;
-            Turn& turn = turns_[i];
-            turn = {distance_ > 0 ? sine : -sine, cosine, 0};
-            if (turn.sine < 0)
-                turn.cut = reach_ * -turn.sine / (1 + cosine); // infinite, or not a number, for a fold
+            const double sine = parting(i);
+            // Infinite, or not a number, for a fold.
+            cuts_[i] = sine < 0 ? reach_ * -sine * sides_.turn(i).mitre : 0;
         }
     }
 
     /// Whether what is cut off a side at both ends leaves some of it.
     [[nodiscard]] bool stays(std::size_t i) const noexcept {
-        return turns_[before(i)].cut + turns_[i].cut <= sides_[i].length;
+        return cuts_[sides_.before(i)] + cuts_[i] <= sides_[i].length;
     }
 
     [[nodiscard]] bool all_stay() const noexcept {
@@ -172,8 +218,8 @@ class RingMover {
 
     /// Whether strips do not part after a side, or by no more than rounding.
     [[nodiscard]] bool goes_on(std::size_t i) const noexcept {
-        const Turn& turn = turns_[i];
-        return turn.sine < 0 || (turn.cosine > 0 && reach_ * turn.sine <= rounding_);
+        const double sine = parting(i);
+        return sine < 0 || (sides_.turn(i).cosine > 0 && reach_ * sine <= rounding_);
     }
 
     /// Looks for rows of sides between corners where strips part.
@@ -183,7 +229,7 @@ class RingMover {
         while (first < n && goes_on(first))
             ++first;
         if (first == n) { // all around: from the longest side to itself
-            first = longest_side();
+            first = sides_.longest();
             shorten_row(first, n + 1);
             return;
         }
@@ -244,10 +290,10 @@ class RingMover {
         const Point2 n = distance_ * right_of(a.direction);
         const Point2 m = distance_ * right_of(b.direction);
         if (j == after(i)) {
-            const Turn& turn = turns_[i];
+            const Turn& turn = sides_.turn(i);
             if (!(1 + turn.cosine > 1e-6))
                 return std::nullopt;
-            return Met{b.from + (1 / (1 + turn.cosine)) * (n + m), a.length - turn.cut, turn.cut};
+            return Met{b.from + turn.mitre * (n + m), a.length - cuts_[i], cuts_[i]};
         }
         const double sine = a.direction.x * b.direction.y - a.direction.y * b.direction.x;
         if (!((distance_ > 0 ? sine : -sine) < -1e-6))
@@ -278,7 +324,7 @@ class RingMover {
     void put_ends(std::vector<Point2>& out) {
         ring_.clear();
         corner_points_.clear();
-        std::size_t i = longest_side();
+        std::size_t i = sides_.longest();
         for (std::size_t k = 0; k < sides_.size(); ++k, i = after(i)) {
             ends_points_.clear();
             if (ends_[i] == SideEnd::meeting)
@@ -292,34 +338,27 @@ class RingMover {
         add_without_swallowtails(ring_, corner_points_, distance_, out);
     }
 
-    [[nodiscard]] std::size_t longest_side() const noexcept {
-        const auto shorter = [](const MovedSide& a, const MovedSide& b) {
-            return a.length < b.length;
-        };
-        return static_cast<std::size_t>(std::max_element(sides_.begin(), sides_.end(), shorter) -
-                                        sides_.begin());
-    }
-
     /// Puts what follows the moved side i, up to the beginning of the next one.
     void turn_from(std::size_t i, std::vector<Point2>& out) const {
         const MovedSide& side = sides_[i];
         const MovedSide& next = sides_[after(i)];
-        const Turn& turn = turns_[i];
+        const Turn& turn = sides_.turn(i);
+        const double sine = parting(i);
         const Point2 n = distance_ * right_of(side.direction);
         const Point2 m = distance_ * right_of(next.direction);
         const Point2& corner = next.from;
-        if (turn.sine == 0 && turn.cosine > 0) {
+        if (sine == 0 && turn.cosine > 0) {
             out.push_back(corner + m);
-        } else if (turn.sine < 0) {
+        } else if (sine < 0) {
             if (short_cut(i)) {
-                out.push_back(corner + (1 / (1 + turn.cosine)) * (n + m));
+                out.push_back(corner + turn.mitre * (n + m));
             } else {
                 out.push_back(corner + n);
                 out.push_back(corner);
                 out.push_back(corner + m);
             }
         } else {
-            join(corner, n, m, side.direction, next.direction, turn.cosine, out);
+            join(corner, n, m, side.direction, next.direction, turn, out);
         }
     }
 
@@ -327,18 +366,18 @@ class RingMover {
         if (!stays(i) || !stays(after(i)))
             return false;
         // Bevels leave places without a wedge that are nearest to a corner: there, both strips must be.
-        const Turn& turn = turns_[i];
         return corners_.shape != OffsetCorner::bevel ||
-               (turn.cosine >= 0 &&
-                reach_ * -turn.sine <= std::min(sides_[i].length, sides_[after(i)].length));
+               (sides_.turn(i).cosine >= 0 &&
+                reach_ * -parting(i) <= std::min(sides_[i].length, sides_[after(i)].length));
     }
 
     /// Around a wedge, from corner + n to corner + m. u and v: the directions of both sides.
     void join(const Point2& corner, const Point2& n, const Point2& m, const Point2& u, const Point2& v,
-              double cosine, std::vector<Point2>& out) const {
+              const Turn& turn, std::vector<Point2>& out) const {
+        const double cosine = turn.cosine;
         if (corners_.shape == OffsetCorner::mitre) {
             if (1 + cosine >= least_mitre_) {
-                out.push_back(corner + (1 / (1 + cosine)) * (n + m));
+                out.push_back(corner + turn.mitre * (n + m));
                 return;
             }
             // The tangent of a quarter of the turn: how far along it to where the sides are cut off.
@@ -351,14 +390,14 @@ class RingMover {
         if (corners_.shape == OffsetCorner::round) {
             const double half = std::sqrt(std::max(0.0, (1 + cosine) / 2)); // cosine of half the turn
             if (reach_ * (1 - half) <= tolerance_ * half) {
-                out.push_back(corner + (1 / (1 + cosine)) * (n + m));
+                out.push_back(corner + turn.mitre * (n + m));
                 return;
             }
             out.push_back(corner + n);
-            const Point2 middle = cosine > 0 ? n + m : reach_ * (u + -1 * v);
-            add_arc(corner, n, with_length(middle), half, out);
-            out.push_back(corner + with_length(middle));
-            add_arc(corner, with_length(middle), m, half, out);
+            const Point2 middle = with_length(reach_, cosine > 0 ? n + m : reach_ * (u + -1 * v));
+            add_arc(corner, n, middle, reach_, half, tolerance_, out);
+            out.push_back(corner + middle);
+            add_arc(corner, middle, m, reach_, half, tolerance_, out);
             out.push_back(corner + m);
             return;
         }
@@ -366,30 +405,14 @@ class RingMover {
         out.push_back(corner + m);
     }
 
-    [[nodiscard]] Point2 with_length(const Point2& p) const noexcept {
-        return (reach_ / std::sqrt(p.x * p.x + p.y * p.y)) * p;
-    }
-
-    /// The points between n and m on the arc around the corner. `cosine`: of the angle between them.
-    void add_arc(const Point2& corner, const Point2& n, const Point2& m, double cosine,
-                 std::vector<Point2>& out) const {
-        const double half = std::sqrt((1 + cosine) / 2);
-        if (reach_ * (1 - half) <= tolerance_)
-            return;
-        const Point2 middle = with_length(n + m);
-        add_arc(corner, n, middle, half, out);
-        out.push_back(corner + middle);
-        add_arc(corner, middle, m, half, out);
-    }
-
+    const RingSides& sides_;
     double distance_;
     double reach_;
     const OffsetCorners& corners_;
     double least_mitre_; ///< the least 1 + cosine of a turn with a mitre
     double tolerance_;   ///< of chords
     double rounding_;
-    std::vector<MovedSide> sides_;
-    std::vector<Turn> turns_;
+    std::vector<double> cuts_; ///< how much of both sides is cut off behind a side, where strips overlap
     std::vector<SideEnd> ends_;
     std::vector<Point2> meetings_; ///< for sides that end in one
     std::vector<RowSide> row_;
@@ -412,21 +435,33 @@ double surely_swept(double distance, const OffsetCorners& corners) noexcept {
     }
 }
 
-Layer moved_rings(const Layer& layer, double distance, const OffsetCorners& corners,
-                  const std::vector<bool>& gone) {
-    Layer moved{.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
-    std::vector<Point2> points;
-    points.reserve(layer.points.size() + layer.points.size() / 8);
-    moved.offsets.reserve(layer.rings + 1);
+std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> distances,
+                               const OffsetCorners& corners, std::span<const std::vector<bool>> gone) {
+    assert(gone.size() == distances.size());
     const std::span<const Point2> all = layer.points.span().first(layer.offsets[layer.rings]);
-    RingMover mover(distance, corners, ClippingGrid(all, 2 * std::abs(distance)).unit());
-    for (std::size_t i = 0; i < layer.rings; ++i) {
-        if (!gone[i])
-            mover.move(layer.contour(i), points);
-        moved.offsets.push_back(points.size());
+    const Layer head{.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
+    std::vector<Layer> moved(distances.size(), head);
+    std::vector<std::vector<Point2>> points(distances.size());
+    RingSides sides;
+    std::vector<RingMover> movers;
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+        movers.emplace_back(sides, distances[k], corners,
+                            ClippingGrid(all, 2 * std::abs(distances[k])).unit());
+        points[k].reserve(layer.points.size() + layer.points.size() / 8);
+        moved[k].offsets.reserve(layer.rings + 1);
     }
-    moved.points = PointArray(std::move(points));
-    moved.rings = layer.rings;
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        sides.look_at(layer.contour(i));
+        for (std::size_t k = 0; k < distances.size(); ++k) {
+            if (!gone[k][i])
+                movers[k].move(points[k]);
+            moved[k].offsets.push_back(points[k].size());
+        }
+    }
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+        moved[k].points = PointArray(std::move(points[k]));
+        moved[k].rings = layer.rings;
+    }
     return moved;
 }
 

@@ -7,14 +7,16 @@
 
 #include "polygon/boundary.hpp"
 #include "polygon/box2.hpp"
+#include "polygon/clipping_grid.hpp"
 #include "polygon/moved_rings.hpp"
 #include "polygon/overlay.hpp"
+#include "polygon/straight_points.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <iterator>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -37,8 +39,9 @@ void check(std::span<const double> distances, const OffsetCorners& corners) {
 /// The boundaries of a layer's material, without walls, and what they bound.
 class Boundaries {
   public:
-    explicit Boundaries(const Layer& layer) : layer_(layer) {
-        const Overlay overlay(layer);
+    explicit Boundaries(const Layer& layer)
+        : layer_(without_straight_points(layer, ClippingGrid(layer.points.span()).unit())) {
+        const Overlay overlay(layer_);
         if (overlay.clean()) {
             polygons_ = polygons(overlay.nest());
             return;
@@ -48,13 +51,22 @@ class Boundaries {
     }
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
-    [[nodiscard]] Layer moved(double distance, const OffsetCorners& corners, std::uint64_t* vanished) const {
-        const std::vector<bool> gone = surely_gone(distance, corners);
-        const Layer rings = moved_rings(layer_, distance, corners, gone);
-        Overlaid overlaid = Overlay(rings).filled(Material(FillRule::positive), Walls::dissolved);
-        if (vanished != nullptr)
-            *vanished = vanished_rings(rings, overlaid.fates, gone, distance);
-        return with_chains(std::move(overlaid.filled.layer));
+    /// `vanished`: for each distance, where given.
+    [[nodiscard]] std::vector<Layer> moved(std::span<const double> distances, const OffsetCorners& corners,
+                                           std::uint64_t* vanished = nullptr) const {
+        std::vector<std::vector<bool>> gone;
+        for (const double distance : distances)
+            gone.push_back(surely_gone(distance, corners));
+        std::vector<Layer> all = moved_rings(layer_, distances, corners, gone);
+        std::vector<Layer> result;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const Layer rings = std::move(all[k]);
+            Overlaid overlaid = Overlay(rings).filled(Material(FillRule::positive), Walls::dissolved);
+            if (vanished != nullptr)
+                vanished[k] = vanished_rings(rings, overlaid.fates, gone[k], distances[k]);
+            result.push_back(with_chains(std::move(overlaid.filled.layer)));
+        }
+        return result;
     }
 
   private:
@@ -160,23 +172,22 @@ Layer offset(const Layer& layer, double distance, const OffsetCorners& corners, 
         *vanished = 0;
     if (distance == 0 || layer.rings == 0)
         return layer;
-    return Boundaries(layer).moved(distance, corners, vanished);
+    return Boundaries(layer).moved({&distance, 1}, corners, vanished).front();
 }
 
 std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
                            const OffsetCorners& corners) {
     check(distances, corners);
+    std::vector<double> others;
+    std::copy_if(distances.begin(), distances.end(), std::back_inserter(others),
+                 [](double distance) { return distance != 0; });
+    std::vector<Layer> moved;
+    if (layer.rings > 0 && !others.empty())
+        moved = Boundaries(layer).moved(others, corners);
     std::vector<Layer> result;
-    std::optional<Boundaries> boundaries;
-    for (const double distance : distances) {
-        if (distance == 0 || layer.rings == 0) {
-            result.push_back(layer);
-            continue;
-        }
-        if (!boundaries)
-            boundaries.emplace(layer);
-        result.push_back(boundaries->moved(distance, corners, nullptr));
-    }
+    std::size_t next = 0;
+    for (const double distance : distances)
+        result.push_back(distance == 0 || layer.rings == 0 ? layer : std::move(moved[next++]));
     return result;
 }
 

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lamella {
 
@@ -21,6 +22,12 @@ struct RankedPoint {
     double v;
     std::int32_t rank; ///< how many of the layer's lines lie below it
 };
+
+/// Of numbers within 2^52. (std::ceil is a call.)
+std::int64_t rounded_up(double number) noexcept {
+    const auto towards_zero = static_cast<std::int64_t>(number);
+    return towards_zero + static_cast<std::int64_t>(static_cast<double>(towards_zero) < number);
+}
 
 /// For few values: most lines meet a part a few times.
 void sort_ends(std::span<double> ends) {
@@ -69,39 +76,38 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance)
                         layer.index, distance, most - least));
     first_ = static_cast<std::int64_t>(below);
     for (RankedPoint& p : points)
-        p.rank = static_cast<std::int32_t>(std::ceil(p.v / distance) - below);
+        p.rank = static_cast<std::int32_t>(rounded_up(p.v / distance) - first_);
 
     // Count, sum up, put: each edge into the lines that it meets.
-    const auto for_edges = [&](const auto& meet) {
+    const auto for_edges = [&](const auto& visit) {
         for (std::size_t ring = 0; ring < layer.rings; ++ring) {
             const RankedPoint* from = &points[layer.offsets[ring + 1] - 1];
             for (std::size_t i = layer.offsets[ring]; i < layer.offsets[ring + 1]; ++i) {
                 const RankedPoint* to = &points[i];
-                if (from->rank != to->rank)
-                    meet(*from, *to);
+                visit(*from, *to);
                 from = to;
             }
         }
     };
-    std::uint64_t ends = 0;
+    // By how many edges more than the one below it a line is met; then where its ends begin.
+    begins_.assign(static_cast<std::size_t>(lines) + 1, 0);
     for_edges([&](const RankedPoint& a, const RankedPoint& b) {
-        ends += static_cast<std::uint64_t>(std::abs(std::int64_t{a.rank} - b.rank));
+        ++begins_[static_cast<std::size_t>(std::min(a.rank, b.rank))];
+        --begins_[static_cast<std::size_t>(std::max(a.rank, b.rank))];
     });
+    std::uint64_t ends = 0;
+    std::uint32_t here = 0;
+    for (std::uint32_t& begin : begins_) {
+        here += std::exchange(begin, static_cast<std::uint32_t>(ends));
+        ends += here;
+    }
+    assert(here == 0);
     if (ends > 2 * most_lines)
         throw Error(
             ErrorKind::limit,
             fmt::format("layer {}: {} lines are more than the limit of 2^26; hatch at a larger distance "
                         "than {:g} mm",
                         layer.index, ends / 2, distance));
-    begins_.assign(static_cast<std::size_t>(lines) + 1, 0);
-    for_edges([&](const RankedPoint& a, const RankedPoint& b) {
-        const auto [first, last] = std::minmax(a.rank, b.rank);
-        for (std::int32_t line = first; line < last; ++line)
-            ++begins_[static_cast<std::size_t>(line) + 1];
-    });
-    for (std::size_t i = 1; i < begins_.size(); ++i)
-        begins_[i] += begins_[i - 1];
-    assert(begins_.back() == ends);
 
     ends_.resize(ends);
     std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);

@@ -4,6 +4,8 @@
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
+#include "polygon/clipping_grid.hpp"
+#include "polygon/straight_points.hpp"
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
 #include "scan/skin.hpp"
@@ -18,57 +20,96 @@ namespace lamella {
 
 namespace {
 
+Layer with_head_of(const Layer& head, Layer layer) {
+    layer.index = head.index;
+    layer.z = head.z;
+    layer.bottom = head.bottom;
+    layer.top = head.top;
+    return layer;
+}
+
+/// By how much the material of a layer is to be moved.
+std::vector<double> distances_of(const ScanStrategy& strategy) {
+    std::vector<double> distances;
+    const auto want = [&](double depth) {
+        if (std::find(distances.begin(), distances.end(), -depth) == distances.end())
+            distances.push_back(-depth);
+    };
+    const ContourRule& contours = strategy.contours;
+    for (std::uint32_t i = 1; i <= contours.count; ++i)
+        want(contour_depth(contours, i));
+    want(hatch_depth(contours, strategy.hatch));
+    if (strategy.upskin.layers > 0)
+        want(hatch_depth(contours, strategy.upskin.hatch));
+    if (strategy.downskin.layers > 0)
+        want(hatch_depth(contours, strategy.downskin.hatch));
+    return distances;
+}
+
+} // namespace
+
 /// The material of a layer, moved inwards by several distances; each is computed once.
-class Insets {
-  public:
-    Insets(const Layer& layer, const ScanStrategy& strategy) : layer_(layer) {
-        const ContourRule& contours = strategy.contours;
-        for (std::uint32_t i = 1; i <= contours.count; ++i)
-            want(contour_depth(contours, i));
-        want(hatch_depth(contours, strategy.hatch));
-        if (strategy.upskin.layers > 0)
-            want(hatch_depth(contours, strategy.upskin.hatch));
-        if (strategy.downskin.layers > 0)
-            want(hatch_depth(contours, strategy.downskin.hatch));
-        moved_ = offsets(layer_, distances_, {});
-        for (std::size_t i = 0; i < distances_.size(); ++i)
-            if (distances_[i] == 0) // not looked at
-                moved_[i] = fill(layer_, FillRule::positive).layer;
+struct ScanMemory::Insets {
+    Insets(Layer of, std::vector<double> by)
+        : layer(std::move(of)), distances(std::move(by)), moved(offsets(layer, distances)) {
+        for (std::size_t i = 0; i < distances.size(); ++i)
+            if (distances[i] == 0) // not looked at
+                moved[i] = fill(layer, FillRule::positive).layer;
     }
 
-    [[nodiscard]] const Layer& contour(const ContourRule& rule, std::uint32_t number) const {
-        return at(contour_depth(rule, number));
-    }
-    [[nodiscard]] const Layer& hatched(const ContourRule& contours, const HatchRule& rule) const {
-        return at(hatch_depth(contours, rule));
-    }
-
-  private:
-    void want(double depth) {
-        if (std::find(distances_.begin(), distances_.end(), -depth) == distances_.end())
-            distances_.push_back(-depth);
+    /// Whether these are those of another layer, too.
+    [[nodiscard]] bool fit(const Layer& other, std::span<const double> by) const {
+        return layer.rings == other.rings && layer.offsets == other.offsets &&
+               std::equal(layer.points.begin(), layer.points.end(), other.points.begin(),
+                          other.points.end()) &&
+               std::equal(distances.begin(), distances.end(), by.begin(), by.end());
     }
     [[nodiscard]] const Layer& at(double depth) const {
-        const auto found = std::find(distances_.begin(), distances_.end(), -depth);
-        assert(found != distances_.end());
-        return moved_[static_cast<std::size_t>(found - distances_.begin())];
+        const auto found = std::find(distances.begin(), distances.end(), -depth);
+        assert(found != distances.end());
+        return moved[static_cast<std::size_t>(found - distances.begin())];
     }
 
-    const Layer& layer_;
-    std::vector<double> distances_;
-    std::vector<Layer> moved_;
+    Layer layer;
+    std::vector<double> distances;
+    std::vector<Layer> moved;
 };
+
+std::shared_ptr<const ScanMemory::Insets> ScanMemory::last() const {
+    const std::lock_guard lock(mutex_);
+    return last_;
+}
+
+void ScanMemory::keep(std::shared_ptr<const Insets> insets) {
+    const std::lock_guard lock(mutex_);
+    last_ = std::move(insets);
+}
+
+namespace {
+
+std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const ScanStrategy& strategy,
+                                                    ScanMemory* memory) {
+    Layer straight = without_straight_points(layer, ClippingGrid(layer.points.span()).unit());
+    std::vector<double> distances = distances_of(strategy);
+    if (memory != nullptr)
+        if (auto last = memory->last(); last && last->fit(straight, distances))
+            return last;
+    auto insets = std::make_shared<const ScanMemory::Insets>(std::move(straight), std::move(distances));
+    if (memory != nullptr)
+        memory->keep(insets);
+    return insets;
+}
 
 } // namespace
 
 std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below, std::span<const Layer> above,
-                        const ScanStrategy& strategy) {
+                        const ScanStrategy& strategy, ScanMemory* memory) {
     check_strategy(strategy);
-    const Insets insets(layer, strategy);
+    const auto insets = insets_of(layer, strategy, memory);
     const Skin downskin(layer, below, strategy.downskin);
     const Skin upskin(layer, above, strategy.upskin);
     const auto hatched = [&](const HatchRule& rule) -> const Layer& {
-        return insets.hatched(strategy.contours, rule);
+        return insets->at(hatch_depth(strategy.contours, rule));
     };
     const auto area = [&](ScanRegion region) {
         switch (region) {
@@ -88,12 +129,12 @@ std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below, std::s
     std::vector<Layer> result;
     for (const Exposure& exposure : exposures(strategy, {})) {
         if (exposure.kind == VectorKind::contour) {
-            const Layer& rings = insets.contour(strategy.contours, exposure.contour);
+            const Layer rings =
+                with_head_of(layer, insets->at(contour_depth(strategy.contours, exposure.contour)));
             result.push_back(followed(rings, strategy.contours, exposure.contour, strategy.seed));
             continue;
         }
-        Layer filled = area(exposure.region);
-        filled.index = layer.index;
+        const Layer filled = with_head_of(layer, area(exposure.region));
         Layer& vectors = result.emplace_back();
         vectors = {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
         vectors.hatches = hatch(filled, rule(exposure.region), strategy.seed);
@@ -102,9 +143,9 @@ std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below, std::s
 }
 
 // What is left of a part without skins, by other rules.
-std::vector<Layer> scan_support(const Layer& layer, const ScanStrategy& strategy) {
+std::vector<Layer> scan_support(const Layer& layer, const ScanStrategy& strategy, ScanMemory* memory) {
     check_strategy(strategy); // so that errors name fields of supports
-    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed));
+    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory);
 }
 
 } // namespace lamella

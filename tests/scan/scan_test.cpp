@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,6 +26,7 @@ using test::contours;
 using test::layer_of;
 using test::normal_layer;
 using test::Random;
+using test::random_material;
 using test::rectangle;
 using test::reversed;
 using test::rounds_within_reason;
@@ -257,6 +260,57 @@ TEST(Scan, DoesNotDependOnTheOrderOfRings) {
                                    again[i].hatches.end()));
         }
     }
+}
+
+TEST(Scan, WithAMemoryIsTheSame) {
+    ScanStrategy strategy;
+    strategy.contours.count = 2;
+    strategy.upskin.layers = strategy.downskin.layers = 1;
+    Random random(20261126);
+    std::vector<Layer> layers;
+    for (int i = 0; i < 60; ++i) {
+        Layer layer =
+            random.integer(0, 2) == 0 || layers.empty() ? random_material(random, 8) : layers.back();
+        layer.index = static_cast<std::uint64_t>(i);
+        layer.bottom = i;
+        layer.z = i + 0.5;
+        layer.top = i + 1;
+        layers.push_back(std::move(layer));
+    }
+    ScanMemory memory;
+    for (std::size_t i = 1; i + 1 < layers.size(); ++i) {
+        const std::span below(&layers[i - 1], 1);
+        const std::span above(&layers[i + 1], 1);
+        const std::vector<Layer> expected = scan(layers[i], below, above, strategy);
+        const std::vector<Layer> found = scan(layers[i], below, above, strategy, &memory);
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            EXPECT_EQ(contours(found[k]), contours(expected[k])) << i << ", " << k;
+            EXPECT_TRUE(std::equal(found[k].hatches.begin(), found[k].hatches.end(),
+                                   expected[k].hatches.begin(), expected[k].hatches.end()))
+                << i << ", " << k;
+            EXPECT_EQ(found[k].index, layers[i].index);
+            EXPECT_EQ(found[k].top, layers[i].top);
+        }
+    }
+}
+
+TEST(Scan, RemembersLayersThatDifferByStraightPoints) {
+    // As upright walls do, whose triangles are cut in other places on each layer.
+    const auto wall = [](double t) {
+        return layer_of({{{0, 0}, {10 * t, 0}, {10, 0}, {10, 10 * t}, {10, 10}, {0, 10}}});
+    };
+    ScanMemory memory;
+    const std::vector<Layer> first = scan(wall(0.25), {}, {}, {}, &memory);
+    const std::shared_ptr<const ScanMemory::Insets> kept = memory.last();
+    ASSERT_NE(kept, nullptr);
+    const std::vector<Layer> second = scan(wall(0.75), {}, {}, {}, &memory);
+    EXPECT_EQ(memory.last(), kept);
+    EXPECT_EQ(contours(first.back()), contours(second.back()));
+    ASSERT_EQ(first.back().rings, 1U);
+    EXPECT_EQ(first.back().contour(0).size(), 4U);
+    static_cast<void>(scan(layer_of({rectangle(0, 0, 10, 9)}), {}, {}, {}, &memory));
+    EXPECT_NE(memory.last(), kept);
 }
 
 TEST(Scan, RefusesAStrategyThatIsNotRight) {

@@ -38,12 +38,12 @@ struct OffsetCorners {
 /// 0.
 ///
 /// Sides are moved in parallel. Where two of them part, they are joined as `corners` say; by default they
-/// meet again in corners, so that parts keep their corners and contours their number of points, and a corner
-/// that would move by more than twice the distance (sharper than 60 degrees) is cut off. Where they run into
-/// one another, they end where they meet. What is grown is the material with a strip along each side and a
-/// wedge at each corner; what is shrunk is the material without these: exactly, but for the rounding of
-/// coordinates where sides meet, and, in rings that come to meet themselves or others, for at most some 2^-36
-/// of the layer's extent.
+/// meet again in corners, so that parts keep their corners, and a corner that would move by more than twice
+/// the distance (sharper than 60 degrees) is cut off. Where they run into one another, they end where they
+/// meet. What is grown is the material with a strip along each side and a wedge at each corner; what is
+/// shrunk is the material without these: exactly, but for the rounding of coordinates where sides meet, and
+/// for at most some 2^-36 of the layer's extent: in rings that come to meet themselves or others, and by
+/// points of rings on the straight way between others, which are left out.
 ///
 /// Open chains stay as they are. A distance of 0 gives the layer itself, bit for bit; other results have no
 /// hatches. `vanished`, where given, becomes the number of rings that nothing is left of: those of bodies
