@@ -6,6 +6,7 @@
 #include "command_line.hpp"
 #include "config_file.hpp"
 #include "failure.hpp"
+#include "heap.hpp"
 #include "help_text.hpp"
 #include "interrupt.hpp"
 #include "messages.hpp"
@@ -69,6 +70,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
 } // namespace
 
 int run_program(std::vector<Command> commands, const std::vector<std::string>& words, bool speaks) {
+    keep_freed_memory();
     Messages messages;
     if (!speaks)
         messages.set_style(ProgressStyle::silent);

@@ -3,11 +3,11 @@
 #include "lamella/core/error.hpp"
 
 #include "crash.hpp"
+#include "heap.hpp"
 #include "interrupt.hpp"
 #include "messages.hpp"
 
 #include <fmt/format.h>
-#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -33,15 +33,6 @@ constexpr std::size_t longest_answer = std::size_t{1} << 16; // far below what a
 [[noreturn]] void fail(int system_error) {
     throw Error(ErrorKind::limit, fmt::format("no further process can be started: {}; choose fewer --jobs",
                                               std::generic_category().message(system_error)));
-}
-
-/// What a large task took goes back to the system when it is done; else the allocator would learn from it to
-/// keep as much for ever.
-void return_memory() {
-    constexpr int own_pages = 4 << 20;
-    constexpr int kept = 8 << 20;
-    mallopt(M_MMAP_THRESHOLD, own_pages);
-    mallopt(M_TRIM_THRESHOLD, kept);
 }
 
 /// Whether all of it went; the other side may be gone.
@@ -121,7 +112,7 @@ void WorkerTeam::launch(Worker& worker) {
 }
 
 void WorkerTeam::serve(int socket) const {
-    return_memory();
+    return_freed_memory();
     {
         Messages messages;
         messages.set_style(ProgressStyle::silent);

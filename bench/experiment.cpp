@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -57,6 +58,9 @@ std::uint64_t run_in_child(const std::function<void(std::span<std::byte>)>& body
     have_memory_ready();
     const pid_t child = fork();
     if (child == 0) {
+        // As the program does (app/heap.cpp).
+        mallopt(M_MMAP_THRESHOLD, 32 << 20);
+        mallopt(M_TRIM_THRESHOLD, 64 << 20);
         try {
             body(result);
         } catch (const std::exception& error) {

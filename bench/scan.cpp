@@ -145,10 +145,11 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     const OpenedPart opened = open_part(part, {.threads = 1});
     Job job;
     const auto slicing = Clock::now();
-    const LayerStack layers = slice(opened.mesh, opened.plan, {.threads = 1});
+    const LayerStack sliced = slice(opened.mesh, opened.plan, {.threads = 1});
     job.slice = seconds_since(slicing);
     const auto scanning = Clock::now();
-    std::vector<Layer> reversed(layers.rbegin(), layers.rend());
+    const std::vector<ScanLayer> layers(sliced.begin(), sliced.end());
+    const std::vector<ScanLayer> reversed(layers.rbegin(), layers.rend());
     ScanMemory memory;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::size_t below = std::min<std::size_t>(i, strategy.downskin.layers);

@@ -85,10 +85,10 @@ py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* ab
     return cls;
 }
 
-std::vector<Layer> layers_of(const std::vector<LayerPointer>& shared) {
-    std::vector<Layer> layers;
+std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared) {
+    std::vector<ScanLayer> layers;
     for (const LayerPointer& layer : shared)
-        layers.push_back(layer->get());
+        layers.emplace_back(layer->get());
     return layers;
 }
 

@@ -36,7 +36,7 @@ PlaneRange LayerWindow::users(std::uint32_t plane) const noexcept {
 std::function<void()> LayerWindow::operator()(std::uint32_t plane, std::span<const Layer> parts) {
     assert(coming_.begin <= plane && plane < coming_.end);
     for (const Complete& complete :
-         store(plane, std::make_shared<const std::vector<Layer>>(parts.begin(), parts.end())))
+         store(plane, std::make_shared<const std::vector<ScanLayer>>(parts.begin(), parts.end())))
         work_on(complete);
     return [this, plane] {
         finish(plane);

@@ -39,7 +39,7 @@ class LayerWindow {
     [[nodiscard]] std::size_t held() const noexcept { return held_.size(); }
 
   private:
-    using Parts = std::shared_ptr<const std::vector<Layer>>;
+    using Parts = std::shared_ptr<const std::vector<ScanLayer>>;
     struct Held {
         Parts parts;
         std::uint32_t users; ///< planes that will ask for it still

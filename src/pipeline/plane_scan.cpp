@@ -12,10 +12,10 @@ namespace lamella {
 namespace {
 
 /// The layers of one part on several planes.
-std::vector<Layer> layers_of(std::size_t part, const std::vector<std::span<const Layer>>& planes) {
-    std::vector<Layer> layers;
+std::vector<ScanLayer> layers_of(std::size_t part, const std::vector<std::span<const ScanLayer>>& planes) {
+    std::vector<ScanLayer> layers;
     layers.reserve(planes.size());
-    for (const std::span<const Layer>& plane : planes)
+    for (const std::span<const ScanLayer>& plane : planes)
         layers.push_back(plane[part]);
     return layers;
 }

@@ -14,9 +14,9 @@ namespace lamella {
 
 /// The layers of all parts on a plane, and on those beneath it and on top, the nearest one first.
 struct PlaneLayers {
-    std::span<const Layer> parts;
-    std::vector<std::span<const Layer>> below = {};
-    std::vector<std::span<const Layer>> above = {};
+    std::span<const ScanLayer> parts;
+    std::vector<std::span<const ScanLayer>> below = {};
+    std::vector<std::span<const ScanLayer>> above = {};
 };
 
 struct PlaneVectors {

@@ -34,7 +34,7 @@ class Stacks {
             if (part.size() != planes_.size())
                 throw Error(ErrorKind::usage, "parts of one file must have the same planes");
             for (std::size_t i = 0; i < part.size(); ++i)
-                planes_[i].push_back(part[i]);
+                planes_[i].emplace_back(part[i]);
         }
     }
 
@@ -51,7 +51,7 @@ class Stacks {
     }
 
   private:
-    std::vector<std::vector<Layer>> planes_; ///< of all parts
+    std::vector<std::vector<ScanLayer>> planes_; ///< of all parts
 };
 
 } // namespace

@@ -348,7 +348,7 @@ class LayerWay {
         const Stopwatch scanning;
         PlaneVectors vectors = scan_plane(plane, supports_, *job_.scan, memories_);
         count(scanning, scan_nanoseconds_);
-        totals_.add(plane.parts.front().index, vectors.figures);
+        totals_.add(plane.parts.front().layer().index, vectors.figures);
         return std::move(vectors.layers);
     }
 

@@ -25,6 +25,16 @@ double degrees_of(const HatchRule& rule, std::uint64_t layer) noexcept {
     return std::fmod(rule.angle_degrees, 360) + std::fmod(turned, 360);
 }
 
+HatchLines lines_in(const HatchArea& area, double degrees, double distance) {
+    const CosSin angle = cos_sin_degrees(degrees);
+    HatchLines lines(area.within, angle, distance);
+    if (area.also_within != nullptr)
+        lines.intersect(HatchLines(*area.also_within, angle, distance));
+    for (const Layer* const other : area.without)
+        lines.subtract(HatchLines(*other, angle, distance));
+    return lines;
+}
+
 bool is_long_enough(double from, double to, const HatchRule& rule) noexcept {
     return to > from && to - from >= rule.shortest;
 }
@@ -181,17 +191,17 @@ void check_pieces(const HatchLines& lines, const Layer& area, const HatchRule& r
 
 } // namespace
 
-PointArray hatch(const Layer& area, const HatchRule& rule, std::uint64_t seed) {
-    const double degrees = degrees_of(rule, area.index);
+PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed) {
+    const double degrees = degrees_of(rule, area.within.index);
     if (rule.pattern == HatchPattern::lines || rule.pattern == HatchPattern::meander)
-        return PointArray(line_by_line(HatchLines(area, cos_sin_degrees(degrees), rule.distance), rule));
-    check_cells(area, rule);
+        return PointArray(line_by_line(lines_in(area, degrees, rule.distance), rule));
+    check_cells(area.within, rule);
     const bool stripes = rule.pattern == HatchPattern::stripes;
     const bool squares = rule.pattern == HatchPattern::chessboard;
     std::vector<HatchLines> lines; // in each direction
     for (unsigned turns = 0; turns < (stripes ? 1 : squares ? 2 : 3); ++turns) {
-        lines.emplace_back(area, cos_sin_degrees(degrees + turns * (squares ? 90 : 60)), rule.distance);
-        check_pieces(lines.back(), area, rule);
+        lines.push_back(lines_in(area, degrees + turns * (squares ? 90 : 60), rule.distance));
+        check_pieces(lines.back(), area.within, rule);
     }
     const auto cut = [&](const auto& add) {
         for (unsigned turns = 0; turns < lines.size(); ++turns) {
@@ -211,7 +221,7 @@ PointArray hatch(const Layer& area, const HatchRule& rule, std::uint64_t seed) {
     if (stripes || rule.order == IslandOrder::rows)
         islands.order_in_rows();
     else
-        islands.shuffle(seed, area.index);
+        islands.shuffle(seed, area.within.index);
     cut([&](Cell cell, const HatchLines& of, std::size_t i, double from, double to) {
         islands.put(cell, i, of.frame().point(from, of.v(i)), of.frame().point(to, of.v(i)));
     });

@@ -6,12 +6,24 @@
 #include "lamella/scan/strategy.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace lamella {
 
-/// Two points each, as Layer::hatches. `area`: rings that bound it, none of which cross; its index says how
-/// far the lines are turned, and with the seed in which order islands come. Throws what HatchLines throws,
-/// and Error{limit} for more than 2^24 islands or stripes.
-[[nodiscard]] PointArray hatch(const Layer& area, const HatchRule& rule, std::uint64_t seed);
+/// What is to be filled. All layers are of rings that bound material, none of which cross. What they have in
+/// common is decided along each line, so that no polygons have to be cut.
+struct HatchArea {
+    // NOLINTNEXTLINE(google-explicit-constructor): most areas are a layer
+    HatchArea(const Layer& all) : within(all) {}
+
+    const Layer& within;
+    const Layer* also_within = nullptr;     ///< if given
+    std::vector<const Layer*> without = {}; ///< nothing of these
+};
+
+/// Two points each, as Layer::hatches. The index of `within` says how far the lines are turned, and with the
+/// seed in which order islands come. Throws what HatchLines throws, and Error{limit} for more than 2^24
+/// islands or stripes.
+[[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed);
 
 } // namespace lamella

@@ -126,4 +126,46 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance)
     }
 }
 
+void HatchLines::intersect(const HatchLines& others) {
+    keep<true>(others);
+}
+
+void HatchLines::subtract(const HatchLines& others) {
+    if (others.total() != 0)
+        keep<false>(others);
+}
+
+/// What lies inside of the others, or outside. Ends in one place count together, so that no piece is a point.
+template <bool inside>
+void HatchLines::keep(const HatchLines& others) {
+    assert(distance_ == others.distance_ || others.total() == 0);
+    std::vector<double> kept;
+    kept.reserve(ends_.size());
+    for (std::size_t i = 0; i < size(); ++i) {
+        const std::span<const double> own = ends(i);
+        const std::int64_t number = first_ + static_cast<std::int64_t>(i) - others.first_;
+        const bool known = number >= 0 && number < static_cast<std::int64_t>(others.size());
+        const std::span<const double> other =
+            known ? others.ends(static_cast<std::size_t>(number)) : std::span<const double>();
+        begins_[i] = static_cast<std::uint32_t>(kept.size()); // what stood there is not asked for any more
+        std::size_t a = 0;
+        std::size_t b = 0;
+        bool in = false;
+        while (a < own.size()) {
+            const double at = b < other.size() ? std::min(own[a], other[b]) : own[a];
+            while (a < own.size() && own[a] == at)
+                ++a;
+            while (b < other.size() && other[b] == at)
+                ++b;
+            const bool now = a % 2 == 1 && (b % 2 == 1) == inside;
+            if (now != in)
+                kept.push_back(at);
+            in = now;
+        }
+        assert(!in);
+    }
+    begins_.back() = static_cast<std::uint32_t>(kept.size());
+    ends_ = std::move(kept);
+}
+
 } // namespace lamella

@@ -32,6 +32,11 @@ class HatchLines {
     /// or ends. O(points + ends), and sorting the ends of each line.
     HatchLines(const Layer& layer, CosSin angle, double distance);
 
+    /// Leaves of each line what is on others, too, or what is not. These have the same angle and distance.
+    /// O(lines + ends).
+    void intersect(const HatchLines& others);
+    void subtract(const HatchLines& others);
+
     [[nodiscard]] const LineFrame& frame() const noexcept { return frame_; }
     [[nodiscard]] std::size_t size() const noexcept { return begins_.size() - 1; }
     /// Where line i, from 0, lies.
@@ -50,6 +55,9 @@ class HatchLines {
     [[nodiscard]] std::size_t total() const noexcept { return ends_.size(); }
 
   private:
+    template <bool inside>
+    void keep(const HatchLines& others);
+
     LineFrame frame_;
     double distance_;
     std::int64_t first_ = 0;

@@ -89,12 +89,11 @@ namespace {
 
 std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const ScanStrategy& strategy,
                                                     ScanMemory* memory) {
-    Layer straight = without_straight_points(layer, ClippingGrid(layer.points.span()).unit());
     std::vector<double> distances = distances_of(strategy);
     if (memory != nullptr)
-        if (auto last = memory->last(); last && last->fit(straight, distances))
+        if (auto last = memory->last(); last && last->fit(layer, distances))
             return last;
-    auto insets = std::make_shared<const ScanMemory::Insets>(std::move(straight), std::move(distances));
+    auto insets = std::make_shared<const ScanMemory::Insets>(layer, std::move(distances));
     if (memory != nullptr)
         memory->keep(insets);
     return insets;
@@ -102,48 +101,55 @@ std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const Sc
 
 } // namespace
 
-std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below, std::span<const Layer> above,
-                        const ScanStrategy& strategy, ScanMemory* memory) {
+ScanLayer::ScanLayer(const Layer& layer)
+    : layer_(without_straight_points(layer, ClippingGrid(layer.points.span()).unit())) {}
+
+std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
+                        std::span<const ScanLayer> above, const ScanStrategy& strategy, ScanMemory* memory) {
     check_strategy(strategy);
+    const Layer& layer = scanned.layer();
     const auto insets = insets_of(layer, strategy, memory);
-    const Skin downskin(layer, below, strategy.downskin);
-    const Skin upskin(layer, above, strategy.upskin);
-    const auto hatched = [&](const HatchRule& rule) -> const Layer& {
-        return insets->at(hatch_depth(strategy.contours, rule));
+    const Skin downskin(scanned, below, strategy.downskin);
+    const Skin upskin(scanned, above, strategy.upskin);
+    const auto inset = [&](double depth) {
+        return with_head_of(layer, insets->at(depth));
     };
-    const auto area = [&](ScanRegion region) {
-        switch (region) {
-        case ScanRegion::downskin:
-            return downskin.of(hatched(strategy.downskin.hatch));
-        case ScanRegion::upskin:
-            return downskin.rest_of(upskin.of(hatched(strategy.upskin.hatch)));
-        default:
-            return upskin.rest_of(downskin.rest_of(hatched(strategy.hatch)));
+    const auto hatched = [&](ScanRegion region) {
+        const HatchRule& rule = region == ScanRegion::downskin ? strategy.downskin.hatch
+                                : region == ScanRegion::upskin ? strategy.upskin.hatch
+                                                               : strategy.hatch;
+        const Skin* const own = region == ScanRegion::downskin ? &downskin
+                                : region == ScanRegion::upskin ? &upskin
+                                                               : nullptr;
+        const Layer all = inset(hatch_depth(strategy.contours, rule));
+        HatchArea area(all);
+        if (own != nullptr && !own->whole())
+            area.also_within = &own->with_overlap();
+        // Of what is both, downskin counts.
+        for (const Skin* const other : {&downskin, &upskin}) {
+            if (other == own)
+                break;
+            if (other->whole())
+                return PointArray();
+            area.without.push_back(&other->area());
         }
-    };
-    const auto rule = [&](ScanRegion region) -> const HatchRule& {
-        return region == ScanRegion::downskin ? strategy.downskin.hatch
-               : region == ScanRegion::upskin ? strategy.upskin.hatch
-                                              : strategy.hatch;
+        return hatch(area, rule, strategy.seed);
     };
     std::vector<Layer> result;
     for (const Exposure& exposure : exposures(strategy, {})) {
         if (exposure.kind == VectorKind::contour) {
-            const Layer rings =
-                with_head_of(layer, insets->at(contour_depth(strategy.contours, exposure.contour)));
+            const Layer rings = inset(contour_depth(strategy.contours, exposure.contour));
             result.push_back(followed(rings, strategy.contours, exposure.contour, strategy.seed));
-            continue;
+        } else {
+            result.push_back(with_head_of(layer, {}));
+            result.back().hatches = hatched(exposure.region);
         }
-        const Layer filled = with_head_of(layer, area(exposure.region));
-        Layer& vectors = result.emplace_back();
-        vectors = {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
-        vectors.hatches = hatch(filled, rule(exposure.region), strategy.seed);
     }
     return result;
 }
 
 // What is left of a part without skins, by other rules.
-std::vector<Layer> scan_support(const Layer& layer, const ScanStrategy& strategy, ScanMemory* memory) {
+std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, ScanMemory* memory) {
     check_strategy(strategy); // so that errors name fields of supports
     return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory);
 }

@@ -1,6 +1,5 @@
 #include "scan/skin.hpp"
 
-#include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/offset.hpp"
 
@@ -76,23 +75,6 @@ Layer rings_of(const Layer& layer, const Chosen& chosen) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-/// The rings of an area that may have to do with another one, and those that do not.
-struct Apart {
-    Apart(const Layer& area, const Layer& other) {
-        Occupied occupied(area);
-        for (std::size_t i = 0; i < other.rings; ++i)
-            occupied.add(box_of(other.contour(i)));
-        std::vector<bool> chosen(area.rings);
-        for (std::size_t i = 0; i < area.rings; ++i)
-            chosen[i] = occupied.any_within(box_of(area.contour(i)));
-        near = rings_of(area, [&](std::size_t i) { return chosen[i]; });
-        far = rings_of(area, [&](std::size_t i) { return !chosen[i]; });
-    }
-
-    Layer near;
-    Layer far;
-};
-
 /// For each ring of a layer whether it counts where the layer is not what another one is: it has none
 /// alongside in that one, or is closer than `reach` to a ring of either layer that has none. `partners`: for
 /// each ring that of the other layer. None where the layers are the same all over.
@@ -148,14 +130,14 @@ constexpr std::size_t most_at_once = 4;
 /// Rings alongside each other wind around a place alike, unless it lies between them, and then it is covered
 /// by what is grown. So whatever is left lies within rings that have none alongside, and only what is near to
 /// these is looked at.
-Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grown) {
+Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double grown) {
     const auto count = static_cast<double>(neighbours.size());
     const double reach = grown * (1 + spread) * OffsetCorners{}.mitre_limit;
     std::vector<Differing> different;
     std::vector<bool> chosen(layer.rings);
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
-        std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k], grown);
-        const std::vector<bool> counts = differing(layer, neighbours[k], partners, reach);
+        std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k].layer(), grown);
+        const std::vector<bool> counts = differing(layer, neighbours[k].layer(), partners, reach);
         if (counts.empty())
             continue;
         different.push_back({k, std::move(partners)});
@@ -169,7 +151,7 @@ Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grow
     std::vector<Layer> others;
     for (std::size_t d = 0; d < different.size(); ++d) {
         const Differing& neighbour = different[d];
-        const Layer& other = neighbours[neighbour.number];
+        const Layer& other = neighbours[neighbour.number].layer();
         std::vector<bool> left_out(other.rings);
         for (std::size_t i = 0; i < layer.rings; ++i)
             if (neighbour.partners[i] != no_ring && !chosen[i])
@@ -187,37 +169,19 @@ Layer open_of(const Layer& layer, std::span<const Layer> neighbours, double grow
 
 } // namespace
 
-Skin::Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule) {
-    if (rule.layers == 0 || layer.points.empty())
+Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule) {
+    if (rule.layers == 0 || layer.layer().points.empty())
         return;
     if (neighbours.size() < rule.layers) {
-        whole_ = true; // the part ends there
+        whole_ = true;
         return;
     }
-    const Layer open = open_of(layer, neighbours.first(rule.layers), rule.narrowest);
+    const Layer open = open_of(layer.layer(), neighbours.first(rule.layers), rule.narrowest);
     if (open.rings == 0)
         return;
     std::vector<Layer> moved = offsets(open, std::array{rule.narrowest, rule.narrowest + rule.overlap});
-    skin_ = std::move(moved[0]);
+    area_ = std::move(moved[0]);
     with_overlap_ = std::move(moved[1]);
-}
-
-Layer Skin::of(const Layer& area) const {
-    if (whole_)
-        return area;
-    if (skin_.rings == 0 || area.rings == 0)
-        return {};
-    return combine(Apart(area, with_overlap_).near, with_overlap_, BooleanOperation::intersect);
-}
-
-Layer Skin::rest_of(const Layer& area) const {
-    if (whole_)
-        return {};
-    if (skin_.rings == 0 || area.rings == 0)
-        return area;
-    const Apart apart(area, skin_);
-    Layer rest = combine(apart.near, skin_, BooleanOperation::subtract);
-    return apart.far.rings == 0 ? rest : normal_form(merged(std::array{std::move(rest), apart.far}));
 }
 
 } // namespace lamella

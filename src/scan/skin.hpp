@@ -3,6 +3,7 @@
 // Where a layer has too little material above it, or below it.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
 #include <span>
@@ -14,17 +15,18 @@ class Skin {
   public:
     /// `neighbours`: from the nearest one on, as many as there are; fewer than the rule asks for where the
     /// part ends.
-    Skin(const Layer& layer, std::span<const Layer> neighbours, const SkinRule& rule);
+    Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule);
 
-    /// What of an area within the layer, whose rings do not cross, is within the skin or closer to it than
-    /// the overlap.
-    [[nodiscard]] Layer of(const Layer& area) const;
-    /// What of it is not within the skin.
-    [[nodiscard]] Layer rest_of(const Layer& area) const;
+    /// Whether all of the layer is skin, because the part ends there.
+    [[nodiscard]] bool whole() const noexcept { return whole_; }
+    /// Else the skin, as rings that do not cross; it may reach beyond the layer.
+    [[nodiscard]] const Layer& area() const noexcept { return area_; }
+    /// And what is closer to it than the overlap.
+    [[nodiscard]] const Layer& with_overlap() const noexcept { return with_overlap_; }
 
   private:
-    bool whole_ = false; ///< all of the layer is skin
-    Layer skin_;
+    bool whole_ = false;
+    Layer area_;
     Layer with_overlap_;
 };
 

@@ -130,8 +130,9 @@ Job scanned() {
             job.parts.emplace_back();
         }
         for (std::size_t i = 0; i < layers.size(); ++i) {
-            const std::vector<Layer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
-            const std::span above = std::span(layers).subspan(i + 1);
+            const std::vector<ScanLayer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
+            const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                                               layers.end());
             std::vector<Layer> vectors = part.support ? scan_support(layers[i], strategy())
                                                       : scan(layers[i], below, above, strategy());
             for (std::size_t k = 0; k < vectors.size(); ++k)

@@ -32,8 +32,9 @@ void write_samples(const std::string& folder) {
         parts.emplace_back();
     }
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        const std::vector<Layer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
-        std::vector<Layer> vectors = scan(layers[i], below, std::span(layers).subspan(i + 1), strategy);
+        const std::vector<ScanLayer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
+        const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, layers.end());
+        std::vector<Layer> vectors = scan(layers[i], below, above, strategy);
         for (std::size_t k = 0; k < vectors.size(); ++k)
             parts[k].push_back(std::move(vectors[k]));
     }

@@ -116,7 +116,8 @@ class Scan(ProgramTest):
         for key in ("points", "contours", "volume_mm3"):
             self.assertEqual(stats[key], plain[key])
         scan = stats["scan"]
-        self.assertEqual(scan["contour_vectors"], 2 * plain["points"])
+        self.assertEqual(plain["points"], 4 * 8, "four corners of each layer, and the diagonals of sides")
+        self.assertEqual(scan["contour_vectors"], 2 * 4 * 4, "where the beam need not stop at diagonals")
         self.assertEqual(list(scan["regions"]), ["core", "upskin", "downskin"])
         self.assertAlmostEqual(scan["energy_j_mm3"], scan["energy_j"] / 240)
         self.assertEqual(scan["strategy"]["hatch"]["distance"], 0.5)

@@ -58,7 +58,7 @@ void scan_and_check(const ScanStrategy& strategy) {
         if (takes_long(*rule))
             return;
     const Layer layer = small_layer(3);
-    const std::vector<Layer> beside{small_layer(2)};
+    const std::vector<ScanLayer> beside{small_layer(2)};
     try {
         for (const std::vector<Layer>& vectors :
              {scan(layer, beside, beside, strategy), scan_support(layer, strategy)})

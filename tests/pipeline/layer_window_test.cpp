@@ -35,15 +35,15 @@ struct Record {
 
     [[nodiscard]] LayerWindow::Work work() {
         return [this](const PlaneLayers& plane) -> std::function<void()> {
-            const auto index = [](const std::span<const Layer>& parts) {
+            const auto index = [](const std::span<const ScanLayer>& parts) {
                 EXPECT_EQ(parts.size(), 2U);
-                EXPECT_EQ(parts[0].index, parts[1].index);
-                return parts[0].index;
+                EXPECT_EQ(parts[0].layer().index, parts[1].layer().index);
+                return parts[0].layer().index;
             };
             Seen seen{index(plane.parts), {}, {}};
-            for (const std::span<const Layer>& parts : plane.below)
+            for (const std::span<const ScanLayer>& parts : plane.below)
                 seen.below.push_back(index(parts));
-            for (const std::span<const Layer>& parts : plane.above)
+            for (const std::span<const ScanLayer>& parts : plane.above)
                 seen.above.push_back(index(parts));
             const std::uint64_t number = seen.plane;
             const std::lock_guard lock(mutex);

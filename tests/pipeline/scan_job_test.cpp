@@ -86,12 +86,12 @@ TEST_F(ScanJob, WritesWhatScanMakesOfEachLayerAndItsNeighbours) {
     ASSERT_EQ(written.size(), each.size());
     std::vector<ScanFigures> sums(each.size());
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        LayerStack below;
-        LayerStack above;
+        std::vector<ScanLayer> below;
+        std::vector<ScanLayer> above;
         for (std::size_t k = 1; k <= 3 && k <= i; ++k)
-            below.push_back(layers[i - k]);
+            below.emplace_back(layers[i - k]);
         for (std::size_t k = 1; k <= 2 && i + k < layers.size(); ++k)
-            above.push_back(layers[i + k]);
+            above.emplace_back(layers[i + k]);
         const std::vector<Layer> vectors = scan(layers[i], below, above, *scanned.scan);
         std::optional<Point2> beam;
         for (std::size_t e = 0; e < each.size(); ++e) {

@@ -1,5 +1,6 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/boolean.hpp"
 
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
@@ -166,6 +167,46 @@ TEST(HatchLines, DoNotDependOnTheOrderOfRingsNorOnWhereTheyBegin) {
         for (std::size_t i = 0; i < lines.size(); ++i)
             EXPECT_TRUE(std::equal(lines.ends(i).begin(), lines.ends(i).end(), others.ends(i).begin(),
                                    others.ends(i).end()));
+    }
+}
+
+// Cut line by line they are what lines through the cut layers are.
+TEST(HatchLines, AreCutAsLayersAre) {
+    Random random(5);
+    for (int round = 0; round < rounds_within_reason(1000); ++round) {
+        const Layer a = test::random_material(random, 16);
+        const Layer b = test::random_material(random, 16);
+        const CosSin angle = cos_sin_degrees(round % 3 == 0 ? 0 : random.real(0, 360));
+        const double distance = round % 2 == 0 ? 1 : 0.37;
+        const HatchLines others(b, angle, distance);
+        for (const BooleanOperation operation : {BooleanOperation::intersect, BooleanOperation::subtract}) {
+            HatchLines lines(a, angle, distance);
+            const std::size_t size = lines.size();
+            if (operation == BooleanOperation::intersect)
+                lines.intersect(others);
+            else
+                lines.subtract(others);
+            EXPECT_EQ(lines.size(), size);
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                EXPECT_EQ(lines.ends(i).size() % 2, 0U);
+                EXPECT_TRUE(std::is_sorted(lines.ends(i).begin(), lines.ends(i).end()));
+            }
+            EXPECT_NEAR(length_of(lines), length_of(HatchLines(combine(a, b, operation), angle, distance)),
+                        1e-6)
+                << round;
+        }
+    }
+}
+
+TEST(HatchLines, WithNothingAreAllOrNone) {
+    const Layer square = layer_of({rectangle(0, 0, 4, 4)});
+    for (const Layer& other :
+         {Layer{}, layer_of({rectangle(0, 9, 4, 12)}), layer_of({rectangle(9, 0, 12, 4)})}) {
+        HatchLines kept(square, along_x, 1);
+        kept.subtract(HatchLines(other, along_x, 1));
+        EXPECT_EQ(length_of(kept), 16);
+        kept.intersect(HatchLines(other, along_x, 1));
+        EXPECT_EQ(kept.total(), 0U);
     }
 }
 

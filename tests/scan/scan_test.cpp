@@ -129,8 +129,8 @@ TEST(Scan, RegionsAreDisjointAndMakeUpTheLayer) {
         std::vector<Layer> stack;
         for (int i = 0; i < 5; ++i)
             stack.push_back(test::random_material(random, 16));
-        const std::vector<Layer> below{stack[1], stack[0]};
-        const std::vector<Layer> above{stack[3], stack[4]};
+        const std::vector<ScanLayer> below{stack[1], stack[0]};
+        const std::vector<ScanLayer> above{stack[3], stack[4]};
         strategy.upskin.layers = 2;
         strategy.downskin.layers = 2;
         const std::vector<Layer> regions = scan(stack[2], below, above, strategy);
@@ -157,7 +157,7 @@ TEST(Scan, WhereThePartEndsAllIsSkin) {
     strategy.upskin.layers = 2;
     strategy.downskin.layers = 3;
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
-    const std::vector<Layer> same(3, layer);
+    const std::vector<ScanLayer> same(3, layer);
     const auto count = [&](std::size_t below, std::size_t above) {
         std::vector<bool> some;
         for (const Layer& vectors :
@@ -182,7 +182,7 @@ TEST(Scan, SkinsReachIntoTheCoreByTheOverlap) {
         rule->border = 0;
     }
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
-    const std::vector<Layer> above{normal_layer({rectangle(0, 0, 4, 10)})};
+    const std::vector<ScanLayer> above{normal_layer({rectangle(0, 0, 4, 10)})};
     const std::vector<Layer> vectors = scan(layer, {}, above, strategy);
     EXPECT_NEAR(marked(vectors[0]), 40, 1e-6);
     EXPECT_NEAR(marked(vectors[1]), 65, 1e-6);
@@ -194,7 +194,7 @@ TEST(Scan, StripsTooNarrowAreNoSkin) {
     strategy.upskin.narrowest = 0.05;
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
     const auto skin = [&](double width) {
-        const std::vector<Layer> above{normal_layer({rectangle(0, 0, 10 - width, 10)})};
+        const std::vector<ScanLayer> above{normal_layer({rectangle(0, 0, 10 - width, 10)})};
         return scan(layer, {}, above, strategy)[1].hatches.size();
     };
     EXPECT_EQ(skin(0), 0U);
@@ -279,8 +279,8 @@ TEST(Scan, WithAMemoryIsTheSame) {
     }
     ScanMemory memory;
     for (std::size_t i = 1; i + 1 < layers.size(); ++i) {
-        const std::span below(&layers[i - 1], 1);
-        const std::span above(&layers[i + 1], 1);
+        const std::vector<ScanLayer> below{layers[i - 1]};
+        const std::vector<ScanLayer> above{layers[i + 1]};
         const std::vector<Layer> expected = scan(layers[i], below, above, strategy);
         const std::vector<Layer> found = scan(layers[i], below, above, strategy, &memory);
         ASSERT_EQ(found.size(), expected.size());

@@ -72,23 +72,22 @@ TEST(Skin, IsWhatSomeNeighbourGrownHasNot) {
         const Plate plate(random);
         const double slope = round % 2 == 0 ? 0.01 : 0;
         const Layer layer = plate.layer(random, slope);
-        std::vector<Layer> neighbours;
+        std::vector<ScanLayer> neighbours;
         Layer open;
         for (std::uint32_t k = 0; k < rule.layers; ++k) {
-            neighbours.push_back(plate.layer(random, slope));
+            neighbours.emplace_back(plate.layer(random, slope));
             const double grown = rule.narrowest * (1 + 0.01 * k / rule.layers);
-            const Layer beyond = combine(layer, offset(neighbours.back(), grown), BooleanOperation::subtract);
+            const Layer beyond =
+                combine(layer, offset(neighbours.back().layer(), grown), BooleanOperation::subtract);
             open = combine(open, beyond, BooleanOperation::unite);
         }
-        const Layer area = offset(layer, -0.2);
         const Skin found(layer, neighbours, rule);
-        const Layer of =
-            combine(area, offset(open, rule.narrowest + rule.overlap), BooleanOperation::intersect);
-        const Layer rest_of = combine(area, offset(open, rule.narrowest), BooleanOperation::subtract);
-        EXPECT_LT(difference(found.of(area), of), 1e-6) << round;
-        EXPECT_LT(difference(found.rest_of(area), rest_of), 1e-6) << round;
-        skin += measure(of).area_mm2;
-        rest += measure(rest_of).area_mm2;
+        EXPECT_FALSE(found.whole());
+        EXPECT_LT(difference(found.area(), offset(open, rule.narrowest)), 1e-6) << round;
+        EXPECT_LT(difference(found.with_overlap(), offset(open, rule.narrowest + rule.overlap)), 1e-6)
+            << round;
+        skin += measure(found.area()).area_mm2;
+        rest += measure(combine(layer, found.area(), BooleanOperation::subtract)).area_mm2;
     }
     EXPECT_GT(skin, 0);
     EXPECT_GT(rest, 0);
@@ -96,22 +95,23 @@ TEST(Skin, IsWhatSomeNeighbourGrownHasNot) {
 
 TEST(Skin, IsAllOfTheLayerWhereThePartEndsAndNothingWithoutARule) {
     const Layer layer = layer_of({rectangle(0, 0, 6, 6)});
-    const Layer area = offset(layer, -1);
     SkinRule rule;
-    EXPECT_EQ(Skin(layer, {}, rule).of(area).rings, 0U);
-    EXPECT_TRUE(same_contours(Skin(layer, {}, rule).rest_of(area), area));
+    const auto nothing = [](const Skin& skin) {
+        return !skin.whole() && skin.area().rings == 0 && skin.with_overlap().rings == 0;
+    };
+    EXPECT_TRUE(nothing(Skin(layer, {}, rule)));
     rule.layers = 2;
-    const std::vector<Layer> one{layer};
-    EXPECT_TRUE(same_contours(Skin(layer, one, rule).of(area), area));
-    EXPECT_EQ(Skin(layer, one, rule).rest_of(area).rings, 0U);
-    const std::vector<Layer> two{layer, layer};
-    EXPECT_EQ(Skin(layer, two, rule).of(area).rings, 0U);
-    EXPECT_TRUE(same_contours(Skin(layer, two, rule).rest_of(area), area));
+    const std::vector<ScanLayer> one{layer};
+    EXPECT_TRUE(Skin(layer, one, rule).whole());
+    const std::vector<ScanLayer> two{layer, layer};
+    EXPECT_TRUE(nothing(Skin(layer, two, rule)));
     const Layer empty = layer_of({{}});
-    EXPECT_EQ(Skin(empty, two, rule).of(Layer{}).rings, 0U);
-    EXPECT_EQ(Skin(Layer{}, one, rule).of(Layer{}).rings, 0U);
-    const std::vector<Layer> gone{layer, empty};
-    EXPECT_TRUE(same_contours(Skin(layer, gone, rule).of(area), area));
+    EXPECT_TRUE(nothing(Skin(empty, two, rule)));
+    EXPECT_TRUE(nothing(Skin(Layer{}, one, rule)));
+    const std::vector<ScanLayer> gone{layer, empty};
+    const Skin all(layer, gone, rule);
+    EXPECT_FALSE(all.whole());
+    EXPECT_LT(difference(all.area(), offset(layer, rule.narrowest)), 1e-6);
 }
 
 } // namespace

@@ -12,6 +12,20 @@
 
 namespace LAMELLA_API lamella {
 
+/// A layer as `scan` takes it: without points of rings on the straight way between others, to 2^-36 of its
+/// extent, at which a beam need not stop. Made once of each layer, which may be scanned and be a neighbour of
+/// others. Throws Error{limit} for coordinates beyond 1e150.
+class ScanLayer {
+  public:
+    // NOLINTNEXTLINE(google-explicit-constructor): a layer is one, as a string is a view
+    ScanLayer(const Layer& layer);
+
+    [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
+
+  private:
+    Layer layer_;
+};
+
 /// What layers of one part have in common: along upright walls many layers are the same, and the last one
 /// moved inwards is kept for those that follow. It changes nothing but the time that `scan` takes. For any
 /// number of threads.
@@ -44,13 +58,13 @@ class ScanMemory {
 /// The same bits on every machine, for any order of rings. O((n + v) log) for n points and v vectors, beside
 /// what offsets and, for skins, differences take. Throws Error{usage} as `check_strategy`, and Error{limit}
 /// for a layer that would have more than 2^26 lines, or islands, before memory is spent on them.
-[[nodiscard]] std::vector<Layer> scan(const Layer& layer, std::span<const Layer> below,
-                                      std::span<const Layer> above, const ScanStrategy& strategy,
+[[nodiscard]] std::vector<Layer> scan(const ScanLayer& layer, std::span<const ScanLayer> below,
+                                      std::span<const ScanLayer> above, const ScanStrategy& strategy,
                                       ScanMemory* memory = nullptr);
 
 /// The same of a layer of a support: by the strategy's rule for these, a layer for each of its
 /// `support_exposures`.
-[[nodiscard]] std::vector<Layer> scan_support(const Layer& layer, const ScanStrategy& strategy,
+[[nodiscard]] std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
                                               ScanMemory* memory = nullptr);
 
 } // namespace lamella
