@@ -320,11 +320,22 @@ class RingMover {
         return true;
     }
 
-    /// From the longest side on: there, no loop is to be cut off.
+    /// From the longest side on, and from its middle, if that is left: so no loop is at the ends of the ring.
     void put_ends(std::vector<Point2>& out) {
+        const std::size_t longest = sides_.longest();
+        const MovedSide& side = sides_[longest];
+        const Point2 middle = side.from + (side.length / 2) * side.direction;
+        const bool from_middle = reaches_middle(longest);
         ring_.clear();
         corner_points_.clear();
-        std::size_t i = sides_.longest();
+        const auto put_middle = [&] {
+            if (from_middle) {
+                ring_.push_back({middle + distance_ * right_of(side.direction), corner_points_.size()});
+                corner_points_.push_back(middle);
+            }
+        };
+        put_middle();
+        std::size_t i = longest;
         for (std::size_t k = 0; k < sides_.size(); ++k, i = after(i)) {
             ends_points_.clear();
             if (ends_[i] == SideEnd::meeting)
@@ -332,10 +343,31 @@ class RingMover {
             else if (ends_[i] == SideEnd::at_corner)
                 turn_from(i, ends_points_);
             for (const Point2& p : ends_points_)
-                ring_.push_back({p, k});
+                ring_.push_back({p, corner_points_.size()});
             corner_points_.push_back(sides_[after(i)].from);
         }
+        put_middle();
+        const auto begin = static_cast<std::ptrdiff_t>(out.size());
         add_without_swallowtails(ring_, corner_points_, distance_, out);
+        if (from_middle) { // it is a straight point
+            out.pop_back();
+            out.erase(out.begin() + begin);
+        }
+    }
+
+    /// Whether the middle of a moved side is left: what is cut off at both ends does not go beyond it.
+    [[nodiscard]] bool reaches_middle(std::size_t i) const noexcept {
+        const MovedSide& side = sides_[i];
+        const auto beyond = [&](const Point2& p) {
+            const Point2 way = p + -1 * side.from;
+            return way.x * side.direction.x + way.y * side.direction.y - side.length / 2;
+        };
+        if (ends_[i] == SideEnd::gone || (ends_[i] == SideEnd::meeting && !(beyond(meetings_[i]) > 0)))
+            return false;
+        std::size_t before = sides_.before(i);
+        while (before != i && ends_[before] == SideEnd::gone)
+            before = sides_.before(before);
+        return ends_[before] != SideEnd::meeting || beyond(meetings_[before]) < 0;
     }
 
     /// Puts what follows the moved side i, up to the beginning of the next one.

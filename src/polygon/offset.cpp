@@ -95,13 +95,14 @@ class Boundaries {
     [[nodiscard]] std::uint64_t vanished_rings(const Layer& moved, std::span<const Fate> fates,
                                                const std::vector<bool>& gone, double distance) const {
         std::uint64_t count = 0;
+        const ClippingGrid grid(moved.points.span());
         for (const Polygon& body : polygons_) {
             std::vector<std::uint32_t> rings{body.outer};
             rings.insert(rings.end(), body.holes.begin(), body.holes.end());
-            if (distance < 0 && (gone[body.outer] || vanishes(rings, false, moved, fates, -distance)))
+            if (distance < 0 && (gone[body.outer] || vanishes(rings, false, moved, fates, -distance, grid)))
                 count += rings.size();
             for (const std::uint32_t hole : body.holes)
-                if (distance > 0 && (gone[hole] || vanishes({&hole, 1}, true, moved, fates, distance)))
+                if (distance > 0 && (gone[hole] || vanishes({&hole, 1}, true, moved, fates, distance, grid)))
                     ++count;
         }
         return count;
@@ -110,7 +111,7 @@ class Boundaries {
     /// Whether nothing is left of these rings of one body, or of a hole, which is the inside of one, when it
     /// is shrunk by so much.
     [[nodiscard]] bool vanishes(std::span<const std::uint32_t> body, bool hole, const Layer& moved,
-                                std::span<const Fate> fates, double by) const {
+                                std::span<const Fate> fates, double by, const ClippingGrid& grid) const {
         if (fates[body.front()] == Fate::kept)
             return false;
         // All of it lies within `by` of its sides then: that is a strip along each side and a sector at each
@@ -129,7 +130,7 @@ class Boundaries {
         if (area > reach)
             return false;
         const std::vector<std::span<const Point2>> rings(left.begin(), left.end());
-        return filled(rings, FillRule::positive, ClippingGrid(moved.points.span())).empty();
+        return filled(rings, FillRule::positive, grid).empty();
     }
 
     /// In normal form.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <utility>
 
 namespace lamella {
 
@@ -19,6 +20,9 @@ namespace {
 // it counts 1 inside. If all loops lie inside and run as pieces do, then the pieces of the stretch count 1
 // there and once more for each loop. So the sum stays above 0 where it was, and 0 where it was 0, whatever
 // other sides, corners and rings add. (Crossings are rounded, as all points of moved rings are.)
+//
+// A stretch may begin and end in the middle of a moved side, too: a side is two sides with a straight corner
+// between them, anywhere. So of a ring with a loop at each of its corners each loop is looked at by itself.
 
 /// Whether segments from a to b and from c to d have a point in common. None of them is a point.
 bool meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) noexcept {
@@ -75,9 +79,11 @@ class SwallowtailCutter {
 
     void run(std::vector<Point2>& out) {
         cut_loops();
+        split_sides();
         for (std::size_t i = 0; i < left_.size(); ++i) {
             if (!left_[i].crossing()) {
-                out.push_back(left_[i].at);
+                if (!left_[i].split)
+                    out.push_back(left_[i].at);
                 continue;
             }
             std::size_t end = i;
@@ -86,7 +92,8 @@ class SwallowtailCutter {
             const bool cut = can_cut(i - 1, end);
             for (std::size_t k = i; cut && k < end; ++k)
                 out.push_back(left_[k].at);
-            for (std::size_t k = left_[i - 1].after + 1; !cut && k < left_[end].after; ++k)
+            const std::size_t last = left_[end].after + (left_[end].split ? 1 : 0);
+            for (std::size_t k = left_[i - 1].after + 1; !cut && k < last; ++k)
                 out.push_back(ring_[k].at);
             i = end - 1;
         }
@@ -98,10 +105,11 @@ class SwallowtailCutter {
         Point2 at;
         std::size_t before; ///< the side that ends here, of a crossing
         std::size_t after;  ///< the side that begins here
+        bool split = false; ///< a place on that side, between crossings
 
         [[nodiscard]] bool crossing() const noexcept { return before != after; }
         [[nodiscard]] bool on(std::size_t side) const noexcept {
-            return side == before || side == after || (!crossing() && side + 1 == after);
+            return side == before || side == after || (!crossing() && !split && side + 1 == after);
         }
     };
 
@@ -160,6 +168,44 @@ class SwallowtailCutter {
         return true;
     }
 
+    /// The corner that a side of the ring leads to, if it is one that was moved.
+    [[nodiscard]] std::size_t corner_after(std::size_t side) const noexcept { return ring_[side + 1].corner; }
+
+    /// Whence a place on a side that was moved came.
+    [[nodiscard]] Point2 base(const Left& split) const noexcept {
+        const std::size_t corner = corner_after(split.after);
+        const Point2& a = corners_[corner - 1];
+        const Point2& b = corners_[corner];
+        const double dx = b.x - a.x;
+        const double dy = b.y - a.y;
+        const double share = ((split.at.x - a.x) * dx + (split.at.y - a.y) * dy) / (dx * dx + dy * dy);
+        return {a.x + share * dx, a.y + share * dy};
+    }
+
+    /// Puts a place between crossings that are left on one side, so that each can be looked at by itself.
+    void split_sides() {
+        std::vector<Left> all;
+        all.reserve(left_.size());
+        for (std::size_t i = 0; i < left_.size(); ++i) {
+            const Left& left = left_[i];
+            all.push_back(left);
+            if (!left.crossing() || !left_[i + 1].crossing() || left.after != left_[i + 1].before ||
+                ring_[left.after].corner >= corner_after(left.after))
+                continue;
+            const Point2& next = left_[i + 1].at;
+            const Left split{{left.at.x + (next.x - left.at.x) / 2, left.at.y + (next.y - left.at.y) / 2},
+                             left.after,
+                             left.after,
+                             true};
+            const std::size_t corner = corner_after(left.after);
+            const Point2 from = base(split);
+            const Box2 side = Box2::of(corners_[corner - 1], corners_[corner]);
+            if (side.x0 <= from.x && from.x <= side.x1 && side.y0 <= from.y && from.y <= side.y1)
+                all.push_back(split);
+        }
+        left_ = std::move(all);
+    }
+
     /// Whether crossings between two points that are left can stay; loops may reach into pieces beside them.
     bool can_cut(std::size_t a, std::size_t b) {
         for (int wider = 0; wider < 4; ++wider) {
@@ -167,7 +213,7 @@ class SwallowtailCutter {
                 taken_ = b;
                 return true;
             }
-            a -= a > taken_ ? 1 : 0;
+            a -= a > taken_ && !left_[a - 1].crossing() ? 1 : 0;
             b += b + 1 < left_.size() && !left_[b + 1].crossing() ? 1 : 0;
         }
         return false;
@@ -175,22 +221,30 @@ class SwallowtailCutter {
 
     /// Whether the loops cut off between two points of the ring can go. Decided exactly, but for crossings.
     bool nothing_lost(std::size_t a, std::size_t b) {
-        const std::size_t first = left_[a].after;
-        const std::size_t last = left_[b].after;
-        const std::size_t corner = ring_[first].corner;
-        const std::size_t corners = ring_[last].corner - corner + 1;
-        if (last - first + corners > longest)
+        const Left& from = left_[a];
+        const Left& to = left_[b];
+        const std::size_t first = from.split ? corner_after(from.after) : ring_[from.after].corner;
+        const std::size_t last = to.split ? corner_after(to.after) - 1 : ring_[to.after].corner;
+        const std::size_t sides = to.after - from.after + (to.split ? 1 : 0);
+        if (sides + last - first > longest)
             return false;
-        polygon_.assign(corners_.begin() + static_cast<std::ptrdiff_t>(corner),
-                        corners_.begin() + static_cast<std::ptrdiff_t>(corner + corners));
+        polygon_.clear();
+        if (from.split)
+            polygon_.push_back(base(from));
+        polygon_.insert(polygon_.end(), corners_.begin() + static_cast<std::ptrdiff_t>(first),
+                        corners_.begin() + static_cast<std::ptrdiff_t>(last + 1));
+        if (to.split)
+            polygon_.push_back(base(to));
+        const std::size_t corners = polygon_.size();
         for (std::size_t k = b + 1; k-- > a;)
             polygon_.push_back(left_[k].at);
         if (!(doubled_area(polygon_) * distance_ < 0) || !simple())
             return false;
-        for (std::size_t i = first; i < last; ++i) {
-            const Point2& p = ring_[i].at;
-            const Point2& q = ring_[i + 1].at;
-            if (i > first && !winds_around(polygon_, p) &&
+        for (std::size_t k = 0; k < sides; ++k) {
+            const std::size_t i = from.after + k;
+            const Point2& p = k == 0 ? from.at : ring_[i].at;
+            const Point2& q = k + 1 == sides ? to.at : ring_[i + 1].at;
+            if (k > 0 && !winds_around(polygon_, p) &&
                 std::find(polygon_.begin(), polygon_.end(), p) == polygon_.end())
                 return false;
             for (std::size_t j = 0; p != q && j < polygon_.size(); ++j) {
