@@ -148,7 +148,9 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     const LayerStack sliced = slice(opened.mesh, opened.plan, {.threads = 1});
     job.slice = seconds_since(slicing);
     const auto scanning = Clock::now();
-    const std::vector<ScanLayer> layers(sliced.begin(), sliced.end());
+    std::vector<ScanLayer> layers(sliced.begin(), sliced.end());
+    for (std::size_t i = 1; i < layers.size(); ++i)
+        layers[i].share_points(layers[i - 1]);
     const std::vector<ScanLayer> reversed(layers.rbegin(), layers.rend());
     ScanMemory memory;
     for (std::size_t i = 0; i < layers.size(); ++i) {

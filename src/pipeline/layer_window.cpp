@@ -35,12 +35,25 @@ PlaneRange LayerWindow::users(std::uint32_t plane) const noexcept {
 
 std::function<void()> LayerWindow::operator()(std::uint32_t plane, std::span<const Layer> parts) {
     assert(coming_.begin <= plane && plane < coming_.end);
+    std::vector<ScanLayer> layers(parts.begin(), parts.end());
+    if (const Parts beside = held_beside(plane))
+        for (std::size_t part = 0; part < layers.size(); ++part)
+            layers[part].share_points((*beside)[part]);
     for (const Complete& complete :
-         store(plane, std::make_shared<const std::vector<ScanLayer>>(parts.begin(), parts.end())))
+         store(plane, std::make_shared<const std::vector<ScanLayer>>(std::move(layers))))
         work_on(complete);
     return [this, plane] {
         finish(plane);
     };
+}
+
+/// The layers of a neighbour that is here already; none where none is.
+LayerWindow::Parts LayerWindow::held_beside(std::uint32_t plane) {
+    const std::lock_guard lock(mutex_);
+    for (const std::uint32_t beside : {plane - 1, plane + 1}) // where there is no plane, none is held
+        if (const auto found = held_.find(beside); found != held_.end())
+            return found->second.parts;
+    return nullptr;
 }
 
 std::vector<LayerWindow::Complete> LayerWindow::store(std::uint32_t plane, Parts parts) {

@@ -52,6 +52,7 @@ class LayerWindow {
 
     [[nodiscard]] PlaneRange neighbours(std::uint32_t plane) const noexcept;
     [[nodiscard]] PlaneRange users(std::uint32_t plane) const noexcept;
+    [[nodiscard]] Parts held_beside(std::uint32_t plane);
     [[nodiscard]] std::vector<Complete> store(std::uint32_t plane, Parts parts);
     [[nodiscard]] Complete take(std::uint32_t plane);
     void work_on(const Complete& complete);

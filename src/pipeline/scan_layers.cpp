@@ -33,8 +33,11 @@ class Stacks {
         for (const LayerStack& part : parts) {
             if (part.size() != planes_.size())
                 throw Error(ErrorKind::usage, "parts of one file must have the same planes");
-            for (std::size_t i = 0; i < part.size(); ++i)
-                planes_[i].emplace_back(part[i]);
+            for (std::size_t i = 0; i < part.size(); ++i) {
+                ScanLayer& layer = planes_[i].emplace_back(part[i]);
+                if (i > 0)
+                    layer.share_points(planes_[i - 1][planes_[i].size() - 1]);
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 #include "lamella/scan/scan.hpp"
 
-#include "lamella/core/error.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
@@ -59,9 +59,7 @@ struct ScanMemory::Insets {
 
     /// Whether these are those of another layer, too.
     [[nodiscard]] bool fit(const Layer& other, std::span<const double> by) const {
-        return layer.rings == other.rings && layer.offsets == other.offsets &&
-               std::equal(layer.points.begin(), layer.points.end(), other.points.begin(),
-                          other.points.end()) &&
+        return same_contours(layer, other) &&
                std::equal(distances.begin(), distances.end(), by.begin(), by.end());
     }
     [[nodiscard]] const Layer& at(double depth) const {
@@ -103,6 +101,11 @@ std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const Sc
 
 ScanLayer::ScanLayer(const Layer& layer)
     : layer_(without_straight_points(layer, ClippingGrid(layer.points.span()).unit())) {}
+
+void ScanLayer::share_points(const ScanLayer& other) {
+    if (same_contours(layer_, other.layer_))
+        layer_.points = other.layer_.points;
+}
 
 std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
                         std::span<const ScanLayer> above, const ScanStrategy& strategy, ScanMemory* memory) {

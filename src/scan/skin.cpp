@@ -1,5 +1,6 @@
 #include "scan/skin.hpp"
 
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/offset.hpp"
 
@@ -136,6 +137,8 @@ Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double 
     std::vector<Differing> different;
     std::vector<bool> chosen(layer.rings);
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
+        if (same_contours(layer, neighbours[k].layer()))
+            continue;
         std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k].layer(), grown);
         const std::vector<bool> counts = differing(layer, neighbours[k].layer(), partners, reach);
         if (counts.empty())

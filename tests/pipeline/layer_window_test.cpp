@@ -1,3 +1,4 @@
+#include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
 #include "pipeline/layer_window.hpp"
 
@@ -136,6 +137,20 @@ TEST(LayerWindow, WaitsForNothingWithoutNeighbours) {
         write();
         EXPECT_EQ(record.written.back(), p);
     }
+}
+
+TEST(LayerWindow, SharesThePointsOfLayersThatAreTheSame) {
+    std::set<const Point2*> points;
+    LayerWindow window({0, 9}, {0, 9}, 1, 1, [&](const PlaneLayers& plane) {
+        points.insert(plane.parts[0].layer().points.data());
+        return std::function<void()>();
+    });
+    for (std::uint32_t i = 0; i < 9; ++i) {
+        const double size = i < 5 ? 4 : 3; // two blocks, one on the other
+        const std::array<Layer, 1> parts{test::layer_of({test::rectangle(0, 0, size, size)})};
+        static_cast<void>(window(i, parts));
+    }
+    EXPECT_EQ(points.size(), 2U);
 }
 
 TEST(LayerWindow, TakesPlanesFromManyThreads) {

@@ -22,6 +22,10 @@ class ScanLayer {
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
 
+    /// Shares the points of another one, if these are the same: then it takes no time to see that. Upright
+    /// walls are the same on many layers. O(points).
+    void share_points(const ScanLayer& other);
+
   private:
     Layer layer_;
 };
