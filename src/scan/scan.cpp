@@ -124,6 +124,8 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
         const Skin* const own = region == ScanRegion::downskin ? &downskin
                                 : region == ScanRegion::upskin ? &upskin
                                                                : nullptr;
+        if (own != nullptr && !own->whole() && own->area().rings == 0)
+            return PointArray();
         const Layer all = inset(hatch_depth(strategy.contours, rule));
         HatchArea area(all);
         if (own != nullptr && !own->whole())
@@ -134,7 +136,8 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
                 break;
             if (other->whole())
                 return PointArray();
-            area.without.push_back(&other->area());
+            if (other->area().rings > 0)
+                area.without.push_back(&other->area());
         }
         return hatch(area, rule, strategy.seed);
     };
