@@ -298,6 +298,46 @@ TEST(Offset, IsTheMaterialWithOrWithoutStripsAndWedges) {
     }
 }
 
+/// A section of a strut whose faces are two triangles each, nearly in one plane: beside each corner of its
+/// polygon another one, by which it turns a little more, or back.
+Layer strut(Random& random) {
+    const std::int64_t faces = random.integer(5, 40);
+    const double radius = random.real(0.5, 3);
+    const double where = random.real(0.001, 0.2);
+    Contour ring;
+    const auto corner = [&](std::int64_t i) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(faces);
+        return Point2{5 + radius * std::cos(angle), 5 + 1.1 * radius * std::sin(angle)};
+    };
+    for (std::int64_t i = 0; i < faces; ++i) {
+        const Point2 a = corner(i);
+        const Point2 b = corner(i + 1);
+        const double off = 0.02 * where * std::sin(0.7 * static_cast<double>(i));
+        ring.push_back(a);
+        ring.push_back(
+            {a.x + where * (b.x - a.x) - off * (b.y - a.y), a.y + where * (b.y - a.y) + off * (b.x - a.x)});
+    }
+    return normal_form(layer_of({random.integer(0, 3) == 0 ? reversed(ring) : ring}));
+}
+
+TEST(Offset, OfStrutsWithAShortSideAtEachCorner) {
+    Random random(85);
+    for (int round = 0; round < test::rounds_within_reason(1000); ++round) {
+        SCOPED_TRACE(round);
+        Layer layer = strut(random);
+        if (ring_area(layer.contour(0)) < 0) // a hole
+            layer = normal_form(layer_of({test::contours(layer).front(), rectangle(0, 0, 10, 10)}));
+        const double distance = random.real(0.01, 0.6) * (random.integer(0, 1) == 0 ? 1 : -1);
+        const Layer moved = offset(layer, distance, mitred);
+        const double expected =
+            test::winding_area(layer, swept(layer, distance, mitred), [&](int material, int strips) {
+                return distance > 0 ? material > 0 || strips > 0 : material > 0 && strips == 0;
+            });
+        ASSERT_NEAR(area(moved), expected, 1e-6) << distance;
+        ASSERT_EQ(find_crossings(moved).count, 0U);
+    }
+}
+
 OffsetCorners random_corners(Random& random) {
     const std::int64_t shape = random.integer(0, 2);
     return shape == 0 ? mitred : shape == 1 ? bevelled : rounded;
