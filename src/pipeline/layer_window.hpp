@@ -22,7 +22,8 @@ namespace lamella {
 /// Hands planes on together with the planes beneath and on top. Each comes once, in two halves as those of a
 /// PlateSink: in the parallel half its layers are stored, and whichever planes have all of their neighbours
 /// by it are worked on there; in the ordered half of plane i those become ready of which i is the last
-/// neighbour. So nobody waits for anybody, and memory has a window of layers.
+/// neighbour. So nobody waits for anybody, and memory has a window of layers. A layer that is the same as one
+/// beside it shares its points.
 class LayerWindow {
   public:
     /// As PlateSink, for a plane with its neighbours.

@@ -51,8 +51,7 @@ struct MovedSide {
 struct Turn {
     double sine; ///< positive to the left
     double cosine;
-    double
-        mitre; ///< 1 / (1 + cosine), infinite for a fold: corners of parallels lie at that times both normals
+    double mitre; ///< 1 / (1 + cosine), infinite for a fold: parallels meet at that times both normals
 };
 
 /// Where a moved side ends.
@@ -162,6 +161,7 @@ class RingSides {
     std::vector<Turn> turns_;
 };
 
+/// Moves rings by one distance, each as it was last looked at.
 class RingMover {
   public:
     /// `rounding`: how far off places may be.

@@ -131,14 +131,13 @@ void HatchLines::intersect(const HatchLines& others) {
 }
 
 void HatchLines::subtract(const HatchLines& others) {
-    if (others.total() != 0)
-        keep<false>(others);
+    keep<false>(others);
 }
 
 /// What lies inside of the others, or outside. Ends in one place count together, so that no piece is a point.
 template <bool inside>
 void HatchLines::keep(const HatchLines& others) {
-    assert(distance_ == others.distance_ || others.total() == 0);
+    assert(distance_ == others.distance_);
     std::vector<double> kept;
     kept.reserve(ends_.size());
     for (std::size_t i = 0; i < size(); ++i) {

@@ -163,6 +163,13 @@ TEST(ReadSlices3mf, WhatBreaksTheRulesIsRefused) {
     expect(error_of(model(stack(1, slice("1")) + object(2, 1),
                           "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 2 0 0 0\"/>")),
            "tilts");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1),
+                          "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 0 0 0\"/>")),
+           "12 numbers and no more");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1), "<item/>")), "an element without objectid");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1), item, "mile")), "found unit 'mile', expected");
+    expect(error_of(model(stack(1, slice("1")) + stack(1, slice("1")) + object(2, 1), item)),
+           "a second slice stack 1, expected ids that differ");
     expect(error_of(model(stack(1, slice("1")), "")), "no slice stack in the build");
     expect(error_of(model(stack(1, "") + object(2, 1), item)), "without slices");
     expect(error_of(model(stack(1, "<t:sliceref slicestackid=\"1\" slicepath=\"/no.model\"/>") + object(2, 1),

@@ -35,9 +35,11 @@ class ScanLayer {
 /// number of threads.
 class ScanMemory {
   public:
-    struct Insets;
+    struct Insets; ///< the material of a layer, moved inwards by the distances of a strategy
 
+    /// Those that `scan` kept last; none at first.
     [[nodiscard]] std::shared_ptr<const Insets> last() const;
+    /// Takes the place of those before. For `scan`.
     void keep(std::shared_ptr<const Insets> insets);
 
   private:
@@ -50,10 +52,10 @@ class ScanMemory {
 /// point where the beam begins; those of hatches have `hatches`, in their order, from first point to second
 /// point. They are not in normal form: order is part of the result.
 ///
-/// What is filled is the material of the layer as `offset` sees it (open chains are none, nor are points on
-/// the straight way between others), moved inwards: by the beam's offset for the outermost contour, by the
-/// distance for each of the others, by the border for hatches. A line on an edge is decided by the rule of
-/// the plane, in one dimension less: of a point on a line counts what is above it.
+/// What is filled is the material of the layer as `offset` sees it (open chains are none), moved inwards: by
+/// the beam's offset for the outermost contour, by the distance for each of the others, by the border for
+/// hatches. A line on an edge is decided by the rule of the plane, in one dimension less: of a point on a
+/// line counts what is above it.
 ///
 /// `below` and `above`: the layers beneath and on top, the nearest one first, for skins; as many as the
 /// strategy asks for (`SkinRule::layers`), and fewer only where there are no more: where the part ends there
