@@ -61,6 +61,13 @@ enum class SideEnd : std::uint8_t {
     gone,      ///< the side itself is not left
 };
 
+/// Where two moved sides meet, and how far that is from where they begin, as they were.
+struct Met {
+    Point2 at;
+    double before;
+    double after;
+};
+
 /// A side of a row that is left so far.
 struct RowSide {
     std::size_t side;
@@ -105,18 +112,63 @@ Point2 with_length(double length, const Point2& p) noexcept {
     return (length / std::sqrt(p.x * p.x + p.y * p.y)) * p;
 }
 
-/// Puts the points between corner + n and corner + m on the arc of this radius around the corner. `cosine`:
-/// of the angle between them. `tolerance`: of chords.
-void add_arc(const Point2& corner, const Point2& n, const Point2& m, double radius, double cosine,
-             double tolerance, std::vector<Point2>& out) {
-    const double half = std::sqrt((1 + cosine) / 2);
-    if (radius * (1 - half) <= tolerance)
-        return;
-    const Point2 middle = with_length(radius, n + m);
-    add_arc(corner, n, middle, radius, half, tolerance, out);
-    out.push_back(corner + middle);
-    add_arc(corner, middle, m, radius, half, tolerance, out);
-}
+/// What a moved ring does around the wedges of its corners.
+class Wedges {
+  public:
+    Wedges(double reach, const OffsetCorners& corners)
+        : shape_(corners.shape), reach_(reach), least_mitre_(2 / (corners.mitre_limit * corners.mitre_limit)),
+          tolerance_(arc_tolerance(reach, corners)) {}
+
+    /// Puts the way from corner + n to corner + m. u and v: the directions of both sides.
+    void go_around(const Point2& corner, const Point2& n, const Point2& m, const Point2& u, const Point2& v,
+                   const Turn& turn, std::vector<Point2>& out) const {
+        const double cosine = turn.cosine;
+        if (shape_ == OffsetCorner::mitre) {
+            if (1 + cosine >= least_mitre_) {
+                out.push_back(corner + turn.mitre * (n + m));
+                return;
+            }
+            // The tangent of a quarter of the turn: how far along it to where the sides are cut off.
+            const double along = std::sqrt(std::max(0.0, 1 - cosine)) /
+                                 (std::sqrt(2.0) + std::sqrt(std::max(0.0, 1 + cosine)));
+            out.push_back(corner + n + reach_ * along * u);
+            out.push_back(corner + m + -reach_ * along * v);
+            return;
+        }
+        out.push_back(corner + n);
+        if (shape_ == OffsetCorner::round) {
+            const double half = std::sqrt(std::max(0.0, (1 + cosine) / 2)); // cosine of half the turn
+            if (reach_ * (1 - half) <= tolerance_ * half) {
+                out.back() = corner + turn.mitre * (n + m);
+                return;
+            }
+            const Point2 middle = with_length(reach_, cosine > 0 ? n + m : reach_ * (u + -1 * v));
+            add_arc(corner, n, middle, half, out);
+            out.push_back(corner + middle);
+            add_arc(corner, middle, m, half, out);
+        }
+        out.push_back(corner + m);
+    }
+
+  private:
+    /// The points between corner + n and corner + m on the arc around the corner. `cosine`: of the angle
+    /// between them.
+    void add_arc(const Point2& corner, const Point2& n, const Point2& m, double cosine,
+                 std::vector<Point2>& out) const {
+        const double half = std::sqrt((1 + cosine) / 2);
+        if (reach_ * (1 - half) <= tolerance_)
+            return;
+        const Point2 middle = with_length(reach_, n + m);
+        add_arc(corner, n, middle, half, out);
+        out.push_back(corner + middle);
+        add_arc(corner, middle, m, half, out);
+    }
+
+    OffsetCorner shape_;
+    double reach_;
+    double least_mitre_; ///< the least 1 + cosine of a turn with a mitre
+    double tolerance_;   ///< of chords
+};
 
 /// The sides of a ring, and how it turns between them: what is the same for all distances.
 class RingSides {
@@ -166,9 +218,8 @@ class RingMover {
   public:
     /// `rounding`: how far off places may be.
     RingMover(const RingSides& sides, double distance, const OffsetCorners& corners, double rounding)
-        : sides_(sides), distance_(distance), reach_(std::abs(distance)), corners_(corners),
-          least_mitre_(2 / (corners.mitre_limit * corners.mitre_limit)),
-          tolerance_(arc_tolerance(reach_, corners)), rounding_(rounding) {}
+        : sides_(sides), distance_(distance), reach_(std::abs(distance)), shape_(corners.shape),
+          wedges_(reach_, corners), rounding_(rounding) {}
 
     /// The ring of the sides as they are now.
     void move(std::vector<Point2>& out) {
@@ -182,7 +233,7 @@ class RingMover {
         }
         ends_.assign(sides_.size(), SideEnd::at_corner);
         meetings_.resize(sides_.size());
-        if (corners_.shape != OffsetCorner::bevel)
+        if (shape_ != OffsetCorner::bevel)
             find_rows();
         put_ends(out);
     }
@@ -278,12 +329,7 @@ class RingMover {
         }
     }
 
-    /// Where two moved sides of a row meet, and how far from where they begin, as they were.
-    struct Met {
-        Point2 at;
-        double before;
-        double after;
-    };
+    /// Where two moved sides of a row meet.
     [[nodiscard]] std::optional<Met> meet(std::size_t i, std::size_t j) const noexcept {
         const MovedSide& a = sides_[i];
         const MovedSide& b = sides_[j];
@@ -390,7 +436,7 @@ class RingMover {
                 out.push_back(corner + m);
             }
         } else {
-            join(corner, n, m, side.direction, next.direction, turn, out);
+            wedges_.go_around(corner, n, m, side.direction, next.direction, turn, out);
         }
     }
 
@@ -398,51 +444,16 @@ class RingMover {
         if (!stays(i) || !stays(after(i)))
             return false;
         // Bevels leave places without a wedge that are nearest to a corner: there, both strips must be.
-        return corners_.shape != OffsetCorner::bevel ||
+        return shape_ != OffsetCorner::bevel ||
                (sides_.turn(i).cosine >= 0 &&
                 reach_ * -parting(i) <= std::min(sides_[i].length, sides_[after(i)].length));
-    }
-
-    /// Around a wedge, from corner + n to corner + m. u and v: the directions of both sides.
-    void join(const Point2& corner, const Point2& n, const Point2& m, const Point2& u, const Point2& v,
-              const Turn& turn, std::vector<Point2>& out) const {
-        const double cosine = turn.cosine;
-        if (corners_.shape == OffsetCorner::mitre) {
-            if (1 + cosine >= least_mitre_) {
-                out.push_back(corner + turn.mitre * (n + m));
-                return;
-            }
-            // The tangent of a quarter of the turn: how far along it to where the sides are cut off.
-            const double along = std::sqrt(std::max(0.0, 1 - cosine)) /
-                                 (std::sqrt(2.0) + std::sqrt(std::max(0.0, 1 + cosine)));
-            out.push_back(corner + n + reach_ * along * u);
-            out.push_back(corner + m + -reach_ * along * v);
-            return;
-        }
-        if (corners_.shape == OffsetCorner::round) {
-            const double half = std::sqrt(std::max(0.0, (1 + cosine) / 2)); // cosine of half the turn
-            if (reach_ * (1 - half) <= tolerance_ * half) {
-                out.push_back(corner + turn.mitre * (n + m));
-                return;
-            }
-            out.push_back(corner + n);
-            const Point2 middle = with_length(reach_, cosine > 0 ? n + m : reach_ * (u + -1 * v));
-            add_arc(corner, n, middle, reach_, half, tolerance_, out);
-            out.push_back(corner + middle);
-            add_arc(corner, middle, m, reach_, half, tolerance_, out);
-            out.push_back(corner + m);
-            return;
-        }
-        out.push_back(corner + n);
-        out.push_back(corner + m);
     }
 
     const RingSides& sides_;
     double distance_;
     double reach_;
-    const OffsetCorners& corners_;
-    double least_mitre_; ///< the least 1 + cosine of a turn with a mitre
-    double tolerance_;   ///< of chords
+    OffsetCorner shape_;
+    Wedges wedges_;
     double rounding_;
     std::vector<double> cuts_; ///< how much of both sides is cut off behind a side, where strips overlap
     std::vector<SideEnd> ends_;
