@@ -28,9 +28,9 @@ Segment edge_over(double x, const MonotoneChains& chains, const Chain& chain) {
 
 } // namespace
 
-std::optional<EdgeBelow> edge_below(const Point2& p, std::uint32_t own, const MonotoneChains& chains,
-                                    const ChainGrid& grid) {
-    std::optional<EdgeBelow> found;
+EdgeBelow edge_below(const Point2& p, std::uint32_t own, const MonotoneChains& chains, const ChainGrid& grid,
+                     const Contacts& contacts) {
+    EdgeBelow found;
     Segment highest{};
     const auto reaches = [&p](const Box2& box) {
         return box.x0 <= p.x && p.x < box.x1 && box.y0 <= p.y;
@@ -45,14 +45,18 @@ std::optional<EdgeBelow> edge_below(const Point2& p, std::uint32_t own, const Mo
                 if (!reaches(chain.box()))
                     continue;
                 const Segment edge = edge_over(p.x, chains, chain);
-                if (side(edge, p) > 0 && (!found || compare_right_of(p.x, edge, highest) > 0)) {
+                if (side(edge, p) <= 0)
+                    continue;
+                if (contacts.group[chain.ring] != Contacts::none)
+                    return {.sure = false};
+                if (found.ring == Nesting::none || compare_right_of(p.x, edge, highest) > 0) {
                     highest = edge;
                     found = {chain.ring, (chain.ways & way::right) != 0};
                 }
             }
         }
         // What was not seen yet lies in lower rows from end to end.
-        if (found && cells.row(std::min(highest.lo.y, highest.hi.y)) >= row)
+        if (found.ring != Nesting::none && cells.row(std::min(highest.lo.y, highest.hi.y)) >= row)
             break;
     }
     return found;

@@ -25,12 +25,11 @@ namespace {
 /// Takes the rings from left to right and looks at what lies below the left end of each.
 class NestingSearch {
   public:
-    /// `turns`: what each ring adds to the windings. `apart`: no two rings have a point in common, nor has
-    /// one with itself.
+    /// `turns`: what each ring adds to the windings.
     NestingSearch(const Layer& layer, const MonotoneChains& chains, std::span<const Windings> turns,
-                  bool apart)
-        : layer_(layer), chains_(chains), turns_(turns), apart_(apart), ends_(ends_of(layer, chains)),
-          copies_(layer, ends_, apart), below_(layer.rings), placement_(ends_, copies_, turns) {
+                  const Contacts& contacts)
+        : layer_(layer), chains_(chains), turns_(turns), contacts_(contacts), ends_(ends_of(layer, chains)),
+          copies_(layer, ends_, contacts), below_(layer.rings), placement_(ends_, copies_, turns) {
         for (std::uint32_t i = 0; i < ends_.size(); ++i)
             if (layer.contour(i).empty())
                 placement_.place_empty(i);
@@ -42,25 +41,62 @@ class NestingSearch {
     WoundNesting run(const ChainGrid* grid) && {
         order_by_area();
         order_from_left_to_right();
-        if (apart_ && grid != nullptr && !grid->crowded() &&
-            std::none_of(ends_.begin(), ends_.end(), std::mem_fn(&LeftEnd::flat)))
-            place_apart(*grid);
-        else if (!order_.empty())
-            place_any();
+        if (grid != nullptr && grid->crowded())
+            grid = nullptr;
+        std::vector<EdgeBelow> edges;
+        std::vector<std::uint32_t> open; // an edge is not enough to know
+        edges.reserve(order_.size());
+        for (const std::uint32_t ring : order_) {
+            edges.push_back(grid != nullptr ? edge_below_end(ring, *grid) : EdgeBelow{.sure = false});
+            if (!edges.back().sure)
+                open.push_back(ring);
+        }
+        std::optional<SurroundingsSearch> surroundings;
+        if (!open.empty())
+            surroundings.emplace(chains_, ends_, copies_, turns_, order_, by_area_, open);
+        for (std::size_t i = 0; i < order_.size(); ++i)
+            if (edges[i].sure)
+                place_over(edges[i], order_[i]);
+            else
+                place_amid(surroundings->find(order_[i]), order_[i]);
         WoundNesting result = std::move(placement_).result();
         result.below = std::move(below_);
         return result;
     }
 
   private:
-    void place_any() {
-        const SurroundingsSearch surroundings(chains_, ends_, copies_, turns_, order_, by_area_);
-        for (const std::uint32_t ring : order_) {
-            const Surroundings around = surroundings.find(ring);
-            placement_.place(ring, parent_of(around), around.winding);
-            for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
-                below_[copy] = around.below_all;
+    [[nodiscard]] bool in_contact(std::uint32_t ring) const noexcept {
+        return contacts_.group[ring] != Contacts::none || ends_[ring].flat; // as one point may be
+    }
+
+    /// Of a ring that is in contact with none it is enough to know that one, if no ring in contact has it.
+    [[nodiscard]] EdgeBelow edge_below_end(std::uint32_t ring, const ChainGrid& grid) const {
+        if (in_contact(ring))
+            return {.sure = false};
+        const Point2& left = ends_[ring].line.lo;
+        if (contacts_.groups == 0 && !grid.surrounded(left, ring))
+            return {};
+        return edge_below(left, ring, chains_, grid, contacts_);
+    }
+
+    /// The ring is inside of the edge's ring, or beside it.
+    void place_over(const EdgeBelow& edge, std::uint32_t ring) {
+        std::uint32_t parent = Nesting::none;
+        Windings winding;
+        if (edge.ring != Nesting::none) {
+            const bool inside = edge.rightwards == ends_[edge.ring].rightwards;
+            parent = inside ? edge.ring : placement_.outside(edge.ring);
+            // Not that inside of its parent, which is another one elsewhere where that crosses itself.
+            winding = inside ? placement_.winding_inside(edge.ring) : placement_.winding(edge.ring);
         }
+        placement_.place(ring, parent, winding);
+        below_[ring] = winding;
+    }
+
+    void place_amid(const Surroundings& around, std::uint32_t ring) {
+        placement_.place(ring, parent_of(around), around.winding);
+        for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
+            below_[copy] = around.below_all;
     }
 
     [[nodiscard]] std::uint32_t parent_of(const Surroundings& around) const noexcept {
@@ -68,24 +104,6 @@ class NestingSearch {
             return Nesting::none;
         const std::uint32_t below = around.below->ring;
         return around.below->order >= 0 ? placement_.innermost(below) : placement_.outside(below);
-    }
-
-    /// The next edge below a left end is enough to know: the ring is inside of that edge's ring, or beside
-    /// it.
-    void place_apart(const ChainGrid& grid) {
-        for (const std::uint32_t ring : order_) {
-            const Point2& left = ends_[ring].line.lo;
-            const std::optional<EdgeBelow> below =
-                grid.surrounded(left, ring) ? edge_below(left, ring, chains_, grid) : std::nullopt;
-            std::uint32_t parent = Nesting::none;
-            if (below)
-                parent = below->rightwards == ends_[below->ring].rightwards ? below->ring
-                                                                            : placement_.outside(below->ring);
-            const Windings winding = parent == Nesting::none ? Windings{} : placement_.winding_inside(parent);
-            assert(!below || below->ring == parent || placement_.winding(below->ring) == winding);
-            placement_.place(ring, parent, winding);
-            below_[ring] = winding;
-        }
     }
 
     static std::vector<LeftEnd> ends_of(const Layer& layer, const MonotoneChains& chains) {
@@ -96,20 +114,19 @@ class NestingSearch {
         return ends;
     }
 
-    /// Areas only count where edges coincide, and take a look at all points.
+    /// Areas only count where edges coincide.
     void order_by_area() {
-        by_area_.resize(ends_.size());
-        if (apart_) {
-            std::iota(by_area_.begin(), by_area_.end(), 0U);
-            return;
-        }
         std::vector<double> area(ends_.size());
+        std::vector<std::uint32_t> largest_first;
         for (const std::uint32_t ring : order_)
-            area[ring] = ends_[ring].flat ? 0 : std::abs(ring_area(layer_.contour(ring)));
-        std::vector<std::uint32_t> largest_first = order_;
+            if (in_contact(ring)) {
+                area[ring] = ends_[ring].flat ? 0 : std::abs(ring_area(layer_.contour(ring)));
+                largest_first.push_back(ring);
+            }
         std::sort(largest_first.begin(), largest_first.end(), [&](std::uint32_t a, std::uint32_t b) {
             return area[a] != area[b] ? area[a] > area[b] : a < b;
         });
+        by_area_.resize(ends_.size());
         for (std::uint32_t i = 0; i < largest_first.size(); ++i)
             by_area_[largest_first[i]] = i;
     }
@@ -131,11 +148,11 @@ class NestingSearch {
     const Layer& layer_;
     const MonotoneChains& chains_;
     std::span<const Windings> turns_;
-    bool apart_;
+    const Contacts& contacts_;
     std::vector<LeftEnd> ends_;
     RingCopies copies_;
     std::vector<std::uint32_t> order_;   ///< the representatives
-    std::vector<std::uint32_t> by_area_; ///< of representatives: 0 for the largest
+    std::vector<std::uint32_t> by_area_; ///< of those in contact: 0 for the largest
     std::vector<Windings> below_;
     RingPlacement placement_;
 };
@@ -161,7 +178,7 @@ Nesting nesting(const Layer& layer) {
 WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
                      const Contacts& contacts, std::span<const Windings> turns) {
     check_size(layer);
-    return NestingSearch(layer, chains, turns, contacts.groups == 0).run(grid);
+    return NestingSearch(layer, chains, turns, contacts).run(grid);
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {

@@ -32,13 +32,13 @@ std::vector<Point2> corners(std::span<const Point2> ring) {
 
 } // namespace
 
-RingCopies::RingCopies(const Layer& layer, std::span<const LeftEnd> ends, bool apart)
+RingCopies::RingCopies(const Layer& layer, std::span<const LeftEnd> ends, const Contacts& contacts)
     : representative_(ends.size()), next_(ends.size(), Nesting::none) {
     std::iota(representative_.begin(), representative_.end(), 0U);
-    if (apart)
-        return;
-    std::vector<std::uint32_t> order = representative_;
-    std::erase_if(order, [&](std::uint32_t i) { return layer.contour(i).empty(); });
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t i = 0; i < ends.size(); ++i)
+        if (!layer.contour(i).empty() && (contacts.group[i] != Contacts::none || ends[i].flat))
+            order.push_back(i);
     const auto begins_before = [&](std::uint32_t i, std::uint32_t j) {
         return ends[i].smallest < ends[j].smallest;
     };

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "polygon/contacts.hpp"
 #include "polygon/left_end.hpp"
 
 #include <cstdint>
@@ -16,9 +17,8 @@ namespace lamella {
 /// between those beside them do not count.
 class RingCopies {
   public:
-    /// `apart`: no two rings have a point in common, so there are none. Otherwise O(n log n) for n points in
-    /// rings that begin in one point.
-    RingCopies(const Layer& layer, std::span<const LeftEnd> ends, bool apart);
+    /// O(n log n) for n points in rings in contact that begin in one point.
+    RingCopies(const Layer& layer, std::span<const LeftEnd> ends, const Contacts& contacts);
 
     [[nodiscard]] std::uint32_t representative(std::uint32_t ring) const noexcept {
         return representative_[ring];

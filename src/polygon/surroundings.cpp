@@ -29,9 +29,10 @@ RingEdge opposite(RingEdge edge) noexcept {
 SurroundingsSearch::SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends,
                                        const RingCopies& copies, std::span<const Windings> turns,
                                        std::span<const std::uint32_t> representatives,
-                                       std::span<const std::uint32_t> by_area)
+                                       std::span<const std::uint32_t> by_area,
+                                       std::span<const std::uint32_t> asked)
     : chains_(chains), ends_(ends), copies_(copies), turns_(turns), by_area_(by_area),
-      edges_(abscissae_of(ends, representatives)) {
+      edges_(abscissae_of(ends, asked)) {
     std::size_t near = 0;
     for (const std::uint32_t ring : representatives) {
         if (ends_[ring].flat)

@@ -22,16 +22,18 @@ struct Surroundings {
 };
 
 /// Finds the surroundings of rings that are given by their representatives. Edges that reach over no left end
-/// are left out, chain by chain. Exact but for `below` where edges cross.
+/// of these are left out, chain by chain. Exact but for `below` where edges cross.
 class SurroundingsSearch {
   public:
-    /// `turns`: what each ring adds; `by_area`: of representatives, how many of them are larger. All
-    /// arguments are to outlive the search. O(n log c) for n edges that reach over left ends of c rings.
+    /// `turns`: what each ring adds; `by_area`: of representatives in contact, how many of them are larger;
+    /// `asked`: those of all `representatives` whose surroundings will be asked for. All arguments are to
+    /// outlive the search. O(n log c) for n edges that reach over left ends of the c rings asked for.
     SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends, const RingCopies& copies,
                        std::span<const Windings> turns, std::span<const std::uint32_t> representatives,
-                       std::span<const std::uint32_t> by_area);
+                       std::span<const std::uint32_t> by_area, std::span<const std::uint32_t> asked);
 
-    /// The result lives as long as the search. O(log n log c), and more where edges cross or fold.
+    /// Of a ring asked for. The result lives as long as the search. O(log n log c), and more where edges
+    /// cross or fold.
     [[nodiscard]] Surroundings find(std::uint32_t ring) const;
 
   private:

@@ -1,6 +1,7 @@
 #include "lamella/polygon/nesting.hpp"
 
 #include "fixtures/layers.hpp"
+#include "polygon/known_nesting.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -480,6 +482,48 @@ TEST(Nesting, IsThatOfTheirCellsForRandomRingsThatTouch) {
         rings += made.rings.size();
     }
     EXPECT_GT(rings, 20000U); // there was something to nest
+}
+
+/// Nests of diamonds in the cells of a frame, of which some run through the walls of their cell. The frame
+/// has a loop at its left, where it runs the wrong way round.
+std::vector<Contour> nests_of_diamonds(Random& random) {
+    std::vector<Contour> rings{
+        {{-1, -1}, {81, -1}, {81, 81}, {-1, 81}, {-1, 41}, {-3, 39}, {-3, 41}, {-1, 39}}};
+    const auto add = [&](const Contour& ring) {
+        rings.push_back(random.integer(0, 3) == 0 ? reversed(ring) : ring);
+    };
+    for (int x = 0; x < 8; ++x)
+        for (int y = 0; y < 8; ++y) {
+            add(rectangle(10 * x + 0.25, 10 * y + 0.25, 10 * x + 9.75, 10 * y + 9.75));
+            for (auto n = random.integer(0, 4); n > 0; --n)
+                add(diamond(10 * x + 5, 10 * y + 5,
+                            static_cast<double>(n) * (random.integer(0, 9) == 0 ? 2 : 1)));
+        }
+    return rings;
+}
+
+TEST(Nesting, OfRingsAmongOthersInContactIsAsIfAllWereLookedAtTogether) {
+    Random random(11);
+    for (int round = 0; round < 30; ++round) {
+        const Layer layer = layer_of(nests_of_diamonds(random));
+        const MonotoneChains chains(layer);
+        const std::optional<ChainGrid> grid = ChainGrid::of(chains);
+        ASSERT_TRUE(grid.has_value());
+        const Contacts contacts = find_contacts(layer, chains, &*grid);
+        const auto apart = static_cast<std::size_t>(
+            std::count(contacts.group.begin(), contacts.group.end(), Contacts::none));
+        ASSERT_TRUE(0 < apart && apart < layer.rings);
+        const std::vector<Windings> turns(layer.rings, Windings{1, 0});
+        const WoundNesting found = nesting(layer, chains, &*grid, contacts, turns);
+        const WoundNesting together = nesting(layer, chains, nullptr, contacts, turns);
+        EXPECT_EQ(found.nesting.kind, together.nesting.kind);
+        EXPECT_EQ(found.nesting.parent, together.nesting.parent);
+        EXPECT_EQ(found.nesting.body, together.nesting.body);
+        EXPECT_EQ(found.nesting.order, together.nesting.order);
+        EXPECT_EQ(found.outside, together.outside);
+        EXPECT_EQ(found.inside, together.inside);
+        EXPECT_EQ(found.below, together.below);
+    }
 }
 
 TEST(Nesting, OfManySmallRingsWithinOneAnotherIsFoundWithoutLookingAtAllPairs) {
