@@ -107,7 +107,8 @@ TEST(KnownNesting, IsTheNestingOfTheLayer) {
         EXPECT_TRUE(!apart || contacts.groups == 0);
         // Who is told of contacts looks at all edges.
         const std::vector<Windings> turns(layer.rings, Windings{1, 0});
-        const Nesting expected = nesting(layer, chains, nullptr, {.group = {}, .groups = 1}, turns).nesting;
+        const Contacts all{.group = std::vector<std::uint32_t>(layer.rings, 0), .groups = 1};
+        const Nesting expected = nesting(layer, chains, nullptr, all, turns).nesting;
         const Nesting found = nesting(layer, chains, grid ? &*grid : nullptr, contacts, turns).nesting;
         EXPECT_EQ(found.kind, expected.kind);
         EXPECT_EQ(found.parent, expected.parent);
