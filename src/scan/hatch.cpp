@@ -73,8 +73,7 @@ std::int32_t modulo(std::int32_t number) noexcept {
 
 // Stripes are cells in one row each. What a line has of a stripe may be too short, where it ends just beyond
 // the border of two: then the neighbour is a little longer.
-template <class Add>
-void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, const Add& add) {
+void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, Islands& islands) {
     const double width = rule.cell;
     const double more = rule.overlap / 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -93,7 +92,7 @@ void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, const Add&
             for (std::int32_t stripe = first; stripe <= last; ++stripe) {
                 const double from = stripe == first ? begin : std::max(begin, stripe * width - more);
                 const double to = stripe == last ? end : std::min(end, (stripe + 1) * width + more);
-                add({stripe, 0}, i, from, to);
+                islands.add({stripe, 0}, i, from, to);
             }
         }
     }
@@ -120,17 +119,17 @@ void cut_into_cells(std::span<const double> ends, double pitch, double offset, d
 // Of a line on the border of two rows counts the one above it. Squares of one colour have lines along the
 // frame, those of the other colour have them across: these are the squares of the first colour in the frame
 // turned by a right angle.
-template <class Add>
-void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& rule, const Add& add) {
+void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
     const double half = (rule.cell + rule.overlap) / 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const double v = lines.v(i) / rule.cell - 0.5;
         const double reach = half / rule.cell;
         for (std::int32_t row = floor_of(v - reach) + 1; row <= floor_of(v + reach); ++row)
-            cut_into_cells<2>(lines.ends(i), rule.cell, 0.5, half, row, rule,
-                              [&](std::int32_t column, double from, double to) {
-                                  add(turns == 0 ? Cell{row, column} : Cell{column, -row - 1}, i, from, to);
-                              });
+            cut_into_cells<2>(
+                lines.ends(i), rule.cell, 0.5, half, row, rule,
+                [&](std::int32_t column, double from, double to) {
+                    islands.add(turns == 0 ? Cell{row, column} : Cell{column, -row - 1}, i, from, to);
+                });
     }
 }
 
@@ -138,8 +137,7 @@ void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& 
 // cell * (q + r / 2) and v = cell * r * sqrt(3) / 2. Turned by a sixth of a turn, (q, r) comes to (-r, q +
 // r), and the same rows lie along the frame that is turned so. Of three colours, (q - r) modulo 3, each has
 // the lines of one of three directions; turned once, colour c comes to -c.
-template <class Add>
-void cut_into_hexagons(const HatchLines& lines, unsigned turns, const HatchRule& rule, const Add& add) {
+void cut_into_hexagons(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
     const double root = std::sqrt(3.0);
     const double pitch = rule.cell * root / 2;
     const double width = rule.cell + rule.overlap;
@@ -158,7 +156,7 @@ void cut_into_hexagons(const HatchLines& lines, unsigned turns, const HatchRule&
                                   for (unsigned k = 0; k < turns; ++k)
                                       q = -std::exchange(r, q + r);
                                   assert(modulo<3>(q - r) == static_cast<std::int32_t>(turns));
-                                  add({r, q + (r >> 1)}, i, from, to);
+                                  islands.add({r, q + (r >> 1)}, i, from, to);
                               });
         }
     }
@@ -203,29 +201,19 @@ PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t see
         lines.push_back(lines_in(area, degrees + turns * (squares ? 90 : 60), rule.distance));
         check_pieces(lines.back(), area.within, rule);
     }
-    const auto cut = [&](const auto& add) {
-        for (unsigned turns = 0; turns < lines.size(); ++turns) {
-            const auto add_piece = [&](Cell cell, std::size_t i, double from, double to) {
-                add(cell, lines[turns], i, from, to);
-            };
-            if (stripes)
-                cut_into_stripes(lines[turns], rule, add_piece);
-            else if (squares)
-                cut_into_squares(lines[turns], turns, rule, add_piece);
-            else
-                cut_into_hexagons(lines[turns], turns, rule, add_piece);
-        }
-    };
     Islands islands;
-    cut([&](Cell cell, const HatchLines&, std::size_t, double, double) { islands.count(cell); });
-    if (stripes || rule.order == IslandOrder::rows)
-        islands.order_in_rows();
-    else
-        islands.shuffle(seed, area.within.index);
-    cut([&](Cell cell, const HatchLines& of, std::size_t i, double from, double to) {
-        islands.put(cell, i, of.frame().point(from, of.v(i)), of.frame().point(to, of.v(i)));
-    });
-    return std::move(islands).points();
+    for (unsigned turns = 0; turns < lines.size(); ++turns) {
+        islands.begin(lines[turns]);
+        if (stripes)
+            cut_into_stripes(lines[turns], rule, islands);
+        else if (squares)
+            cut_into_squares(lines[turns], turns, rule, islands);
+        else
+            cut_into_hexagons(lines[turns], turns, rule, islands);
+    }
+    return stripes || rule.order == IslandOrder::rows
+               ? std::move(islands).points_in_rows()
+               : std::move(islands).points_shuffled(seed, area.within.index);
 }
 
 } // namespace lamella

@@ -26,7 +26,7 @@ std::uint32_t Islands::number_of(Cell cell) {
 }
 
 // Every other row is what it would be, from its end.
-void Islands::order_in_rows() {
+PointArray Islands::points_in_rows() && {
     std::vector<std::uint32_t> order(cells_.size());
     std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
@@ -43,10 +43,11 @@ void Islands::order_in_rows() {
         place.next = static_cast<std::ptrdiff_t>(back ? total + place.points - 1 : total);
         total += place.points;
     }
-    points_.resize(total);
+    assert(total == 2 * pieces_.size());
+    return points();
 }
 
-void Islands::shuffle(std::uint64_t seed, std::uint64_t layer) {
+PointArray Islands::points_shuffled(std::uint64_t seed, std::uint64_t layer) && {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
     for (std::uint32_t number = 0; number < cells_.size(); ++number) {
         const Cell& cell = cells_[number].cell;
@@ -62,20 +63,34 @@ void Islands::shuffle(std::uint64_t seed, std::uint64_t layer) {
         cells_[number].next = static_cast<std::ptrdiff_t>(total);
         total += cells_[number].points;
     }
-    points_.resize(total);
+    assert(total == 2 * pieces_.size());
+    return points();
 }
 
-void Islands::put(Cell cell, std::size_t line, const Point2& from, const Point2& to) {
-    Place& place = cells_[number_of(cell)];
-    if (place.line != line) {
+PointArray Islands::points() {
+    points_.resize(2 * pieces_.size());
+    for (std::size_t d = 0; d < directions_.size(); ++d) {
+        const std::size_t end = d + 1 < directions_.size() ? directions_[d + 1].begin : pieces_.size();
+        for (std::size_t i = directions_[d].begin; i < end; ++i)
+            put(pieces_[i], *directions_[d].lines);
+    }
+    for (const Place& place : cells_)
         end_line(place);
-        place.line = line;
+    return PointArray(std::move(points_));
+}
+
+void Islands::put(const Piece& piece, const HatchLines& lines) {
+    Place& place = cells_[piece.cell];
+    if (place.line != piece.line) {
+        end_line(place);
+        place.line = piece.line;
         place.line_begin = place.next;
         place.back = !place.back;
     }
-    for (const Point2& p : {from, to}) {
+    const double v = lines.v(piece.line);
+    for (const double u : {piece.from, piece.to}) {
         assert(place.next >= 0 && static_cast<std::size_t>(place.next) < points_.size());
-        points_[static_cast<std::size_t>(place.next)] = p;
+        points_[static_cast<std::size_t>(place.next)] = lines.frame().point(u, v);
         place.next += place.step;
     }
 }
@@ -86,12 +101,6 @@ void Islands::end_line(const Place& place) {
     const auto [begin, end] = place.step > 0 ? std::pair(place.line_begin, place.next)
                                              : std::pair(place.next + 1, place.line_begin + 1);
     std::reverse(points_.begin() + begin, points_.begin() + end);
-}
-
-PointArray Islands::points() && {
-    for (const Place& place : cells_)
-        end_line(place);
-    return PointArray(std::move(points_));
 }
 
 } // namespace lamella

@@ -5,6 +5,8 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
 
+#include "scan/hatch_lines.hpp"
+
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -22,43 +24,57 @@ struct Cell {
     friend auto operator<=>(const Cell&, const Cell&) = default;
 };
 
-/// Pieces of lines, cell by cell; in each cell line by line, back and forth.
-///
-/// The same pieces are told twice, in the same order: first they are counted, and once the order of the cells
-/// is known each is put where it belongs. So no memory is touched but that of the result. O(pieces) and
-/// O(c log c) for c cells.
+/// Pieces of lines, cell by cell; in each cell line by line, back and forth. O(pieces) and O(c log c) for c
+/// cells.
 class Islands {
   public:
-    void count(Cell cell) { cells_[number_of(cell)].points += 2; }
+    /// What is added from here on are pieces of these lines, which are to outlive this.
+    void begin(const HatchLines& lines) { directions_.push_back({&lines, pieces_.size()}); }
+    /// A piece of line i; cells have lines of one direction.
+    void add(Cell cell, std::size_t i, double from, double to) {
+        const std::uint32_t number = number_of(cell);
+        cells_[number].points += 2;
+        pieces_.push_back({number, static_cast<std::uint32_t>(i), from, to});
+    }
 
-    /// Cells row by row, back and forth.
-    void order_in_rows();
-    /// Cells in an order that a seed and a layer decide.
-    void shuffle(std::uint64_t seed, std::uint64_t layer);
-
-    /// `line`: other pieces of the cell with the same number lie on the same line.
-    void put(Cell cell, std::size_t line, const Point2& from, const Point2& to);
-    [[nodiscard]] PointArray points() &&;
+    /// Of cells row by row, back and forth.
+    [[nodiscard]] PointArray points_in_rows() &&;
+    /// Of cells in an order that a seed and a layer decide.
+    [[nodiscard]] PointArray points_shuffled(std::uint64_t seed, std::uint64_t layer) &&;
 
   private:
-    static constexpr auto no_line = static_cast<std::size_t>(-1);
+    static constexpr auto no_line = static_cast<std::uint32_t>(-1);
 
     struct Place {
         Cell cell;
-        std::uint32_t after = 0;    ///< the cell that was looked for after it, the last time
-        std::size_t points = 0;     ///< in it
-        std::ptrdiff_t next = 0;    ///< where its next point belongs
-        std::ptrdiff_t step = 1;    ///< from there to the one after it
-        std::size_t line = no_line; ///< of the last piece
+        std::uint32_t after = 0;      ///< the cell that was looked for after it, the last time
+        std::size_t points = 0;       ///< in it
+        std::ptrdiff_t next = 0;      ///< where its next point belongs
+        std::ptrdiff_t step = 1;      ///< from there to the one after it
+        std::uint32_t line = no_line; ///< of the last piece
+        bool back = true;             ///< whether that line is followed from its end
         std::ptrdiff_t line_begin = 0;
-        bool back = true; ///< whether that line is followed from its end
+    };
+    struct Piece {
+        std::uint32_t cell; ///< its number
+        std::uint32_t line;
+        double from;
+        double to;
+    };
+    struct Direction {
+        const HatchLines* lines;
+        std::size_t begin; ///< of its pieces
     };
     std::uint32_t number_of(Cell cell);
+    PointArray points();
+    void put(const Piece& piece, const HatchLines& lines);
     void end_line(const Place& place);
 
     std::vector<Place> cells_;
     std::unordered_map<std::uint64_t, std::uint32_t> number_; ///< by row and column
     std::uint32_t last_ = 0;                                  ///< that was looked for
+    std::vector<Piece> pieces_;
+    std::vector<Direction> directions_;
     std::vector<Point2> points_;
 };
 
