@@ -135,7 +135,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     for (const LayerPart& part : file.parts)
         stacks.push_back(part.layers);
     const ScanResult result =
-        scan_layers(arguments.output, format, stacks, info, strategy, options, execution);
+        scan_layers(arguments.output, format, stacks, file.rounding, info, strategy, options, execution);
     for (const std::string& warning : result.warnings)
         context.messages.warn(fmt::format("{}: {}", one_line(arguments.output), warning));
     if (!arguments.stats.empty()) {

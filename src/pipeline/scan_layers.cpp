@@ -28,13 +28,13 @@ namespace {
 /// Planes of several stacks.
 class Stacks {
   public:
-    explicit Stacks(std::span<const LayerStack> parts) {
+    Stacks(std::span<const LayerStack> parts, const Rounding& rounding) {
         planes_.resize(parts.empty() ? 0 : parts.front().size());
         for (const LayerStack& part : parts) {
             if (part.size() != planes_.size())
                 throw Error(ErrorKind::usage, "parts of one file must have the same planes");
             for (std::size_t i = 0; i < part.size(); ++i) {
-                ScanLayer& layer = planes_[i].emplace_back(part[i]);
+                ScanLayer& layer = planes_[i].emplace_back(part[i], rounding);
                 if (i > 0)
                     layer.share_points(planes_[i - 1][planes_[i].size() - 1]);
             }
@@ -60,10 +60,10 @@ class Stacks {
 } // namespace
 
 ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
-                       const LayerFileInfo& info, const ScanStrategy& strategy,
+                       const Rounding& rounding, const LayerFileInfo& info, const ScanStrategy& strategy,
                        const LayerWriteOptions& options, const Execution& execution) {
     check_strategy(strategy);
-    const Stacks stacks(parts);
+    const Stacks stacks(parts, rounding);
     ScanResult result;
     std::vector<bool> supports;
     for (const PartInfo& part : info.parts)

@@ -21,11 +21,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// How far the format may have moved a point of these layers.
 double moved_points(const RoundedLayers& stack) {
-    double largest = 0;
+    double most = 0;
     for (const Layer& layer : stack.layers)
-        for (const Point2& p : layer.points)
-            largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    return stack.rounding.step_at(largest) / 2 * std::sqrt(2.0);
+        most = std::max(most, moved_point(layer, stack.rounding));
+    return most;
 }
 
 /// Pairs the layers of two stacks, which both ascend.

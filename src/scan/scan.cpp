@@ -99,8 +99,10 @@ std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const Sc
 
 } // namespace
 
-ScanLayer::ScanLayer(const Layer& layer)
-    : layer_(without_straight_points(layer, ClippingGrid(layer.points.span()).unit())) {}
+// Of three points that are rounded, the middle one may be off by as much as the other two together.
+ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding)
+    : layer_(without_straight_points(
+          layer, std::max(ClippingGrid(layer.points.span()).unit(), 2 * moved_point(layer, rounding)))) {}
 
 void ScanLayer::share_points(const ScanLayer& other) {
     if (same_contours(layer_, other.layer_))

@@ -312,7 +312,7 @@ TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
         stacks.push_back(part.layers);
     }
     for (const unsigned threads : {1U, 4U}) {
-        const ScanResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, info,
+        const ScanResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info,
                                               *scanned.scan, {}, {.threads = threads});
         EXPECT_EQ(content("scanned.cli"), content("sliced.cli"));
         EXPECT_EQ(result.bytes, sliced.bytes);

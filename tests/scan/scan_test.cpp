@@ -152,6 +152,28 @@ TEST(Scan, RegionsAreDisjointAndMakeUpTheLayer) {
     }
 }
 
+TEST(Scan, WaysAreAsStraightAsRoundingLeavesThem) {
+    const Rounding rounding{.step_mm = 0.001};
+    const std::vector<Point2> corners{{0.101, 0.203}, {9.737, 2.311}, {7.119, 12.907}, {-2.413, 10.811}};
+    test::Contour ring;
+    for (std::size_t side = 0; side < corners.size(); ++side)
+        for (int i = 0; i < 50; ++i) {
+            const Point2& a = corners[side];
+            const Point2& b = corners[(side + 1) % corners.size()];
+            const auto rounded = [i](double from, double to) {
+                return std::round((from + i / 50.0 * (to - from)) * 1000) / 1000;
+            };
+            ring.push_back({rounded(a.x, b.x), rounded(a.y, b.y)});
+        }
+    const Layer layer = layer_of({ring});
+    EXPECT_GT(ScanLayer(layer).layer().points.size(), 100U);
+    const ScanLayer straight(layer, rounding);
+    EXPECT_EQ(straight.layer().points.size(), corners.size());
+    for (const Point2& p : layer.points)
+        EXPECT_LE(distance_to(straight.layer(), p), 2 * moved_point(layer, rounding));
+    EXPECT_EQ(ScanLayer(layer_of({corners}), rounding).layer().points.size(), corners.size());
+}
+
 TEST(Scan, WhereThePartEndsAllIsSkin) {
     ScanStrategy strategy;
     strategy.upskin.layers = 2;

@@ -29,6 +29,16 @@ struct Rounding {
     return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
 }
 
+/// How far a format may have moved a point of a layer.
+[[nodiscard]] inline double moved_point(const Layer& layer, const Rounding& rounding) noexcept {
+    if (rounding == Rounding{})
+        return 0;
+    double largest = 0;
+    for (const Point2& p : layer.points)
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    return rounding.step_at(largest) / 2 * std::sqrt(2.0);
+}
+
 /// What text formats round to that have no unit of their own.
 inline constexpr Rounding text_rounding{.step_mm = 0.001};
 

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
@@ -38,12 +39,13 @@ struct ScanResult {
     std::vector<std::string> warnings;
 };
 
-/// Scans the layers of parts, whose stacks have the same planes, and writes the vectors; `info` is the head
-/// of a file of these layers. Hatches that layers have already do not count. On all threads, each of which
-/// holds the vectors of one plane. Throws what `scan` and `write_layers` throw.
+/// Scans the layers of parts, whose stacks have the same planes, and writes the vectors. `rounding`: of the
+/// file that they come from, none for layers just cut; `info`: the head of a file of these layers. Hatches
+/// that layers have already do not count. On all threads, each of which holds the vectors of one plane.
+/// Throws what `scan` and `write_layers` throw.
 [[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
-                                     std::span<const LayerStack> parts, const LayerFileInfo& info,
-                                     const ScanStrategy& strategy, const LayerWriteOptions& options = {},
-                                     const Execution& execution = {});
+                                     std::span<const LayerStack> parts, const Rounding& rounding,
+                                     const LayerFileInfo& info, const ScanStrategy& strategy,
+                                     const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella

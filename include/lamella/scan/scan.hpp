@@ -3,6 +3,7 @@
 // From layers to scan vectors: what a powder-bed machine executes.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/scan/strategy.hpp"
 
 #include <memory>
@@ -12,13 +13,14 @@
 
 namespace LAMELLA_API lamella {
 
-/// A layer as `scan` takes it: without points of rings on the straight way between others, to 2^-36 of its
-/// extent, at which a beam need not stop. Made once of each layer, which may be scanned and be a neighbour of
-/// others. Throws Error{limit} for coordinates beyond 1e150.
+/// A layer as `scan` takes it: without points of rings on the straight way between others, at which a beam
+/// need not stop; to 2^-36 of its extent, or to what the rounding of a file that it comes from explains. Made
+/// once of each layer, which may be scanned and be a neighbour of others. Throws Error{limit} for coordinates
+/// beyond 1e150.
 class ScanLayer {
   public:
     // NOLINTNEXTLINE(google-explicit-constructor): a layer is one, as a string is a view
-    ScanLayer(const Layer& layer);
+    ScanLayer(const Layer& layer, const Rounding& rounding = {});
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
 
