@@ -20,8 +20,8 @@ function boxTriangles() {
   return faces.flatMap(([a, b, c, d]) => [[p[a], p[b], p[c]], [p[a], p[c], p[d]]]);
 }
 
-/** Pixels of the colour of the walls and of the outside, counted in what is on the screen. */
-async function bluePixels(page, canvas) {
+/** Pixels of the colours of walls or of the outside of a mesh, and of faults, counted in what is on the screen. */
+async function huesOf(page, canvas) {
   await settled(page);
   const picture = (await canvas.screenshot()).toString('base64');
   return page.evaluate(async (picture) => {
@@ -31,9 +31,13 @@ async function bluePixels(page, canvas) {
     const ctx = new OffscreenCanvas(image.width, image.height).getContext('2d');
     ctx.drawImage(image, 0, 0);
     const { data } = ctx.getImageData(0, 0, image.width, image.height);
-    let n = 0;
-    for (let i = 0; i < data.length; i += 4) if (data[i + 2] > data[i] + 30) ++n;
-    return n;
+    const hues = { blue: 0, red: 0 };
+    for (let i = 0; i < data.length; i += 4) {
+      const [r, g, b] = data.slice(i, i + 3);
+      if (b > r + 30) ++hues.blue;
+      if (r > 100 && g < r / 3 && b < r / 3) ++hues.red;
+    }
+    return hues;
   }, picture);
 }
 
@@ -306,6 +310,38 @@ test('the time of scan vectors is plotted, added up, and the same in all pages o
   await close();
 });
 
+/** The job with contours that end 5 mm short of where they began: `name`, of the same length. */
+function openJob(name) {
+  const bytes = readFileSync(file('job.ovf'));
+  const coordinates = (x, y) => Buffer.from(new Float32Array([x, y]).buffer);
+  for (const [x, y] of [[19.95, 29.95], [19.85, 29.85]]) {
+    const ring = coordinates(x, y);
+    for (let first = bytes.indexOf(ring); first >= 0; ) {
+      const last = bytes.indexOf(ring, first + ring.length);
+      coordinates(x, y - 5).copy(bytes, last);
+      first = bytes.indexOf(ring, last + ring.length);
+    }
+  }
+  writeFileSync(file(name), bytes);
+}
+
+test('in the stack, open contours of a mesh are red, and those of scan vectors have the colour of their region', async () => {
+  scanJob();
+  openJob('open_job.ovf');
+  lamella('view', 'open_job.ovf');
+  for (const [name, fault] of [['open.html', true], ['open_job.html', false]]) {
+    const { page, complaints, close } = await open(name, { view: 'stack' });
+    const canvas = page.locator('canvas[data-built]');
+    await canvas.waitFor();
+    await page.keyboard.press('End');
+    const { blue, red } = await huesOf(page, canvas);
+    assert.equal(red > 5000, fault, `${name}: ${red} red pixels`);
+    if (!fault) assert.ok(red === 0 && blue > 5000, `${name}: ${red} red pixels, ${blue} blue ones`);
+    assert.deepEqual(complaints, [], name);
+    await close();
+  }
+});
+
 test('an open contour is seen in red, counted, and listed', async () => {
   for (const colorScheme of ['light', 'dark']) {
     const { page, close } = await open('open.html', { colorScheme });
@@ -383,7 +419,7 @@ test('a defect on the far side is seen from there', async () => {
   await page.getByRole('button', { name: /rim of 3 edges/ }).click();
   const canvas = page.locator('canvas[data-ready]');
   const { width, height } = await canvas.boundingBox();
-  assert.ok((await bluePixels(page, canvas)) > 0.5 * width * height); // the outside, not the inside through the ball
+  assert.ok((await huesOf(page, canvas)).blue > 0.5 * width * height); // the outside, not the inside through the ball
   await close();
 });
 
@@ -392,12 +428,11 @@ test('the stack shows the layers up to the one that is chosen', async () => {
   await page.waitForSelector('canvas[data-built]');
   await page.getByRole('button', { name: 'Layers above' }).click();
   await page.getByRole('button', { name: 'Front' }).click();
-  const blue = () => bluePixels(page, page.locator('canvas[data-built]'));
   const heights = [];
   // The eye is at half the height: from there up nothing of the flat top is seen.
   for (const layer of [49, 74, 99]) {
     await page.locator('#layer').fill(String(layer));
-    heights.push(await blue());
+    heights.push((await huesOf(page, page.locator('canvas[data-built]'))).blue);
   }
   assert.ok(heights[0] > 1000, heights.join(' '));
   assert.ok(Math.abs(heights[1] / heights[0] - 1.5) < 0.1 && Math.abs(heights[2] / heights[0] - 2) < 0.1, heights.join(' '));

@@ -4,7 +4,7 @@ import { faultText, findings, firstLayer, gapText, layerText, remarkableLayers, 
 import { Camera } from '../src/layer/camera.js';
 import { roundStep } from '../src/layer/round_step.js';
 import { levelsOf } from '../src/stack/levels.js';
-import { Walls, linesOfRow, spacingFor } from '../src/stack/walls.js';
+import { Walls, lineKinds, linesOfRow, spacingFor } from '../src/stack/walls.js';
 import { Store } from '../src/store.js';
 import { LayerAxis, columnsOf } from '../src/timeline/plot.js';
 import { brief, counted, duration } from '../src/text.js';
@@ -158,7 +158,7 @@ function squareLayer() {
 }
 
 test('walls stand on every line, with normals that point out of the material', () => {
-  const walls = new Walls();
+  const walls = new Walls([{}]);
   walls.add(squareLayer(), 3, 0);
   assert.equal(walls.size, 5);
   assert.deepEqual([walls.layers, walls.counts], [[3], [5]]);
@@ -168,13 +168,25 @@ test('walls stand on every line, with normals that point out of the material', (
   assert.deepEqual([...floats.subarray(0, 4)], [0, 0, 10, 0]);
   assert.deepEqual([...rows.subarray(6, 8)].map(vector), [[0, -32767], [0, -32767]]);
   const lines = [0, 1, 2, 3, 4].map((i) => [...rows.subarray(8 * i + 4, 8 * i + 6)]);
-  assert.deepEqual(lines, [[3, 0], [3, 0], [3, 0], [3, 0], [3, 1]]);
+  assert.deepEqual(lines, [[3, 0], [3, 0], [3, 0], [3, 0], [3, lineKinds.fault]]);
+});
+
+test('only chains of material are faults', () => {
+  const walls = new Walls([{}, { exposure: { region: 'core', kind: 'contour' } }]);
+  const [square] = squareLayer().parts;
+  walls.add({ parts: [square, square] }, 0, 0);
+  const kinds = Array.from({ length: 10 }, (_, i) => walls.rows[8 * i + 5]);
+  const { ring, vectors, fault } = lineKinds;
+  assert.deepEqual(kinds.map((number) => [number >> 2, number & 3]), [
+    ...Array(4).fill([0, ring]), [0, fault],
+    ...Array(4).fill([1, ring]), [1, vectors],
+  ]);
 });
 
 test('lines that turn by little have a normal in common', () => {
   const n = 36;
   const circle = Array.from({ length: n }, (_, i) => [Math.cos((2 * Math.PI * i) / n), Math.sin((2 * Math.PI * i) / n)]);
-  const walls = new Walls();
+  const walls = new Walls([{}]);
   walls.add({ parts: [{ points: new Float32Array(circle.flat()), ends: new Uint32Array([n]), rings: 1 }] }, 0, 0);
   for (let i = 0; i < n; ++i) {
     assert.equal(walls.rows[8 * i + 7], walls.rows[8 * ((i + 1) % n) + 6]);
@@ -184,7 +196,7 @@ test('lines that turn by little have a normal in common', () => {
 });
 
 test('walls of many layers stay as they were put up', () => {
-  const walls = new Walls();
+  const walls = new Walls([{}]);
   for (let number = 0; number < 1000; ++number) walls.add(squareLayer(), number, 0);
   assert.equal(walls.size, 5000);
   assert.equal(walls.rows.length, 8 * 5 * linesOfRow);
@@ -212,7 +224,7 @@ test('points are left out by their distance until enough are', () => {
   assert.equal(spacingFor(layer, 1000, 0.01), 0);
   const apart = spacingFor(layer, 100, 0.01);
   assert.ok(apart > 0.3 && apart < 1.5, `${apart}`);
-  const walls = new Walls();
+  const walls = new Walls([{}]);
   walls.add(layer, 0, apart);
   assert.ok(walls.size <= 100 && walls.size > 30);
 });

@@ -3,8 +3,14 @@
 export const regions = ['core', 'upskin', 'downskin', 'support'];
 export const kinds = ['contour', 'hatch'];
 
-export const hasVectors = (head) => head.parts.some(({ exposure }) => exposure);
-export const hasMaterial = (head) => head.parts.some(({ exposure }) => !exposure);
+/** Whether a part is scan vectors: its chains are open by intent, while those of material are faults. */
+export const isVectors = ({ exposure }) => Boolean(exposure);
+
+export const hasVectors = (head) => head.parts.some(isVectors);
+export const hasMaterial = (head) => !head.parts.every(isVectors);
+
+/** The colour of a part that is scan vectors, of those in effect. */
+export const colourOfVectors = ({ exposure }, { vectors }) => vectors[`${exposure.region} ${exposure.kind}`];
 
 /**
  * Parts that are shown or hidden together.

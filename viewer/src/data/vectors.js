@@ -1,3 +1,5 @@
+import { isVectors } from './exposures.js';
+
 /**
  * The scan vectors of one layer in the order in which they are executed.
  * @typedef {object} Vectors
@@ -69,7 +71,7 @@ function timed(vectors, parts) {
  * @returns {Vectors}
  */
 export function vectorsOf(layer, parts) {
-  const exposed = (part) => parts[part].exposure;
+  const exposed = (part) => isVectors(parts[part]);
   const count = layer.parts.reduce((sum, contours, part) => sum + (exposed(part) ? countOf(contours) : 0), 0);
   const vectors = { count, lines: new Float32Array(4 * count), ends: new Uint32Array(parts.length), seconds: new Float64Array(count) };
   let at = 0;

@@ -1,3 +1,4 @@
+import { colourOfVectors } from '../data/exposures.js';
 import { jumpsTo, partOf } from '../data/vectors.js';
 
 /** Draws scan vectors as they are executed: contours strong, hatches thin, the ways between them faint. */
@@ -68,11 +69,10 @@ export function drawVectors(ctx, camera, vectors, from, to, { parts, hidden, jum
       ctx.stroke();
     }
     if (!hidden.has(part) && at < end) {
-      const { region, kind } = parts[part].exposure;
       ctx.beginPath();
       traceVectors(ctx, vectors, at, end, camera);
-      ctx.strokeStyle = colours.vectors[`${region} ${kind}`];
-      ctx.lineWidth = widths[kind];
+      ctx.strokeStyle = colourOfVectors(parts[part], colours);
+      ctx.lineWidth = widths[parts[part].exposure.kind];
       ctx.stroke();
     }
     at = end;

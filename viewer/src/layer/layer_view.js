@@ -1,4 +1,4 @@
-import { hasMaterial, hasVectors, kindsOf, switchGroup } from '../data/exposures.js';
+import { hasMaterial, hasVectors, isVectors, kindsOf, switchGroup } from '../data/exposures.js';
 import { vectorsOf } from '../data/vectors.js';
 import { element } from '../element.js';
 import { layerText } from '../findings.js';
@@ -283,7 +283,7 @@ export class LayerView {
     if (executed.count > order) {
       [executed.canvas.width, executed.canvas.height] = [this.canvas.width, this.canvas.height];
       kept.setTransform(density, 0, 0, density, 0, 0);
-      const exposed = options.parts.flatMap(({ exposure }, part) => (exposure ? [part] : []));
+      const exposed = options.parts.flatMap((each, part) => (isVectors(each) ? [part] : []));
       drawLayer(kept, camera, this.#layer, { ...options, hidden: new Set([...options.hidden, ...exposed]) });
       if (order < vectors.count) drawOutline(kept, camera, vectors, options);
       executed.count = 0;

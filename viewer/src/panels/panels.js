@@ -1,4 +1,4 @@
-import { bodiesOf, hasMaterial, hasVectors, switchGroup } from '../data/exposures.js';
+import { bodiesOf, hasMaterial, hasVectors, isVectors, switchGroup } from '../data/exposures.js';
 import { element } from '../element.js';
 import { icon } from '../icon.js';
 import { brief, count, counted, duration, mm } from '../text.js';
@@ -88,12 +88,14 @@ function layerList(title, layers, page, go) {
   return card(title, element('ol', { className: 'picks' }, ...items));
 }
 
-function partsCard(bodies, store) {
+/** Scan vectors have the colours of their regions and kinds, so there is none of their body to show. */
+function partsCard({ parts }, bodies, store) {
   const items = bodies.map((body, number) => {
     const box = element('input', { type: 'checkbox', checked: true });
     box.addEventListener('change', () => switchGroup(store, body, box.checked));
     const swatch = element('i', { className: 'swatch', style: `background: var(--wall-${number % 8})`, 'aria-hidden': true });
-    return element('li', {}, element('label', {}, box, swatch, element('span', {}, body.name)));
+    const signs = isVectors(parts[body.parts[0]]) ? [box] : [box, swatch];
+    return element('li', {}, element('label', {}, ...signs, element('span', {}, body.name)));
   });
   return card(`${count(items.length)} parts`, element('ul', { className: 'parts' }, ...items));
 }
@@ -186,7 +188,7 @@ export function layerPanels(page, store, go, show) {
   if (gaps.length > 0) cards.push(layerList('Longest gaps', gaps, page, go));
   if (page.notes.places.length > 0) cards.push(placesCard(page, show));
   const bodies = bodiesOf(page.head);
-  if (bodies.length > 1) cards.push(partsCard(bodies, store));
+  if (bodies.length > 1) cards.push(partsCard(page.head, bodies, store));
   cards.push(card('Stack', facts(totals(page))));
   if (remarkable.length > 0) cards.push(layerList('Layers that stand out', remarkable, page, go));
   cards.push(...noteCards(page));

@@ -1,5 +1,5 @@
-import { BufferAttribute, BufferGeometry, DataTexture, Mesh, RGBAIntegerFormat, RGFormat, UnsignedIntType, Vector3 } from 'three';
-import { bodyOfParts } from '../data/exposures.js';
+import { BufferAttribute, BufferGeometry, Color, DataTexture, Mesh, RGBAIntegerFormat, UnsignedIntType, Vector3 } from 'three';
+import { bodyOfParts, colourOfVectors, isVectors } from '../data/exposures.js';
 import { element } from '../element.js';
 import { brief } from '../text.js';
 import { nextTurn } from '../turn.js';
@@ -109,7 +109,7 @@ export class StackView {
       return;
     }
     this.#bodies = bodyOfParts(head);
-    this.#parts = new DataTexture(new Uint8Array(this.#bodies.flatMap((body) => [0, body % 256])), head.parts.length, 1, RGFormat);
+    this.#parts = new DataTexture(new Uint8Array(4 * head.parts.length), head.parts.length, 1);
     const heights = heightsTexture(table.bottom.map((z) => z - bottom), table.top.map((z) => z - bottom));
     this.#walls = wallMaterial(false, heights, head.layers - 1, this.#parts);
     this.#ghosts = wallMaterial(true, heights, head.layers - 1, this.#parts);
@@ -127,7 +127,7 @@ export class StackView {
       this.#shine(up);
     });
     this.#store.on(['theme'], ({ theme }) => this.#paint(theme));
-    this.#store.on(['hidden'], ({ hidden }) => this.#hide(hidden));
+    this.#store.on(['theme', 'hidden'], ({ theme, hidden }) => this.#paintParts(theme, hidden));
     this.#store.on(['ghosts'], () => this.#space.redraw());
     this.#store.on(['layer', 'hidden', 'theme', 'view'], () => this.#follow());
     this.#store.on(['hidden', 'theme'], () => this.#followFloor());
@@ -143,23 +143,27 @@ export class StackView {
 
   #paint(theme) {
     for (const { uniforms } of [this.#walls, this.#ghosts]) {
-      uniforms.bodies.value.forEach((colour, i) => colour.set(theme.walls[i]));
       uniforms.current.value.set(theme.wallCut);
-      uniforms.open.value.set(theme.open);
+      uniforms.fault.value.set(theme.open);
     }
     this.#marks.paint(theme);
     this.#space.paint(theme);
   }
 
-  #hide(hidden) {
-    this.#bodies.forEach((_, part) => (this.#parts.image.data[2 * part] = hidden.has(part) ? 255 : 0));
+  #paintParts(theme, hidden) {
+    this.#wallsOf(theme).forEach((colour, part) => {
+      const { r, g, b } = new Color(colour);
+      this.#parts.image.data.set([r, g, b, hidden.has(part) ? 0 : 1].map((value) => Math.round(255 * value)), 4 * part);
+    });
     this.#parts.needsUpdate = true;
     this.#space.redraw();
   }
 
-  /** The colour of each part: that of its body. */
-  #wallsOf({ walls }) {
-    return this.#bodies.map((body) => walls[body % walls.length]);
+  /** The colour of each part: that which its scan vectors have in the layer, or that of its body. */
+  #wallsOf(theme) {
+    return this.#page.head.parts.map((part, i) =>
+      isVectors(part) ? colourOfVectors(part, theme) : theme.walls[this.#bodies[i] % theme.walls.length],
+    );
   }
 
   #shine(up) {
@@ -233,7 +237,7 @@ export class StackView {
     let seen = -Infinity;
     for (const numbers of levelsOf(head.layers, this.#stride)) {
       const pieces = [];
-      let walls = new Walls();
+      let walls = new Walls(head.parts);
       for (const number of numbers) {
         const layer = await this.#shelf.decode(number);
         const apart = total <= mostLines ? 0 : spacingFor(layer, (mostLines * table.shown[number]) / total, least);
@@ -242,7 +246,7 @@ export class StackView {
         ++done;
         if (walls.size >= linesOfPiece || number === numbers.at(-1)) {
           pieces.push(this.#pieceOf(walls));
-          walls = new Walls();
+          walls = new Walls(head.parts);
         }
         if (performance.now() - since > millisecondsAtWork) {
           this.caption.textContent = `Building the stack: ${Math.floor((100 * done) / head.layers)} %`;

@@ -1,7 +1,6 @@
 import { Color, DataTexture, DoubleSide, FloatType, FrontSide, RGFormat, ShaderMaterial, Vector3 } from 'three';
-import { linesOfRow } from './walls.js';
+import { lineKinds, linesOfRow } from './walls.js';
 
-const mostBodies = 8;
 /** How far ledges reach inwards, in thicknesses of the layer: over slopes of 18 degrees and more there are no gaps. */
 const ledgeWidth = 3;
 const heightsOfRow = 1024;
@@ -31,11 +30,12 @@ const vertex = /* glsl */ `
   varying vec3 normalSeen;
   varying float upward;
   flat varying float isLedge;
-  flat varying ivec2 which;
-  flat varying int body;
+  flat varying int number;
+  flat varying int kind;
+  flat varying vec3 own;
 
-  vec2 heightsOf(int number) {
-    return texelFetch(heights, ivec2(number % ${heightsOfRow}, number / ${heightsOfRow}), 0).rg;
+  vec2 heightsOf(int which) {
+    return texelFetch(heights, ivec2(which % ${heightsOfRow}, which / ${heightsOfRow}), 0).rg;
   }
 
   void main() {
@@ -47,25 +47,24 @@ const vertex = /* glsl */ `
     ivec2 at = ivec2(2 * (line % ${linesOfRow}), line / ${linesOfRow});
     vec4 ends = uintBitsToFloat(texelFetch(lines, at, 0));
     uvec4 info = texelFetch(lines, at + ivec2(1, 0), 0);
-    int number = int(info.x);
-    int part = int(info.y) >> 1;
-    bool open = (info.y & 1u) == 1u;
+    number = int(info.x);
+    int part = int(info.y) >> 2;
+    kind = int(info.y) & 3;
     // A layer stands for those above it that are not drawn, too.
-    vec2 own = heightsOf(number);
+    vec2 span = heightsOf(number);
     float top = heightsOf(min(number + stride - 1, above ? last : layer)).y;
     upward = corner < 2 ? 0.0 : 1.0;
-    vec3 place = vec3(mix(ends.xy, ends.zw, along), mix(own.x, top, upward));
+    vec3 place = vec3(mix(ends.xy, ends.zw, along), mix(span.x, top, upward));
     vec2 outward = mix(unpackSnorm2x16(info.z), unpackSnorm2x16(info.w), along);
-    place.xy -= outward * inward * ${ledgeWidth.toFixed(1)} * (own.y - own.x);
+    place.xy -= outward * inward * ${ledgeWidth.toFixed(1)} * (span.y - span.x);
     isLedge = ledge ? 1.0 : 0.0;
-    which = ivec2(number, info.y);
     normalSeen = normalize(normalMatrix * (ledge ? vec3(0.0, 0.0, 1.0) : vec3(outward, 0.0)));
     gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
-    vec2 shown = texelFetch(parts, ivec2(part, 0), 0).rg;
-    bool isHidden = shown.r > 0.5;
-    body = int(shown.g * 255.0 + 0.5);
+    vec4 look = texelFetch(parts, ivec2(part, 0), 0);
+    own = look.rgb;
+    bool isHidden = look.a < 0.5;
     // Ledges of open contours would lie nowhere, those of ghosts would hide them, and the top layer has a cap.
-    bool isBare = ledge && (above || number + stride > layer || open);
+    bool isBare = ledge && (above || number + stride > layer || kind != ${lineKinds.ring});
     if (isHidden || isBare) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   }
 `;
@@ -82,29 +81,28 @@ const light = /* glsl */ `
 const fragment = /* glsl */ `
   uniform int layer;
   uniform bool above;
-  uniform vec3 bodies[${mostBodies}];
   uniform vec3 current;
-  uniform vec3 open;
+  uniform vec3 fault;
   uniform vec3 up;
   varying vec3 normalSeen;
   varying float upward;
   flat varying float isLedge;
-  flat varying ivec2 which;
-  flat varying int body;
+  flat varying int number;
+  flat varying int kind;
+  flat varying vec3 own;
   ${light}
 
   void main() {
-    vec3 colour = bodies[body % ${mostBodies}];
-    bool isOpen = (which.y & 1) == 1;
+    bool isFault = kind == ${lineKinds.fault};
     if (above) {
-      gl_FragColor = vec4(isOpen ? open : colour, isOpen ? 0.3 : 0.07);
+      gl_FragColor = vec4(isFault ? fault : own, isFault ? 0.3 : 0.07);
       return;
     }
-    if (isOpen) {
-      gl_FragColor = vec4(open * (0.8 + 0.3 * lit(normalSeen)), 1.0);
+    if (isFault) {
+      gl_FragColor = vec4(fault * (0.8 + 0.3 * lit(normalSeen)), 1.0);
       return;
     }
-    if (which.x == layer) colour = current;
+    vec3 colour = number == layer ? current : own;
     // What is seen from inside is seen through a gap beside a ledge, so it gets the light of a ledge.
     // Where layers are thinner than a pixel or two, ledges and walls alternate as the raster will: they are
     // brought closer to each other.
@@ -124,7 +122,7 @@ const fragment = /* glsl */ `
  * @param {boolean} above the ghosts of the layers above instead of the stack up to the layer
  * @param {import('three').DataTexture} heights of the layers
  * @param {number} last layer
- * @param {import('three').DataTexture} parts two bytes for each: 255 for those that are not shown; the number of its body
+ * @param {import('three').DataTexture} parts four bytes for each: its colour, and 255 where it is shown
  */
 export function wallMaterial(above, heights, last, parts) {
   return new ShaderMaterial({
@@ -141,9 +139,8 @@ export function wallMaterial(above, heights, last, parts) {
       last: { value: last },
       stride: { value: 1 },
       above: { value: above },
-      bodies: { value: Array.from({ length: mostBodies }, () => new Color()) },
       current: { value: new Color() },
-      open: { value: new Color() },
+      fault: { value: new Color() },
       up: { value: new Vector3(0, 0, 1) },
     },
   });

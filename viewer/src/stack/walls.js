@@ -1,7 +1,12 @@
+import { isVectors } from '../data/exposures.js';
+
 /**
  * The walls of layers: one standing rectangle for each line of a contour, from the bottom to the top of its
  * layer. The graphics card reads them from a texture.
  */
+
+/** What the contour of a line is: closed; a chain of scan vectors; or one of material, which is a fault. */
+export const lineKinds = { ring: 0, vectors: 1, fault: 2 };
 
 /** Lines that turn by less meet in a round edge. */
 const roundCosine = Math.cos((40 * Math.PI) / 180);
@@ -36,14 +41,21 @@ const packed = (x, y) => (Math.round(32767 * x) & 0xffff) | (Math.round(32767 * 
 
 /**
  * Grows; holds the lines of one piece of the stack. Of each line: its two points, as bits of floats; the number of the
- * layer; twice the number of the part, one more where the contour is open; and the normals at the two points, outwards.
+ * layer; four times the number of the part, and what the contour is, of `lineKinds`; and the normals at the two points,
+ * outwards.
  */
 export class Walls {
+  #chains; // the kind of them, for each part
   #numbers = new Uint32Array(numbersOfLine * linesOfRow);
   #floats = new Float32Array(this.#numbers.buffer);
   size = 0;
   layers = []; // their numbers
   counts = []; // lines up to the end of each of these
+
+  /** @param {object[]} parts of the head */
+  constructor(parts) {
+    this.#chains = parts.map((part) => (isVectors(part) ? lineKinds.vectors : lineKinds.fault));
+  }
 
   /** The lines in whole rows. */
   get rows() {
@@ -57,7 +69,8 @@ export class Walls {
    */
   add(layer, number, apart) {
     layer.parts.forEach((contours, part) => {
-      for (let i = 0; i < contours.ends.length; ++i) this.#addContour(keepPoints(contours, i, apart), i < contours.rings, number, part);
+      for (let i = 0; i < contours.ends.length; ++i)
+        this.#addContour(keepPoints(contours, i, apart), i < contours.rings ? lineKinds.ring : this.#chains[part], number, part);
     });
     this.layers.push(number);
     this.counts.push(this.size);
@@ -75,7 +88,8 @@ export class Walls {
   }
 
   /** The first n points kept. */
-  #addContour(n, closed, number, part) {
+  #addContour(n, kind, number, part) {
+    const closed = kind === lineKinds.ring;
     if (n < (closed ? 3 : 2)) return;
     const lines = closed ? n : n - 1;
     this.#makeRoom(lines);
@@ -105,7 +119,7 @@ export class Walls {
       floats[at + 2] = kept[2 * j];
       floats[at + 3] = kept[2 * j + 1];
       numbers[at + 4] = number;
-      numbers[at + 5] = 2 * part + (closed ? 0 : 1);
+      numbers[at + 5] = 4 * part + kind;
       numbers[at + 6] = shared(own, before);
       numbers[at + 7] = shared(own, after);
       [before, own] = [own, after];
