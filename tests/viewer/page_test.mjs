@@ -188,6 +188,9 @@ test('hatches of a slice file are drawn and can be left away', async () => {
   const canvas = page.locator('canvas[data-layer]');
   const green = async () => (await pixelsNear(canvas, await colourOf(page, '--hatch'), 60)).near;
   assert.ok((await green()) > 1000);
+  const aside = page.getByRole('complementary');
+  assert.match(await aside.locator('section', { hasText: 'Cut at z' }).textContent(), /Hatch lines9/);
+  assert.match(await aside.locator('section', { hasText: 'Layer height' }).textContent(), /Hatch lines18/);
   await page.getByRole('button', { name: 'Hatches' }).click();
   await page.waitForTimeout(100);
   assert.equal(await green(), 0);

@@ -91,7 +91,7 @@ export function findings(page) {
       tone: 'warning',
       text:
         `To keep the page small, the hatches of ${counted(bare.length, 'layer')} of ${count(table.z.length)} are left out ` +
-        `(${count(sum(table.hatches_shown))} of ${count(sum(table.hatches))} lines are there). All figures are of all vectors.`,
+        `(${count(sum(table.hatches_shown))} of ${count(sum(table.hatches))} lines are there). All figures are of all of them.`,
       layer: bare[0],
     });
   const untold = untoldSpeeds(head);
@@ -202,6 +202,9 @@ export function remarkableLayers({ head, table }) {
   ].filter(({ stands }) => stands);
 }
 
+/** Not only scan vectors have hatches: slice files may have them beside contours of material. */
+export const hasHatches = (table) => table.hatches.some((n) => n > 0);
+
 /** Figures of the whole stack: [name, value] pairs. */
 export function totals(page) {
   const { head, table } = page;
@@ -215,17 +218,17 @@ export function totals(page) {
     ['From z', n === 0 ? '–' : `${mm(table.bottom[0])} to ${mm(table.top[n - 1])} mm`],
     ['Size', `${head.box[0].map((low, k) => brief(head.box[1][k] - low)).join(' × ')} mm`],
     ...(hasVectors(head) ? totalsOfVectors(table) : []),
+    ...(hasHatches(table) ? [['Hatch lines', count(sum(table.hatches))]] : []),
     ...(hasMaterial(head) ? totalsOfMaterial(table, thickness) : []),
   ];
 }
 
 const totalsOfVectors = (table) => [
   ['Time of the beam', duration(sum(table.build_seconds))],
-  ['Vectors', count(sum(table.vectors))],
-  ['of them hatches', count(sum(table.hatches))],
   ['Marked', `${brief(sum(table.marked_mm) / 1000)} m`],
   ['Jumped', `${brief(sum(table.jumped_mm) / 1000)} m`],
   ['Energy', `${brief(sum(table.energy_j) / 1000)} kJ`],
+  ['Vectors', count(sum(table.vectors))],
 ];
 
 function totalsOfMaterial(table, thickness) {

@@ -133,6 +133,7 @@ test('of scan vectors their time is told, and nothing of material', () => {
   assert.equal(layerText(page, 1), '300 vectors in 50 s');
   const told = new Map(totals(page));
   assert.deepEqual(['Time of the beam', 'Marked', 'Energy', 'Volume'].map((name) => told.get(name)), ['1 min 30 s', '1 m', '1 kJ', undefined]);
+  assert.deepEqual(['Vectors', 'Hatch lines'].map((name) => told.get(name)), ['400', '390']);
   const texts = findings(page).map(({ text }) => text);
   assert.match(texts[0], /^No contour crosses itself/);
   assert.match(texts[1], /^1 layer with nothing in it, the lowest at z = 2\.5 mm/);
@@ -140,6 +141,19 @@ test('of scan vectors their time is told, and nothing of material', () => {
   const untold = findings(scanPageOf([{}], { speed_mm_s: 500, jump_speed_mm_s: 0 })).map(({ text }) => text);
   assert.ok(untold.includes('The file does not tell how fast the beam jumps: times are without jumps.'));
   assert.deepEqual(remarkableLayers(page).map(({ text }) => text), ['longest time, 50 s', 'most vectors, 300']);
+});
+
+test('hatch lines are counted, be there scan vectors, contours of material, or both', () => {
+  const material = {};
+  const [exposed] = scanPageOf([{}]).head.parts;
+  for (const parts of [[exposed], [material], [material, exposed]]) {
+    const page = pageOf([{ hatches: 3, vectors: 2 }, { hatches: 4 }], undefined, parts);
+    page.head.box = [[0, 0, 0], [3, 3, 2]];
+    assert.deepEqual(totals(page).filter(([name]) => /hatch/i.test(name)), [['Hatch lines', '7']]);
+  }
+  const bare = pageOf([{}]);
+  bare.head.box = [[0, 0, 0], [3, 3, 2]];
+  assert.ok(!totals(bare).some(([name]) => /hatch/i.test(name)));
 });
 
 test('which layers are without their hatches is said, and the page begins at another one', () => {

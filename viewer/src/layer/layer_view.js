@@ -1,7 +1,7 @@
 import { hasMaterial, hasVectors, isVectors, kindsOf, switchGroup } from '../data/exposures.js';
 import { vectorsOf } from '../data/vectors.js';
 import { element } from '../element.js';
-import { layerText } from '../findings.js';
+import { hasHatches, layerText } from '../findings.js';
 import { iconButton } from '../icon.js';
 import { mm } from '../text.js';
 import { Camera } from './camera.js';
@@ -109,7 +109,7 @@ export class LayerView {
       return node;
     };
     const toggles = hasMaterial(head) ? [toggle('fill', 'Fill'), toggle('lines', 'Contours')] : [];
-    if (hasMaterial(head) && table.hatches.some((n) => n > 0)) toggles.push(toggle('hatches', 'Hatches'));
+    if (hasMaterial(head) && hasHatches(table)) toggles.push(toggle('hatches', 'Hatches'));
     toggles.push(...kindsOf(head).map((kind) => this.#kindToggle(kind)));
     if (hasVectors(head)) toggles.push(toggle('jumps', sample('jump', 1), 'jumps'));
     toggles.push(toggle('directions', 'Direction'));

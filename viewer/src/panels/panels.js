@@ -2,7 +2,7 @@ import { bodiesOf, hasMaterial, hasVectors, isVectors, switchGroup } from '../da
 import { element } from '../element.js';
 import { icon } from '../icon.js';
 import { brief, count, counted, duration, mm } from '../text.js';
-import { faultText, findings, gapText, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
+import { faultText, findings, gapText, hasHatches, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
 
@@ -39,11 +39,10 @@ function layerCard(page, store) {
   ];
   const rowsOfVectors = [
     ['Time of the beam', (i) => duration(table.build_seconds[i])],
-    ['Vectors', (i) => count(table.vectors[i])],
-    ['of them hatches', (i) => count(table.hatches[i])],
     ['Marked', (i) => `${brief(table.marked_mm[i])} mm`],
     ['Jumped', (i) => `${brief(table.jumped_mm[i])} mm`],
     ['Energy', (i) => `${brief(table.energy_j[i])} J`],
+    ['Vectors', (i) => count(table.vectors[i])],
   ];
   const rowsOfMaterial = [
     ['Area', (i) => `${brief(table.area_mm2[i])} mm²`],
@@ -53,6 +52,7 @@ function layerCard(page, store) {
     ['Points', (i) => count(table.points[i])],
   ];
   if (hasVectors(head)) rows.push(...rowsOfVectors);
+  if (hasHatches(table)) rows.push(['Hatch lines', (i) => count(table.hatches[i])]);
   if (hasMaterial(head)) rows.push(...rowsOfMaterial);
   if (table.open_chains.some((n) => n > 0)) rows.push(['Gaps', (i) => gapText(table, i)]);
   if (table.rings_dropped)
