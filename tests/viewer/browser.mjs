@@ -15,25 +15,20 @@ export const file = (name) => join(folder, name);
 export const lamella = (...args) => execFileSync(program, args, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
 
 let browser;
+let page; // one for all: to make one takes a browser longer than to open a file in it
+let complaints = []; // of what is open in it
+
 export async function startBrowser() {
   if (!browserPath) throw new Error('no browser: install Debian\'s chromium');
   // Drawing in space must not depend on a graphics card; root needs --no-sandbox.
   browser = await chromium.launch({ executablePath: browserPath, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-lcd-text'] });
-}
-export async function stopBrowser() {
-  await browser?.close();
-  rmSync(folder, { recursive: true, force: true });
-}
-
-/**
- * Opens a page of the folder. Everything that it says on the console, all its errors, and all that it asks a network
- * for is gathered in `complaints`.
- */
-export async function open(name, { width = 1400, height = 900, colorScheme = 'light', view = 'layer' } = {}) {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme, offline: true, reducedMotion: 'reduce' });
-  const page = await context.newPage();
+  const context = await browser.newContext({ offline: true, reducedMotion: 'reduce' });
+  page = await context.newPage();
   page.setDefaultTimeout(120000); // a picture in space takes a processor seconds, and others may be at work
-  const complaints = [];
+  // What was chosen in the file before is forgotten.
+  await page.addInitScript(() => {
+    if (location.protocol === 'file:') localStorage.clear();
+  });
   page.on('console', (message) => {
     // What the driver of the software renderer says of itself.
     if (!message.text().includes('GL Driver Message')) complaints.push(`${message.type()}: ${message.text()}`);
@@ -42,15 +37,40 @@ export async function open(name, { width = 1400, height = 900, colorScheme = 'li
   page.on('request', (request) => {
     if (!/^(file|data|blob):/.test(request.url())) complaints.push(`asks for ${request.url()}`);
   });
+}
+export async function stopBrowser() {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+}
+
+const narrow = 1000; // pixels: such a page begins with the layer alone
+
+/**
+ * Opens a page of the folder, in the place of the one before. Everything that it says on the console, all its errors, and
+ * all that it asks a network for is gathered in `complaints`.
+ * @param {{view: 'layer'|'stack'|null}} options what is seen of layers; null: what the page itself begins with. A stack that
+ *     nobody asks for is not begun: without a graphics card it takes the processor longer than all the rest.
+ */
+export async function open(name, { width = 1400, height = 900, colorScheme = 'light', view = 'layer' } = {}) {
+  complaints = [];
+  await page.emulateMedia({ colorScheme });
+  await page.setViewportSize({ width: view ? narrow : width, height });
   await page.goto(pathToFileURL(file(name)).href);
   await page.waitForSelector('canvas[data-layer], canvas[data-ready], .trouble');
   if (view) {
-    const button = page.locator('#views').getByRole('button', { name: view });
+    await page.setViewportSize({ width, height });
+    await redrawn();
+  }
+  if (view === 'stack') {
+    const button = page.locator('#views').getByRole('button', { name: 'stack' });
     await button.click();
     await button.blur(); // keys are for the page again
   }
-  return { page, complaints, close: () => context.close() };
+  return { page, complaints };
 }
+
+/** Waits until what was asked for is drawn: a page draws the layer in the next frame. */
+export const redrawn = () => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve()))));
 
 /** Waits until holds() is true in the page. (Playwright's own way takes eval, which the page forbids.) */
 export async function until(page, holds, seconds = 60) {
@@ -68,20 +88,21 @@ export async function shown(page) {
 export const settled = (page) => page.waitForSelector('canvas[data-settled]');
 
 /**
- * Opens a page of the folder, and acts in it.
+ * Opens a page of the folder, alone and as new, and acts in it.
  * @returns {Promise<{work: number, whole: number}[]>} all that its thread did meanwhile, one task after the other: seconds
  *     of the processor, and seconds from begin to end
  */
 export async function tasks(name, act) {
+  await page.goto('about:blank'); // it would be recorded, too
   const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true });
-  const page = await context.newPage();
-  page.setDefaultTimeout(300000);
-  const session = await context.newCDPSession(page);
+  const fresh = await context.newPage();
+  fresh.setDefaultTimeout(300000);
+  const session = await context.newCDPSession(fresh);
   const events = [];
   session.on('Tracing.dataCollected', ({ value }) => value.forEach((event) => events.push(event)));
   await session.send('Tracing.start', { traceConfig: { includedCategories: ['toplevel', '__metadata'], excludedCategories: ['*'] } });
-  await page.goto(pathToFileURL(file(name)).href, { waitUntil: 'commit' });
-  await act(page);
+  await fresh.goto(pathToFileURL(file(name)).href, { waitUntil: 'commit' });
+  await act(fresh);
   const ended = new Promise((resolve) => session.once('Tracing.tracingComplete', resolve));
   await session.send('Tracing.end');
   await ended;

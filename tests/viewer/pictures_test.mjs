@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colourOf, file, lamella, open, settled, shown, startBrowser, stopBrowser } from './browser.mjs';
+import { colourOf, file, lamella, open, redrawn, settled, shown, startBrowser, stopBrowser } from './browser.mjs';
 
 const height = 0.5; // mm, of a layer
 const pitches = { rook: 0.02, calibration: 0.1 }; // mm, of the raster's pixels: finer than those of the screen
@@ -73,7 +73,7 @@ async function compare(page, picture, pitch, scale) {
 for (const colorScheme of ['light', 'dark'])
   test(`layers look as the raster sees them, ${colorScheme}`, async () => {
     for (const [part, pitch] of Object.entries(pitches)) {
-      const { page, close } = await open(`${part}.html`, { colorScheme });
+      const { page } = await open(`${part}.html`, { colorScheme });
       await shown(page);
       for (const name of ['Contours', 'Direction']) await page.getByRole('button', { name, exact: true }).click();
       const layers = Number(await page.locator('#layer').getAttribute('max')) + 1;
@@ -81,7 +81,7 @@ for (const colorScheme of ['light', 'dark'])
         await page.locator('#layer').fill(String(layer));
         await shown(page);
         if (zoomed) await page.getByRole('button', { name: 'Zoom in' }).first().click();
-        await page.waitForTimeout(150);
+        await redrawn();
         const picture = file(`${part}/${String(layer).padStart(5, '0')}.png`);
         const { filled, different, wrong } = await compare(page, picture, pitch, await scaleOf(page));
         const where = `${part}, layer ${layer}${zoomed ? ', zoomed in' : ''}: ${different} of ${filled} pixels`;
@@ -89,7 +89,6 @@ for (const colorScheme of ['light', 'dark'])
         assert.equal(wrong, 0, where);
         assert.ok(different < 0.02 * filled, where);
       }
-      await close();
     }
   });
 
@@ -157,7 +156,7 @@ for (const colorScheme of ['light', 'dark'])
   test(`the stack has the outline that a camera sees, ${colorScheme}`, async () => {
     const { layers } = JSON.parse(readFileSync(file('rook.json'), 'utf8'));
     const points = pointsOf(layers);
-    const { page, close } = await open('rook.html', { view: 'stack', colorScheme });
+    const { page } = await open('rook.html', { view: 'stack', colorScheme });
     await page.waitForSelector('canvas[data-built]');
     await page.locator('#layer').fill(String(layers.length - 1));
     await page.getByRole('button', { name: 'Front' }).click();
@@ -179,5 +178,4 @@ for (const colorScheme of ['light', 'dark'])
     }
     assert.ok(best.length > 100, `${best.length} rows`);
     assert.ok(most > 0.95, `${(100 * most).toFixed(1)} % of ${best.length} rows agree`);
-    await close();
   });
