@@ -302,6 +302,20 @@ test('the time of scan vectors is plotted, added up, and the same in all pages o
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
 });
 
+test('scan vectors of a file without speeds and powers are shown without times', async () => {
+  lamella('slice', 'box.stl', '-o', 'speedless.cli', ...scanOptions);
+  lamella('view', 'speedless.cli');
+  const { page, complaints } = await open('speedless.html');
+  await page.keyboard.press('Home');
+  await shown(page);
+  const count = await page.locator('#order').getAttribute('max');
+  assert.equal(await page.locator('.beam').textContent(), `Vector ${count} of ${count}core contour 1`);
+  assert.match(await page.locator('#verdict').textContent(), /^[\d,]+ vectors$/);
+  assert.deepEqual(await page.locator('.row .name').allTextContents(), ['Vectors', 'Marked', 'Jumped']);
+  assert.doesNotMatch(await page.getByRole('complementary').textContent(), /Time of the beam|Energy/);
+  assert.deepEqual(complaints, []);
+});
+
 /** The job with contours that end 5 mm short of where they began: `name`, of the same length. */
 function openJob(name) {
   const bytes = readFileSync(file('job.ovf'));

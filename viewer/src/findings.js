@@ -1,4 +1,4 @@
-import { hasMaterial, hasVectors } from './data/exposures.js';
+import { hasMaterial, hasVectors, isVectors } from './data/exposures.js';
 import { brief, count, counted, duration, mm } from './text.js';
 
 /** What the figures of the layers mean, in plain words. */
@@ -94,19 +94,22 @@ export function findings(page) {
         `(${count(sum(table.hatches_shown))} of ${count(sum(table.hatches))} lines are there). All figures are of all of them.`,
       layer: bare[0],
     });
-  const untold = untoldSpeeds(head);
-  if (untold !== '') found.push({ tone: 'plain', text: `The file does not tell ${untold}.` });
+  for (const text of untoldSpeeds(head)) found.push({ tone: 'plain', text });
   found.push(accuracy(head, table));
   return found;
 }
 
-/** What of the times is missing, since speeds are. */
+/** What of the times is missing, since speeds are: sentences. */
 function untoldSpeeds({ parts }) {
-  const missing = (name) => parts.some(({ exposure }) => exposure && !(exposure.parameters[name] > 0));
-  return [
-    ...(missing('speed_mm_s') ? ['all speeds of the beam: what is marked at these counts neither for time nor for energy'] : []),
-    ...(missing('jump_speed_mm_s') ? ['how fast the beam jumps: times are without jumps'] : []),
-  ].join(', nor ');
+  const parameters = parts.filter(isVectors).map(({ exposure }) => exposure.parameters);
+  const marks = parameters.filter(({ speed_mm_s }) => speed_mm_s > 0).length;
+  const jumps = parameters.filter(({ jump_speed_mm_s }) => jump_speed_mm_s > 0).length;
+  if (parameters.length > 0 && marks + jumps === 0) return ['The file tells no speeds of the beam, so times and energies are unknown.'];
+  const told = [];
+  if (marks < parameters.length)
+    told.push('The file does not tell all speeds of the beam: what is marked without one counts neither for time nor for energy.');
+  if (jumps < parameters.length) told.push('The file does not tell how fast the beam jumps: times are without jumps.');
+  return told;
 }
 
 function accuracy(head, table) {
@@ -130,7 +133,7 @@ export function verdict(page) {
   const { head, table } = page;
   const bad = table.z.filter((_, i) => faultsOf(table, i) > 0).length;
   if (bad > 0) return { tone: 'bad', text: `${counted(bad, 'layer')} with faults` };
-  if (!hasMaterial(head)) return { tone: 'plain', text: `${counted(sum(table.vectors), 'vector')} in ${duration(sum(table.build_seconds))}` };
+  if (!hasMaterial(head)) return { tone: 'plain', text: vectorText(sum(table.vectors), sum(table.build_seconds)) };
   if (page.notes.places.length > 0) return { tone: 'warning', text: 'Contours are sound, the mesh has defects' };
   return { tone: 'good', text: 'All contours are sound' };
 }
@@ -171,9 +174,12 @@ export function firstLayer({ table }) {
   return worstLayers(table, 1)[0]?.layer ?? nearest;
 }
 
+/** Where no speed is told there is no time to tell, either. */
+const vectorText = (vectors, seconds) => counted(vectors, 'vector') + (seconds > 0 ? ` in ${duration(seconds)}` : '');
+
 /** "3 contours, 12.5 mm²"; "1,234 vectors in 4.9 s" */
 export function layerText({ head, table }, i) {
-  const parts = hasVectors(head) ? [`${counted(table.vectors[i], 'vector')} in ${duration(table.build_seconds[i])}`] : [];
+  const parts = hasVectors(head) ? [vectorText(table.vectors[i], table.build_seconds[i])] : [];
   if (hasMaterial(head)) parts.push(`${counted(table.contours[i], 'contour')}, ${brief(table.area_mm2[i])} mm²`);
   return parts.join(', ');
 }
@@ -202,8 +208,11 @@ export function remarkableLayers({ head, table }) {
   ].filter(({ stands }) => stands);
 }
 
+/** Whether there is anything in a column: files may leave out speeds and powers, and then there are no times and energies. */
+export const isTold = (column) => column.some((value) => value > 0);
+
 /** Not only scan vectors have hatches: slice files may have them beside contours of material. */
-export const hasHatches = (table) => table.hatches.some((n) => n > 0);
+export const hasHatches = (table) => isTold(table.hatches);
 
 /** Figures of the whole stack: [name, value] pairs. */
 export function totals(page) {
@@ -224,10 +233,10 @@ export function totals(page) {
 }
 
 const totalsOfVectors = (table) => [
-  ['Time of the beam', duration(sum(table.build_seconds))],
+  ...(isTold(table.build_seconds) ? [['Time of the beam', duration(sum(table.build_seconds))]] : []),
   ['Marked', `${brief(sum(table.marked_mm) / 1000)} m`],
   ['Jumped', `${brief(sum(table.jumped_mm) / 1000)} m`],
-  ['Energy', `${brief(sum(table.energy_j) / 1000)} kJ`],
+  ...(isTold(table.energy_j) ? [['Energy', `${brief(sum(table.energy_j) / 1000)} kJ`]] : []),
   ['Vectors', count(sum(table.vectors))],
 ];
 

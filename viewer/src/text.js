@@ -8,9 +8,12 @@ export const count = (n) => whole.format(n);
 /** "1 layer", "3 layers" */
 export const counted = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
 
-/** Four digits that matter, more before the point: 0.05, 12.35, 1,234.5, 123,457 */
+const least = 1e-6; // what is told of a number
+
+/** Four digits that matter, more before the point: 0.05, 12.35, 1,234.5, 123,457. What is not 0 is not told as 0. */
 export function brief(value) {
   if (value === 0 || !Number.isFinite(value)) return String(value);
+  if (Math.abs(value) < least) return value > 0 ? '< 0.000001' : '> −0.000001';
   const digits = Math.min(6, Math.max(0, 3 - Math.floor(Math.log10(Math.abs(value)))));
   return new Intl.NumberFormat('en', { maximumFractionDigits: digits }).format(value);
 }

@@ -143,6 +143,18 @@ test('of scan vectors their time is told, and nothing of material', () => {
   assert.deepEqual(remarkableLayers(page).map(({ text }) => text), ['longest time, 50 s', 'most vectors, 300']);
 });
 
+test('times and energies that a file does not tell are left out', () => {
+  const page = scanPageOf([{ vectors: 100, marked_mm: 900, jumped_mm: 5 }, { vectors: 1, marked_mm: 9 }], { speed_mm_s: 0, jump_speed_mm_s: 0 });
+  page.head.box = [[0, 0, 0], [3, 3, 2]];
+  assert.equal(verdict(page).text, '101 vectors');
+  assert.equal(layerText(page, 1), '1 vector');
+  assert.deepEqual(totals(page).map(([name]) => name).slice(4), ['Marked', 'Jumped', 'Vectors']);
+  const told = (parameters) => findings(scanPageOf([{}], parameters)).map(({ text }) => text).filter((text) => text.startsWith('The file'));
+  assert.deepEqual(told({ speed_mm_s: 0, jump_speed_mm_s: 0 }), ['The file tells no speeds of the beam, so times and energies are unknown.']);
+  assert.equal(told({ speed_mm_s: 0, jump_speed_mm_s: 9 }).length, 1);
+  assert.match(told({ speed_mm_s: 0, jump_speed_mm_s: 9 })[0], /not tell all speeds of the beam/);
+});
+
 test('hatch lines are counted, be there scan vectors, contours of material, or both', () => {
   const material = {};
   const [exposed] = scanPageOf([{}]).head.parts;
@@ -255,6 +267,7 @@ test('a store tells those who listen, and of changes only', () => {
 
 test('numbers read well', () => {
   assert.deepEqual([0, 0.05, 12.3456, 1234.56, 123456.7, 1e-5].map(brief), ['0', '0.05', '12.35', '1,235', '123,457', '0.00001']);
+  assert.deepEqual([1e-6, 9e-7, -1e-16].map(brief), ['0.000001', '< 0.000001', '> −0.000001']);
   assert.deepEqual([4.8712, 59, 187, 3600, 7512].map(duration), ['4.871 s', '59 s', '3 min 07 s', '1 h 00 min', '2 h 05 min']);
   assert.equal(counted(1, 'layer'), '1 layer');
   assert.equal(counted(1200, 'layer'), '1,200 layers');

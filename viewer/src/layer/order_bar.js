@@ -51,8 +51,7 @@ export class OrderBar {
     this.slider.value = order;
     this.place.textContent = all === 0 ? 'No vectors' : `Vector ${count(order)} of ${count(all)}`;
     this.what.textContent = order === 0 ? '' : this.#whatOf(order - 1);
-    const told = this.#leftOut() || `${duration(order === 0 ? 0 : seconds[order - 1])} of ${duration(this.#page.table.build_seconds[this.#number])}`;
-    this.time.textContent = told;
+    this.time.textContent = this.#leftOut() || this.#timeText(order === 0 ? 0 : seconds[order - 1]);
     this.slider.setAttribute('aria-valuetext', [this.place, this.what, this.time].map((node) => node.textContent).filter(Boolean).join(', '));
   }
 
@@ -60,7 +59,14 @@ export class OrderBar {
     const { part, region, kind, contour, parameters } = this.#page.head.parts[partOf(this.#vectors, vector)].exposure;
     const name = `${region} ${kind}${contour > 0 ? ` ${contour}` : ''}`;
     const body = new Set(this.#page.head.parts.map(({ exposure }) => exposure?.part)).size > 1 ? `${part}, ` : '';
-    return `${body}${name}, “${parameters.name}”: ${brief(parameters.power_w)} W, ${brief(parameters.speed_mm_s)} mm/s`;
+    const { power_w, speed_mm_s } = parameters;
+    const told = [...(power_w > 0 ? [`${brief(power_w)} W`] : []), ...(speed_mm_s > 0 ? [`${brief(speed_mm_s)} mm/s`] : [])].join(', ');
+    return `${body}${name}${parameters.name ? `, “${parameters.name}”` : ''}${told ? `: ${told}` : ''}`;
+  }
+
+  #timeText(seconds) {
+    const all = this.#page.table.build_seconds[this.#number];
+    return all > 0 ? `${duration(seconds)} of ${duration(all)}` : '';
   }
 
   /** Where vectors are missing, nobody knows when the others are executed. */

@@ -2,7 +2,7 @@ import { bodiesOf, hasMaterial, hasVectors, isVectors, switchGroup } from '../da
 import { element } from '../element.js';
 import { icon } from '../icon.js';
 import { brief, count, counted, duration, mm } from '../text.js';
-import { faultText, findings, gapText, hasHatches, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
+import { faultText, findings, gapText, hasHatches, isTold, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
 
@@ -30,19 +30,20 @@ function diagnosisCard(page, go) {
   return card('Diagnosis', element('ul', { className: 'findings' }, ...findings(page).map((each) => finding(each, go))));
 }
 
+const rowsOfVectors = (table) => [
+  ...(isTold(table.build_seconds) ? [['Time of the beam', (i) => duration(table.build_seconds[i])]] : []),
+  ['Marked', (i) => `${brief(table.marked_mm[i])} mm`],
+  ['Jumped', (i) => `${brief(table.jumped_mm[i])} mm`],
+  ...(isTold(table.energy_j) ? [['Energy', (i) => `${brief(table.energy_j[i])} J`]] : []),
+  ['Vectors', (i) => count(table.vectors[i])],
+];
+
 /** The figures of the layer that is shown. */
 function layerCard(page, store) {
   const { head, table } = page;
   const rows = [
     ['Cut at z', (i) => `${mm(table.z[i])} mm`],
     ['Thickness', (i) => `${mm(table.top[i] - table.bottom[i])} mm`],
-  ];
-  const rowsOfVectors = [
-    ['Time of the beam', (i) => duration(table.build_seconds[i])],
-    ['Marked', (i) => `${brief(table.marked_mm[i])} mm`],
-    ['Jumped', (i) => `${brief(table.jumped_mm[i])} mm`],
-    ['Energy', (i) => `${brief(table.energy_j[i])} J`],
-    ['Vectors', (i) => count(table.vectors[i])],
   ];
   const rowsOfMaterial = [
     ['Area', (i) => `${brief(table.area_mm2[i])} mm²`],
@@ -51,7 +52,7 @@ function layerCard(page, store) {
     ['of them holes', (i) => count(table.holes[i])],
     ['Points', (i) => count(table.points[i])],
   ];
-  if (hasVectors(head)) rows.push(...rowsOfVectors);
+  if (hasVectors(head)) rows.push(...rowsOfVectors(table));
   if (hasHatches(table)) rows.push(['Hatch lines', (i) => count(table.hatches[i])]);
   if (hasMaterial(head)) rows.push(...rowsOfMaterial);
   if (table.open_chains.some((n) => n > 0)) rows.push(['Gaps', (i) => gapText(table, i)]);

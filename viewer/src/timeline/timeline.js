@@ -10,20 +10,20 @@ const rowsOfMaterial = [
   { column: 'contours', name: 'Contours', unit: '', tell: count },
   { column: 'points', name: 'Points', unit: '', tell: count },
   { column: 'open_chains', name: 'Open', unit: '', tell: count, fault: true },
-  { column: 'longest_gap_mm', name: 'Gap', unit: 'mm', tell: brief, fault: true, rare: true },
-  { column: 'rings_dropped', name: 'Dropped', unit: '', tell: count, rare: true },
+  { column: 'longest_gap_mm', name: 'Gap', unit: 'mm', tell: brief, fault: true, extra: true },
+  { column: 'rings_dropped', name: 'Dropped', unit: '', tell: count, extra: true },
 ];
 const rowsOfVectors = [
-  { column: 'build_seconds', name: 'Time', unit: 's', tell: brief },
+  { column: 'build_seconds', name: 'Time', unit: 's', tell: brief, extra: true },
   { column: 'vectors', name: 'Vectors', unit: '', tell: count },
   { column: 'marked_mm', name: 'Marked', unit: 'mm', tell: brief },
   { column: 'jumped_mm', name: 'Jumped', unit: 'mm', tell: brief },
 ];
 
-/** Rows of what few stacks have are there for those alone. */
+/** Rows of what not all stacks have are there for those alone. */
 const rowsFor = ({ head, table }) =>
   [...(hasVectors(head) ? rowsOfVectors : []), ...(hasMaterial(head) ? rowsOfMaterial : [])].filter(
-    ({ column, rare }) => !rare || table[column]?.some((value) => value > 0),
+    ({ column, extra }) => !extra || table[column]?.some((value) => value > 0),
   );
 
 /** The slider over all layers, and under it what they measure, on the same axis. */
