@@ -300,6 +300,9 @@ test('the time of scan vectors is plotted, added up, and the same in all pages o
   // The words of a narrow page stay within it.
   const { page } = await open('job.html', { width: 390, height: 800, view: null });
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  assert.ok(await page.locator('.row .value').evaluateAll((nodes) => nodes.every((node) => node.scrollWidth <= node.clientWidth)));
+  const tops = await page.locator('.zoom button').evaluateAll((nodes) => nodes.map((node) => node.getBoundingClientRect().top));
+  assert.equal(new Set(tops.filter((top) => top > 0)).size, 1, tops.join(' '));
 });
 
 test('scan vectors of a file without speeds and powers are shown without times', async () => {

@@ -117,10 +117,13 @@ export class LayerView {
       'div',
       { className: 'tools', role: 'toolbar', 'aria-label': 'How the layer is drawn' },
       ...toggles,
-      element('span', { className: 'gap' }),
-      iconButton('Zoom in (+)', 'plus', () => this.zoomBy(1.5)),
-      iconButton('Zoom out (−)', 'minus', () => this.zoomBy(1 / 1.5)),
-      iconButton('Show all (0)', 'all', () => this.fit()),
+      element(
+        'span',
+        { className: 'zoom' },
+        iconButton('Zoom in (+)', 'plus', () => this.zoomBy(1.5)),
+        iconButton('Zoom out (−)', 'minus', () => this.zoomBy(1 / 1.5)),
+        iconButton('Show all (0)', 'all', () => this.fit()),
+      ),
     );
   }
 

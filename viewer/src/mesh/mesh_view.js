@@ -56,8 +56,7 @@ export class MeshView {
         'div',
         { className: 'tools', role: 'toolbar', 'aria-label': 'How the mesh is seen' },
         ...this.#space.tools,
-        element('span', { className: 'gap' }),
-        ...this.#space.zoomTools,
+        this.#space.zoomTools,
       ),
     );
     store.on(['theme', 'shell'], (state) => this.#paint(state));

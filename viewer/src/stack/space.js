@@ -99,10 +99,12 @@ export class Space {
     this.tools = Object.keys(views).map((name) =>
       element('button', { type: 'button', className: 'toggle', onclick: () => this.look(name) }, name),
     );
-    this.zoomTools = [
+    this.zoomTools = element(
+      'span',
+      { className: 'zoom' },
       iconButton('Zoom in', 'plus', () => this.zoomBy(1.4)),
       iconButton('Zoom out', 'minus', () => this.zoomBy(1 / 1.4)),
-    ];
+    );
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
     this.look('Aslant');
   }

@@ -138,7 +138,7 @@ export class StackView {
     const ghosts = element('button', { type: 'button', className: 'toggle' }, 'Layers above');
     ghosts.addEventListener('click', () => this.#store.set({ ghosts: !this.#store.state.ghosts }));
     this.#store.on(['ghosts'], (state) => ghosts.setAttribute('aria-pressed', state.ghosts));
-    return [...this.#space.tools, ghosts, element('span', { className: 'gap' }), ...this.#space.zoomTools];
+    return [...this.#space.tools, ghosts, this.#space.zoomTools];
   }
 
   #paint(theme) {
