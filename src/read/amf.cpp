@@ -6,8 +6,8 @@
 #include "core/lower_case.hpp"
 #include "read/amf_document.hpp"
 #include "read/assembly.hpp"
+#include "read/mesh_document.hpp"
 #include "read/mesh_readers.hpp"
-#include "read/mesh_text.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 
@@ -42,7 +42,6 @@ class AmfReader {
         file_.unit_mm = document_.unit_mm;
         file_.name = !document_.name.empty() ? document_.name : file_.objects.front().name;
         file_.warnings = remarks_.take();
-        file_.warnings.insert(file_.warnings.end(), notes_.begin(), notes_.end());
         return std::move(file_);
     }
 
@@ -78,31 +77,23 @@ class AmfReader {
     }
 
     void read_document() {
-        const std::string_view text = source_.text();
-        ProgressMeter progress(execution_, Stage::read, text.size());
-        try {
-            document_ =
-                read_amf_document(text, source_.name, supports_, true, limits_, [&](std::size_t read) {
-                    executor_.check_cancelled();
-                    progress.add(read);
-                });
-            progress.finish();
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::input)
-                throw;
-            // It may be at fault, or only be written in a way that is no good for skimming.
-            read_by_parser();
-        }
+        ProgressMeter progress(execution_, Stage::read, source_.text().size());
+        document_ = skimmed_or_parsed([&](bool skim) {
+            return parsed(skim, [&](std::size_t read) {
+                executor_.check_cancelled();
+                progress.add(skim ? read : 0);
+            });
+        });
+        progress.finish();
         AmfDocument* const document = &document_;
         if (!read_skimmed_meshes(std::span(&document, 1), amf_text_form(), limits_, executor_).front())
-            read_by_parser();
+            document_ = parsed(false, [&](std::size_t) { executor_.check_cancelled(); });
         source_.bytes = {};
         source_.owner.reset();
     }
 
-    void read_by_parser() {
-        document_ = read_amf_document(source_.text(), source_.name, supports_, false, limits_,
-                                      [&](std::size_t) { executor_.check_cancelled(); });
+    AmfDocument parsed(bool skim, const std::function<void(std::size_t)>& progress) {
+        return read_amf_document(source_.text(), source_.name, supports_, skim, limits_, progress);
     }
 
     /// Objects and constellations are nodes alike.
@@ -194,16 +185,15 @@ class AmfReader {
         if (degenerate != 0)
             remarks_.add(fmt::format("{} triangles use a vertex twice; they bound nothing", degenerate));
         if (document_.bent.count != 0)
-            notes_.push_back(
-                fmt::format("line {}: edges and normals bend triangles; they were passed over, as "
-                            "all {} of them, and triangles are flat",
-                            document_.bent.first, document_.bent.count));
+            remarks_.note(fmt::format("line {}: edges and normals bend triangles; they were passed over, as "
+                                      "all {} of them, and triangles are flat",
+                                      document_.bent.first, document_.bent.count));
         if (document_.supports.count != 0)
-            notes_.push_back(fmt::format("line {}: {} volumes are supports; they were left out",
-                                         document_.supports.first, document_.supports.count));
+            remarks_.note(fmt::format("line {}: {} volumes are supports; they were left out",
+                                      document_.supports.first, document_.supports.count));
         if (not_printable_ != 0)
-            notes_.push_back(fmt::format("{} instances are marked as not to be printed; they were left out",
-                                         not_printable_));
+            remarks_.note(fmt::format("{} instances are marked as not to be printed; they were left out",
+                                      not_printable_));
         file_.instances = place_meshes(name_, nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
             fail("holds nothing to slice: no object with a triangle");
@@ -213,7 +203,6 @@ class AmfReader {
 
     std::string name_;
     Remarks remarks_;
-    std::vector<std::string> notes_;
     bool supports_;
     ReadLimits limits_;
     const Execution& execution_;

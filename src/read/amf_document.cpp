@@ -6,6 +6,7 @@
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
+#include "read/mesh_document.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -105,271 +106,241 @@ bool read_triangles(std::string_view run, const MeshText&, std::span<TriangleInd
 }
 
 constexpr MeshTextForm text_form{
-    {"<vertex", 10,
+    {"<vertex", "</vertices", 10,
      std::string_view("<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>").size(),
      read_vertices},
-    {"<triangle", 8, std::string_view("<triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>").size(),
-     read_triangles}};
+    {"<triangle", "</volume", 8,
+     std::string_view("<triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>").size(), read_triangles}};
 
 /// What a number of an instance may be called.
 constexpr std::array<std::string_view, 14> instance_numbers = {
     "deltax", "deltay", "deltaz", "rx",      "ry",      "rz",      "scale",
     "scalex", "scaley", "scalez", "mirrorx", "mirrory", "mirrorz", "printable"};
 
-class DocumentReader {
-  public:
-    DocumentReader(const std::string& name, bool supports, bool skim, ReadLimits& limits)
-        : name_(name), supports_(supports), skim_(skim), count_(limits) {}
+/// What an element stands in.
+enum class AmfPlace {
+    outside,
+    amf,
+    object,
+    mesh,
+    vertices,
+    vertex,
+    coordinates,
+    triangles, ///< a volume
+    triangle,
+    constellation,
+    instance,
+    number,   ///< of a vertex, triangle or instance
+    metadata, ///< of the file, an object or a constellation
+    elsewhere ///< in something that is passed over
+};
 
-    AmfDocument read(std::string_view document, const std::function<void(std::size_t)>& progress) {
+struct AmfElement {
+    std::string_view name;
+    const XmlAttributes& attributes;
+
+    /// An attribute, without the blanks around it.
+    std::string_view operator[](std::string_view attribute) const {
+        return trimmed(attributes.find(attribute));
+    }
+};
+
+class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
+  public:
+    AmfDocumentReader(const std::string& name, bool supports, bool skim, ReadLimits& limits)
+        : MeshDocumentReader(name, "", skim, limits), supports_(supports) {}
+
+    AmfDocument read(std::string_view text, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
-        handlers.start = [this](XmlName name, const XmlAttributes& attributes, std::size_t line) {
-            line_ = line;
-            where_.push_back(start(name.local, attributes));
-        };
-        handlers.end = [this](XmlName) {
-            end();
-        };
-        handlers.text = [this](std::string_view text) {
+        handlers.text = [this](std::string_view piece) {
             if (wants_text_ && text_.size() < longest_text)
-                text_ += text;
+                text_ += piece;
         };
         handlers.progress = progress;
-        if (skim_) {
-            handlers.many = {text_form.vertex.tag, text_form.triangle.tag};
-            handlers.skim = [this](std::string_view text, std::size_t place) {
-                return skim(text, place);
-            };
-        }
-        parse_xml(document, name_, handlers);
-        count_.keep(here());
-        return std::move(result_);
+        parse(text, text_form, std::move(handlers));
+        return take();
     }
 
   private:
-    enum class Where {
-        amf,
-        object,
-        mesh,
-        vertices,
-        vertex,
-        coordinates,
-        volume,
-        triangle,
-        constellation,
-        instance,
-        number,   ///< of a vertex, triangle or instance
-        metadata, ///< of the file, an object or a constellation
-        elsewhere ///< in something that is passed over
-    };
+    using Where = AmfPlace;
+    using Step = Where (AmfDocumentReader::*)(const AmfElement&);
 
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", name_, line_, what));
+    static const auto& rules() {
+        using Self = AmfDocumentReader;
+        static constexpr auto all = std::to_array<ElementRule<Where, Step>>(
+            {{Where::vertices, "vertex", &Self::is<Where::vertex>},
+             {Where::vertex, "coordinates", &Self::is<Where::coordinates>},
+             {Where::coordinates, "x", &Self::start_number},
+             {Where::coordinates, "y", &Self::start_number},
+             {Where::coordinates, "z", &Self::start_number},
+             {Where::triangles, "triangle", &Self::is<Where::triangle>},
+             {Where::triangle, "v1", &Self::start_number},
+             {Where::triangle, "v2", &Self::start_number},
+             {Where::triangle, "v3", &Self::start_number},
+             {Where::vertices, "edge", &Self::pass_over_bend},
+             {Where::vertex, "normal", &Self::pass_over_bend},
+             {Where::amf, "object", &Self::start_object},
+             {Where::amf, "constellation", &Self::start_constellation},
+             {Where::amf, "metadata", &Self::start_metadata},
+             {Where::object, "mesh", &Self::start_mesh},
+             {Where::object, "metadata", &Self::start_metadata},
+             {Where::mesh, "vertices", &Self::is<Where::vertices>},
+             {Where::mesh, "volume", &Self::start_volume},
+             {Where::constellation, "instance", &Self::start_instance},
+             {Where::constellation, "metadata", &Self::start_metadata}});
+        return all;
     }
 
-    [[nodiscard]] std::string here() const { return fmt::format("line {}", line_); }
-
-    /// To be called before memory is taken.
-    void count(std::uint64_t triangles, std::uint64_t bytes) {
-        count_.add(triangles, bytes, [this] { return here(); });
+    Where start(XmlName name, const XmlAttributes& attributes) override {
+        const AmfElement element{name.local, attributes};
+        if (in() == Where::outside)
+            return start_file(element);
+        if (in() == Where::instance &&
+            std::find(instance_numbers.begin(), instance_numbers.end(), name.local) != instance_numbers.end())
+            return start_number(element);
+        const Step step = step_for(rules(), in(), name.local);
+        return step != nullptr ? (this->*step)(element) : Where::elsewhere;
     }
 
-    Where start(std::string_view element, const XmlAttributes& attributes) {
-        if (where_.empty())
-            return start_file(element, attributes);
-        const Where in = where_.back();
-        if (element == "metadata" && (in == Where::amf || in == Where::object || in == Where::constellation))
-            return start_metadata(attributes);
-        switch (in) {
-        case Where::amf:
-            if (element == "object")
-                return start_object(attributes);
-            if (element == "constellation") {
-                count(0, sizeof(AmfConstellation));
-                result_.constellations.push_back({std::string(required(attributes, "id")), {}, line_, {}});
-                return Where::constellation;
-            }
-            break;
-        case Where::object:
-            if (element == "mesh") {
-                if (std::exchange(object().has_mesh, true))
-                    fail("found a second <mesh> in an object, expected one");
-                return Where::mesh;
-            }
-            break;
-        case Where::mesh:
-            if (element == "vertices")
-                return Where::vertices;
-            if (element == "volume") {
-                const bool support = lower_case(trimmed(attributes.find("type"))) == "support";
-                object().has_part = object().has_part || !support;
-                if (supports_ || !support)
-                    return Where::volume;
-                result_.supports.note(line_);
-            }
-            break;
-        case Where::vertices:
-            if (element == "vertex") {
-                require_all_by_parser();
-                seen_ = 0;
-                return Where::vertex;
-            }
-            if (element == "edge")
-                result_.bent.note(line_);
-            break;
-        case Where::vertex:
-            if (element == "coordinates")
-                return Where::coordinates;
-            if (element == "normal")
-                result_.bent.note(line_);
-            break;
-        case Where::coordinates:
-            if (element == "x" || element == "y" || element == "z")
-                return start_number(element);
-            break;
-        case Where::volume:
-            if (element == "triangle") {
-                require_all_by_parser();
-                seen_ = 0;
-                return Where::triangle;
-            }
-            break;
-        case Where::triangle:
-            if (element == "v1" || element == "v2" || element == "v3")
-                return start_number(element);
-            break;
-        case Where::constellation:
-            if (element == "instance") {
-                count(0, sizeof(AmfInstance));
-                result_.constellations.back().instances.push_back(
-                    {std::string(required(attributes, "objectid")), line_, {}});
-                return Where::instance;
-            }
-            break;
-        case Where::instance:
-            if (std::find(instance_numbers.begin(), instance_numbers.end(), element) !=
-                instance_numbers.end())
-                return start_number(element);
-            break;
-        default:
-            break;
-        }
-        return Where::elsewhere;
+    template <AmfPlace what>
+    Where is(const AmfElement&) {
+        return what;
     }
 
-    void end() {
-        const Where ended = where_.back();
-        where_.pop_back();
-        switch (ended) {
-        case Where::number:
-            end_number();
-            break;
-        case Where::metadata:
-            end_metadata();
-            break;
-        case Where::vertex:
-            if (seen_ != all_three)
-                fail("found a vertex without all of x, y and z");
-            count(0, sizeof(Point3));
-            object().mesh.vertices.push_back({point_[0], point_[1], point_[2]});
-            break;
-        case Where::triangle:
-            if (seen_ != all_three)
-                fail("found a triangle without all of v1, v2 and v3");
-            count(1, sizeof(TriangleIndices));
-            object().mesh.triangles.push_back(corners_);
-            break;
-        default:
-            break;
-        }
-    }
-
-    Where start_file(std::string_view element, const XmlAttributes& attributes) {
-        if (lower_case(element) != "amf")
-            fail(fmt::format("found <{}>, expected <amf>", printable(element, 40)));
-        if (const std::string_view unit = attributes.find("unit"); unit.data() != nullptr) {
+    Where start_file(const AmfElement& element) {
+        if (lower_case(element.name) != "amf")
+            fail(fmt::format("found <{}>, expected <amf>", printable(element.name, 40)));
+        if (const std::string_view unit = element.attributes.find("unit"); unit.data() != nullptr) {
             const std::string name = lower_case(trimmed(unit));
             const auto* const known =
                 std::find_if(units.begin(), units.end(), [&](const Unit& u) { return u.name == name; });
             if (known == units.end())
                 fail(fmt::format("found unit '{}', expected millimeter, inch, feet, meter or micron",
                                  printable(unit, 40)));
-            result_.unit_mm = known->mm;
+            document().unit_mm = known->mm;
         }
         return Where::amf;
     }
 
-    Where start_object(const XmlAttributes& attributes) {
-        count(0, sizeof(AmfObject));
-        result_.objects.push_back({std::string(required(attributes, "id")), {}, line_, false, false, {}, {}});
+    Where start_object(const AmfElement& element) {
+        count(sizeof(AmfObject));
+        document().objects.push_back({required(element, "id"), {}, line(), false, false, {}, {}});
         return Where::object;
     }
 
-    Where start_metadata(const XmlAttributes& attributes) {
-        kind_ = lower_case(trimmed(attributes.find("type")));
+    Where start_mesh(const AmfElement&) {
+        if (std::exchange(object().has_mesh, true))
+            fail("found a second <mesh> in an object, expected one");
+        return Where::mesh;
+    }
+
+    Where start_volume(const AmfElement& element) {
+        const bool support = lower_case(element["type"]) == "support";
+        object().has_part = object().has_part || !support;
+        if (supports_ || !support)
+            return Where::triangles;
+        document().supports.note(line());
+        return Where::elsewhere;
+    }
+
+    Where pass_over_bend(const AmfElement&) {
+        document().bent.note(line());
+        return Where::elsewhere;
+    }
+
+    Where start_constellation(const AmfElement& element) {
+        count(sizeof(AmfConstellation));
+        document().constellations.push_back({required(element, "id"), {}, line(), {}});
+        return Where::constellation;
+    }
+
+    Where start_instance(const AmfElement& element) {
+        count(sizeof(AmfInstance));
+        constellation().instances.push_back({required(element, "objectid"), line(), {}});
+        return Where::instance;
+    }
+
+    Where start_metadata(const AmfElement& element) {
         // Only Slic3r and its descendants leave such words, and they write radians.
-        result_.radians = result_.radians || kind_.starts_with("slic3r");
-        begin_text();
+        const std::string type = lower_case(element["type"]);
+        document().radians = document().radians || type.starts_with("slic3r");
+        begin_text(type);
         return Where::metadata;
     }
 
-    void end_metadata() {
-        wants_text_ = false;
-        const std::string_view text = trimmed(text_);
-        const Where in = where_.back();
-        if (in == Where::amf && kind_ == "cad") {
-            const std::string program = lower_case(text);
-            result_.radians = result_.radians || program.find("slic3r") != std::string::npos ||
-                              program.find("prusa") != std::string::npos;
-        }
-        if (kind_ != "name")
-            return;
-        if (in == Where::amf)
-            result_.name = printable(text, longest_title);
-        else if (in == Where::object)
-            object().name = printable(text, longest_label);
-        else
-            result_.constellations.back().name = printable(text, longest_label);
-    }
-
-    Where start_number(std::string_view element) {
-        kind_ = element;
-        begin_text();
+    Where start_number(const AmfElement& element) {
+        begin_text(element.name);
         return Where::number;
     }
 
-    void end_number() {
-        wants_text_ = false;
-        const std::string_view text = trimmed(text_);
-        const char* const first = text.data();
-        const char* const last = first + text.size();
-        const auto expect = [&](const char* stop, std::string_view what) {
-            if (text.empty() || stop != last)
-                fail(fmt::format("found '{}' in <{}>, expected {}", printable(text, 40), kind_, what));
-        };
-        const Where in = where_.back();
-        if (in == Where::triangle) {
-            const auto corner = static_cast<std::size_t>(kind_[1] - '1');
-            expect(read_index(first, last, corners_[corner]), "a whole number");
-            if (corners_[corner] >= object().mesh.vertices.size())
-                fail(fmt::format("found {} = {}, expected less than {}, the number of vertices before it",
-                                 kind_, corners_[corner], object().mesh.vertices.size()));
-            see(corner);
-            return;
+    void begin_text(std::string_view of) {
+        kind_ = of;
+        wants_text_ = true;
+        text_.clear();
+    }
+
+    void end(Where ended) override {
+        switch (ended) {
+        case Where::number:
+            wants_text_ = false;
+            end_number(trimmed(text_));
+            break;
+        case Where::metadata:
+            wants_text_ = false;
+            end_metadata(trimmed(text_));
+            break;
+        case Where::vertex:
+            if (std::exchange(seen_, 0) != all_three)
+                fail("found a vertex without all of x, y and z");
+            add(Point3{point_[0], point_[1], point_[2]});
+            break;
+        case Where::triangle:
+            if (std::exchange(seen_, 0) != all_three)
+                fail("found a triangle without all of v1, v2 and v3");
+            add(corners_);
+            break;
+        default:
+            break;
         }
+    }
+
+    void end_number(std::string_view text) {
+        if (in() == Where::triangle) {
+            const auto corner = static_cast<std::size_t>(kind_[1] - '1');
+            corners_[corner] = vertex_of(text);
+            see(corner);
+        } else if (in() == Where::coordinates) {
+            const auto axis = static_cast<std::size_t>(kind_[0] - 'x');
+            point_[axis] = number_of(text);
+            see(axis);
+        } else {
+            count(node_bytes);
+            constellation().instances.back().numbers[kind_] = number_of(text);
+        }
+    }
+
+    std::uint32_t vertex_of(std::string_view text) {
+        std::uint32_t vertex = 0;
+        require_end(read_index(text.data(), text.data() + text.size(), vertex), text, "a whole number");
+        if (const std::size_t known = object().mesh.vertices.size(); vertex >= known)
+            fail(fmt::format("found {} = {}, expected less than {}, the number of vertices before it", kind_,
+                             vertex, known));
+        return vertex;
+    }
+
+    double number_of(std::string_view text) const {
         double number = 0;
-        expect(read_decimal(first, last, number), "a number with a decimal point");
+        require_end(read_decimal(text.data(), text.data() + text.size(), number), text,
+                    "a number with a decimal point");
         if (!(std::abs(number) <= farthest_coordinate))
             fail(fmt::format("found {} in <{}>, expected a number within {}", printable(text, 40), kind_,
                              farthest_coordinate));
-        if (in == Where::coordinates) {
-            const auto axis = static_cast<std::size_t>(kind_[0] - 'x');
-            point_[axis] = number;
-            see(axis);
-        } else {
-            count(0, node_bytes);
-            result_.constellations.back().instances.back().numbers[kind_] = number;
-        }
+        return number;
+    }
+
+    void require_end(const char* stop, std::string_view text, std::string_view expected) const {
+        if (text.empty() || stop != text.data() + text.size())
+            fail(fmt::format("found '{}' in <{}>, expected {}", printable(text, 40), kind_, expected));
     }
 
     void see(std::size_t index) {
@@ -378,46 +349,34 @@ class DocumentReader {
         seen_ |= 1U << index;
     }
 
-    void begin_text() {
-        wants_text_ = true;
-        text_.clear();
+    void end_metadata(std::string_view text) {
+        if (in() == Where::amf && kind_ == "cad") {
+            const std::string program = lower_case(text);
+            document().radians = document().radians || program.find("slic3r") != std::string::npos ||
+                                 program.find("prusa") != std::string::npos;
+        }
+        if (kind_ != "name")
+            return;
+        if (in() == Where::amf)
+            document().name = printable(text, longest_title);
+        else if (in() == Where::object)
+            object().name = printable(text, longest_label);
+        else
+            constellation().name = printable(text, longest_label);
     }
 
-    std::string_view required(const XmlAttributes& attributes, std::string_view name) const {
-        const std::string_view text = trimmed(attributes.find(name));
+    std::string required(const AmfElement& element, std::string_view attribute) const {
+        const std::string_view text = element[attribute];
         if (text.empty())
-            fail(fmt::format("found an element without {}, expected one", name));
-        return text;
+            fail(fmt::format("found an element without {}, expected one", attribute));
+        return std::string(text);
     }
 
-    /// Leaves a run of vertices or triangles to others.
-    std::size_t skim(std::string_view document, std::size_t place) {
-        const Where in = where_.empty() ? Where::elsewhere : where_.back();
-        if (in != Where::vertices && in != Where::volume)
-            return 0;
-        MeshText& text = object().text;
-        text.place = here();
-        return in == Where::vertices ? take_run(document, place, "</vertices", text.vertices)
-                                     : take_run(document, place, "</volume", text.triangles);
-    }
-
-    /// Where runs are skimmed no vertex may come past the parser: their order would be lost.
-    void require_all_by_parser() const {
-        if (skim_)
-            fail("found a mesh that is not written plainly");
-    }
-
-    AmfObject& object() { return result_.objects.back(); }
+    AmfConstellation& constellation() { return document().constellations.back(); }
 
     static constexpr unsigned all_three = 7;
 
-    const std::string& name_;
     bool supports_;
-    bool skim_;
-    GrowingMeshCount count_;
-    AmfDocument result_;
-    std::size_t line_ = 1;
-    std::vector<Where> where_;
     std::string kind_; ///< element of a number, or type of metadata
     std::string text_;
     bool wants_text_ = false;
@@ -434,7 +393,7 @@ const MeshTextForm& amf_text_form() noexcept {
 
 AmfDocument read_amf_document(std::string_view document, const std::string& name, bool supports, bool skim,
                               ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
-    return DocumentReader(name, supports, skim, limits).read(document, progress);
+    return AmfDocumentReader(name, supports, skim, limits).read(document, progress);
 }
 
 } // namespace lamella

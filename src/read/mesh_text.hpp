@@ -39,9 +39,10 @@ struct MeshText {
 /// How a kind of element is written.
 template <class Item>
 struct MeshTextKind {
-    std::string_view tag; ///< with which each begins, such as "<vertex"
-    std::size_t marks;    ///< how many '<' there are in each
-    std::size_t least;    ///< bytes of the shortest one
+    std::string_view tag;         ///< with which each begins, such as "<vertex"
+    std::string_view end_of_list; ///< such as "</vertices"
+    std::size_t marks;            ///< how many '<' there are in each
+    std::size_t least;            ///< bytes of the shortest one
     /// Reads a run of exactly these many elements, blanks between them; false when it is not plain.
     bool (*read)(std::string_view run, const MeshText& text, std::span<Item> items);
 };

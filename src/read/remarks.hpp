@@ -45,12 +45,19 @@ class Remarks {
         texts_.push_back(std::move(text));
     }
 
-    [[nodiscard]] std::vector<std::string> take() { return std::exchange(texts_, {}); }
+    /// What strict callers take, too; it is said behind what they do not.
+    void note(std::string text) { notes_.push_back(std::move(text)); }
+
+    [[nodiscard]] std::vector<std::string> take() {
+        texts_.insert(texts_.end(), notes_.begin(), notes_.end());
+        return std::exchange(texts_, {});
+    }
 
   private:
     std::string file_name_;
     bool strict_;
     std::vector<std::string> texts_;
+    std::vector<std::string> notes_;
 };
 
 /// Tells that `count` of `stored` triangles, not 0, were left out, the first of them at `place`. Throws

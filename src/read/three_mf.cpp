@@ -3,6 +3,7 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/assembly.hpp"
+#include "read/mesh_document.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/opc_package.hpp"
 #include "read/read_limits.hpp"
@@ -163,11 +164,7 @@ class PartLoader {
             for (std::uint64_t i = first + begin; i < first + end; ++i) {
                 Part& part = parts_[i];
                 part.bytes = package_.zip().read(entry_of(part));
-                const auto advance = [&](std::size_t read) {
-                    executor_.check_cancelled();
-                    progress_.add(read);
-                };
-                part.model = load_model(part, i == 0, advance);
+                part.model = skimmed_or_parsed([&](bool skim) { return parsed(part, skim); });
             }
         });
         limits_.add_bytes(package_.zip().unpacked() - unpacked);
@@ -176,16 +173,12 @@ class PartLoader {
 
     const ZipEntry& entry_of(const Part& part) const { return *package_.zip().find(part.model.part); }
 
-    ThreeMfModel load_model(const Part& part, bool is_root, const std::function<void(std::size_t)>& advance) {
-        const std::string name = part.model.part;
-        try {
-            return read_three_mf_model(part.bytes, name, is_root, true, limits_, advance);
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::input)
-                throw;
-        }
-        // It may be at fault, or only be written in a way that is no good for skimming.
-        return read_three_mf_model(part.bytes, name, is_root, false, limits_, [](std::size_t) {});
+    ThreeMfModel parsed(const Part& part, bool skim) {
+        return read_three_mf_model(part.bytes, part.model.part, &part == &parts_[0], skim, limits_,
+                                   [&](std::size_t read) {
+                                       executor_.check_cancelled();
+                                       progress_.add(skim ? read : 0);
+                                   });
     }
 
     void read_meshes(std::size_t first) {
@@ -196,11 +189,8 @@ class PartLoader {
                                                             three_mf_text_form(), limits_, executor_);
         for (std::size_t i = first; i < parts_.size(); ++i) {
             Part& part = parts_[i];
-            if (!plain[i - first]) {
-                const std::string name = part.model.part;
-                part.model = read_three_mf_model(part.bytes, name, i == 0, false, limits_,
-                                                 [&](std::size_t) { executor_.check_cancelled(); });
-            }
+            if (!plain[i - first])
+                part.model = parsed(part, false);
             part.bytes = {};
         }
     }
@@ -234,7 +224,6 @@ class ThreeMfReader {
         file_.unit_mm = model.unit_mm;
         file_.name = !model.title.empty() ? model.title : file_.objects.front().name;
         file_.warnings = remarks_.take();
-        file_.warnings.insert(file_.warnings.end(), notes_.begin(), notes_.end());
         return std::move(file_);
     }
 
@@ -244,7 +233,7 @@ class ThreeMfReader {
         if (offence)
             remarks_.add(text);
         else
-            notes_.push_back(text);
+            remarks_.note(text);
     }
 
     /// One node for each object of each part.
@@ -374,7 +363,6 @@ class ThreeMfReader {
     std::string name_;
     Remarks remarks_;
     bool supports_;
-    std::vector<std::string> notes_;
     ReadLimits limits_;
     Executor executor_;
     PartLoader loader_;

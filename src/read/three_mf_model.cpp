@@ -7,6 +7,7 @@
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "read/decimal_text.hpp"
+#include "read/mesh_document.hpp"
 #include "read/plain_elements.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_part.hpp"
@@ -97,10 +98,6 @@ ThreeMfObject object_of(const ThreeMfElement& element) {
     return object;
 }
 
-Point3 vertex_of(const ThreeMfElement& element) {
-    return {element["x"].number(), element["y"].number(), element["z"].number()};
-}
-
 TriangleIndices triangle_of(const ThreeMfElement& element, std::size_t vertices) {
     TriangleIndices corners;
     constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
@@ -158,149 +155,125 @@ class ResourceIds {
     std::map<std::uint32_t, bool> ids_; ///< and whether an object has it
 };
 
-/// What a model is read from, one step for each element. Steps say what the element is, so that those in it
-/// are taken for what they are.
-class ModelReader {
+/// What an element stands in.
+enum class ModelPlace {
+    outside,
+    model,
+    title,
+    resources,
+    object,
+    mesh,
+    vertices,
+    triangles,
+    components,
+    build,
+    elsewhere ///< in something that is passed over
+};
+
+class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
   public:
-    ModelReader(const ByteSource& source, std::string part, bool is_root, bool skim, ReadLimits& limits)
-        : is_root_(is_root), skim_(skim), count_(limits) {
-        model_.part = std::move(part);
-        model_.source = source.name;
+    ModelReader(const ByteSource& source, const std::string& part, bool is_root, bool skim,
+                ReadLimits& limits)
+        : MeshDocumentReader(source.name, fmt::format("part '{}', ", printable(part, longest_object_name)),
+                             skim, limits),
+          is_root_(is_root) {
+        document().part = part;
+        document().source = source.name;
     }
 
-    ThreeMfModel read(std::string_view document, const std::function<void(std::size_t)>& progress) {
+    ThreeMfModel read(std::string_view text, const std::function<void(std::size_t)>& progress) {
+        ThreeMfModel& model = document();
         XmlHandlers handlers;
-        handlers.start = [this](XmlName name, const XmlAttributes& attributes, std::size_t line) {
-            line_ = line;
-            if (where_.empty())
-                is_beta_ = name.space == three_mf::beta_core;
-            if (is_beta_ && name.space == three_mf::beta_core)
-                name.space = three_mf::core;
-            where_.push_back(start({model_.source, name, attributes, line}));
-        };
-        handlers.end = [this](XmlName) {
-            end();
-        };
-        handlers.text = [this](std::string_view text) {
-            if (!where_.empty() && where_.back() == Where::title && model_.title.size() < longest_model_title)
-                model_.title += text;
+        handlers.text = [&](std::string_view piece) {
+            if (in() == Where::title && model.title.size() < longest_model_title)
+                model.title += piece;
         };
         handlers.declare = [this](std::string_view prefix, std::string_view space) {
-            if (where_.empty())
+            if (in() == Where::outside)
                 spaces_.emplace(prefix, space);
         };
         handlers.progress = progress;
-        if (skim_) {
-            handlers.many = {three_mf_text_form().vertex.tag, three_mf_text_form().triangle.tag};
-            handlers.skim = [this](std::string_view text, std::size_t place) {
-                return skim(text, place);
-            };
-        }
-        parse_xml(document, model_.source, handlers, three_mf_rules);
+        parse(text, three_mf_text_form(), std::move(handlers), three_mf_rules);
         if (!seen_.contains(Where::resources))
             fail("found no <resources>, expected one in <model>");
         if (is_root_ && !seen_.contains(Where::build))
             fail("found no <build>, expected one in <model>");
-        model_.title = printable(trimmed(model_.title), longest_model_title);
+        model.title = printable(trimmed(model.title), longest_model_title);
         for (const auto& [prefix, space] : spaces_)
             if (!prefix.empty())
-                model_.prefixes.push_back(prefix);
-        for (ThreeMfObject& object : model_.objects)
-            object.text.prefixes = model_.prefixes; // moving the model leaves them where they are
-        count_.keep(here());
-        return std::move(model_);
+                model.prefixes.push_back(prefix);
+        for (ThreeMfObject& object : model.objects)
+            object.text.prefixes = model.prefixes; // moving the model leaves them where they are
+        return take();
     }
 
   private:
-    enum class Where {
-        model,
-        title,
-        resources,
-        object,
-        mesh,
-        vertices,
-        triangles,
-        components,
-        build,
-        elsewhere ///< in something that is passed over
-    };
+    using Where = ModelPlace;
     using Step = Where (ModelReader::*)(const ThreeMfElement&);
 
-    /// Which elements of the core have business where.
-    struct Rule {
-        Where in;
-        std::string_view element;
-        Step step;
-    };
-    static constexpr std::array<Rule, 14> rules() {
-        return {{{Where::model, "resources", &ModelReader::start_resources},
-                 {Where::model, "build", &ModelReader::start_build},
-                 {Where::model, "metadata", &ModelReader::start_metadata},
-                 {Where::resources, "object", &ModelReader::start_object},
-                 {Where::resources, "basematerials", &ModelReader::pass_over},
-                 {Where::object, "mesh", &ModelReader::start_mesh},
-                 {Where::object, "components", &ModelReader::start_components},
-                 {Where::object, "metadatagroup", &ModelReader::pass_over},
-                 {Where::mesh, "vertices", &ModelReader::start_vertices},
-                 {Where::mesh, "triangles", &ModelReader::start_triangles},
-                 {Where::vertices, "vertex", &ModelReader::add_vertex},
-                 {Where::triangles, "triangle", &ModelReader::add_triangle},
-                 {Where::components, "component", &ModelReader::add_component},
-                 {Where::build, "item", &ModelReader::add_item}}};
+    static const auto& rules() {
+        using Self = ModelReader;
+        static constexpr auto all = std::to_array<ElementRule<Where, Step>>(
+            {{Where::vertices, "vertex", &Self::add_vertex},
+             {Where::triangles, "triangle", &Self::add_triangle},
+             {Where::model, "resources", &Self::once<Where::resources>},
+             {Where::model, "build", &Self::start_build},
+             {Where::model, "metadata", &Self::start_metadata},
+             {Where::resources, "object", &Self::start_object},
+             {Where::resources, "basematerials", &Self::pass_over},
+             {Where::object, "mesh", &Self::start_mesh},
+             {Where::object, "components", &Self::start_components},
+             {Where::object, "metadatagroup", &Self::pass_over},
+             {Where::mesh, "vertices", &Self::once<Where::vertices>},
+             {Where::mesh, "triangles", &Self::once<Where::triangles>},
+             {Where::components, "component", &Self::add_component},
+             {Where::build, "item", &Self::add_item}});
+        return all;
     }
 
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", model_.source, line_, what));
-    }
-
-    [[nodiscard]] std::string here() const {
-        return fmt::format("part '{}', line {}", printable(model_.part, longest_object_name), line_);
-    }
-
-    void remark(const std::string& what, bool offence = true) {
-        if (model_.remarks.size() < most_remarks)
-            model_.remarks.push_back({fmt::format("{}: {}", here(), what), offence});
-    }
-
-    /// To be called before memory is taken.
-    void count(std::uint64_t triangles, std::uint64_t bytes) {
-        count_.add(triangles, bytes, [this] { return here(); });
+    Where start(XmlName name, const XmlAttributes& attributes) override {
+        if (in() == Where::outside)
+            is_beta_ = name.space == three_mf::beta_core;
+        if (is_beta_ && name.space == three_mf::beta_core)
+            name.space = three_mf::core;
+        return start({document().source, name, attributes, line()});
     }
 
     Where start(const ThreeMfElement& element) {
-        if (where_.empty())
+        if (in() == Where::outside)
             return start_model(element);
-        const Where in = where_.back();
         std::optional<std::uint32_t> id;
-        if (in == Where::resources) {
-            count(0, node_bytes);
+        if (in() == Where::resources) {
+            count(node_bytes);
             id = ids_.take(element, [this](const std::string& what) { remark(what); });
         }
-        if (in == Where::resources || in == Where::elsewhere)
+        if (in() == Where::resources || in() == Where::elsewhere)
             if (const auto wrong = properties_.check(element.name, element.attributes, id))
                 remark(*wrong);
-        if (in == Where::elsewhere || in == Where::title)
+        if (in() == Where::elsewhere || in() == Where::title)
             return Where::elsewhere;
-        if (element.name == XmlName{three_mf::beams, "beamlattice"} && in == Where::mesh) {
+        if (element.name == XmlName{three_mf::beams, "beamlattice"} && in() == Where::mesh) {
             if (required_.contains(std::string(three_mf::beams)))
                 fail("found a beam lattice; those cannot be read, and the file requires it");
             remark("found a beam lattice; its beams were left out");
         }
         if (element.name.space != three_mf::core)
             return Where::elsewhere;
-        for (const Rule& rule : rules())
-            if (rule.in == in && rule.element == element.name.local)
-                return (this->*rule.step)(element);
+        if (const Step step = step_for(rules(), in(), element.name.local))
+            return (this->*step)(element);
         remark(fmt::format("found <{}>, which has no business here; it was passed over",
                            printable(element.name.local, 40)));
         return Where::elsewhere;
     }
 
-    void end() {
-        const Where ended = where_.back();
-        where_.pop_back();
+    void end(Where ended) override {
         if (ended == Where::object && !object().is_mesh && object().components.empty())
             fail(fmt::format("found object {} with neither a mesh nor components", object().id));
+    }
+
+    void remark(const std::string& what, bool offence = true) {
+        if (document().remarks.size() < most_remarks)
+            document().remarks.push_back({fmt::format("{}: {}", here(), what), offence});
     }
 
     Where start_model(const ThreeMfElement& element) {
@@ -312,7 +285,7 @@ class ModelReader {
             remark(fmt::format("found a file of the beta of 3MF ('{}'); its meshes, components and build are "
                                "taken as today's",
                                three_mf::beta_core));
-        model_.unit_mm = element.unit_mm();
+        document().unit_mm = element.unit_mm();
         if (element[XmlName{xml_space, "space"}].is_there)
             remark("found xml:space, which 3MF files must not use");
         required_ = required_extensions(element, spaces_);
@@ -322,32 +295,31 @@ class ModelReader {
     Where pass_over(const ThreeMfElement&) { return Where::elsewhere; }
 
     /// What must not come twice.
-    Where once(Where what, const ThreeMfElement& element) {
+    template <ModelPlace what>
+    Where once(const ThreeMfElement& element) {
         if (!seen_.insert(what).second)
             element.fail(fmt::format("a second <{}>", element.name.local), "one");
         return what;
     }
 
-    Where start_resources(const ThreeMfElement& element) { return once(Where::resources, element); }
-
     Where start_build(const ThreeMfElement& element) {
-        const Where build = once(Where::build, element);
+        const Where build = once<Where::build>(element);
         return is_root_ ? build : Where::elsewhere; // that of other parts does not count
     }
 
     Where start_metadata(const ThreeMfElement& element) {
         const std::string_view name = element.attributes.find("name");
-        count(0, node_bytes + name.size());
+        count(node_bytes + name.size());
         if (name.data() == nullptr)
             remark("found metadata without a name");
         else if (!metadata_.emplace(name).second)
             remark(fmt::format("found metadata '{}' for the second time", printable(name, 40)));
-        return name == "Title" && model_.title.empty() ? Where::title : Where::elsewhere;
+        return name == "Title" && document().title.empty() ? Where::title : Where::elsewhere;
     }
 
     Where start_object(const ThreeMfElement& element) {
-        count(0, sizeof(ThreeMfObject));
-        model_.objects.push_back(object_of(element));
+        count(sizeof(ThreeMfObject));
+        document().objects.push_back(object_of(element));
         if (element["pindex"].is_there && !element["pid"].is_there)
             remark("found pindex without pid");
         if (element[XmlName{three_mf::slices, "meshresolution"}].text == "lowres")
@@ -376,62 +348,30 @@ class ModelReader {
                          "one mesh or one list of components");
     }
 
-    Where start_vertices(const ThreeMfElement& element) { return once(Where::vertices, element); }
-    Where start_triangles(const ThreeMfElement& element) { return once(Where::triangles, element); }
-
-    /// Leaves a run of vertices or triangles to others.
-    std::size_t skim(std::string_view document, std::size_t place) {
-        const Where in = where_.empty() ? Where::elsewhere : where_.back();
-        if (in != Where::vertices && in != Where::triangles)
-            return 0;
-        MeshText& text = object().text;
-        text.place = here();
-        return in == Where::vertices ? take_run(document, place, "</vertices", text.vertices)
-                                     : take_run(document, place, "</triangles", text.triangles);
-    }
-
     Where add_vertex(const ThreeMfElement& element) {
-        require_all_by_parser();
-        count(0, sizeof(Point3));
-        object().mesh.vertices.push_back(vertex_of(element));
+        add(Point3{element["x"].number(), element["y"].number(), element["z"].number()});
         return Where::elsewhere;
     }
 
     Where add_triangle(const ThreeMfElement& element) {
-        require_all_by_parser();
-        count(1, sizeof(TriangleIndices));
-        IndexedMesh& mesh = object().mesh;
-        mesh.triangles.push_back(triangle_of(element, mesh.vertices.size()));
+        add(triangle_of(element, object().mesh.vertices.size()));
         return Where::elsewhere;
     }
 
-    /// Where runs are skimmed no vertex may come past the parser: their order would be lost.
-    void require_all_by_parser() const {
-        if (skim_)
-            fail("found a mesh that is not written plainly");
-    }
-
     Where add_component(const ThreeMfElement& element) {
-        count(0, sizeof(ThreeMfUse));
-        object().components.push_back(use_of(element, is_root_, model_.unit_mm));
+        count(sizeof(ThreeMfUse));
+        object().components.push_back(use_of(element, is_root_, document().unit_mm));
         return Where::elsewhere;
     }
 
     Where add_item(const ThreeMfElement& element) {
-        count(0, sizeof(ThreeMfUse));
-        model_.items.push_back(use_of(element, is_root_, model_.unit_mm));
+        count(sizeof(ThreeMfUse));
+        document().items.push_back(use_of(element, is_root_, document().unit_mm));
         return Where::elsewhere;
     }
 
-    [[nodiscard]] ThreeMfObject& object() { return model_.objects.back(); }
-
-    ThreeMfModel model_;
     bool is_root_;
-    bool skim_;
     bool is_beta_ = false;
-    GrowingMeshCount count_;
-    std::size_t line_ = 1;
-    std::vector<Where> where_;
     std::set<Where> seen_; ///< of those that must not come twice; vertices and triangles: in this object
     std::map<std::string, std::string> spaces_; ///< prefixes that the root element declares
     std::set<std::string> required_;
@@ -475,16 +415,16 @@ bool read_model_triangles(std::string_view run, const MeshText& text, std::span<
 
 } // namespace
 
-ThreeMfModel read_three_mf_model(const ByteSource& source, std::string part, bool is_root, bool skim,
+ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part, bool is_root, bool skim,
                                  ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
-    const std::string_view document = source.text();
-    return ModelReader(source, std::move(part), is_root, skim, limits).read(document, progress);
+    return ModelReader(source, part, is_root, skim, limits).read(source.text(), progress);
 }
 
 const MeshTextForm& three_mf_text_form() noexcept {
     static const MeshTextForm form{
-        {"<vertex", 1, std::string_view("<vertex x=\"0\" y=\"0\" z=\"0\"/>").size(), read_model_vertices},
-        {"<triangle", 1, std::string_view("<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>").size(),
+        {"<vertex", "</vertices", 1, std::string_view("<vertex x=\"0\" y=\"0\" z=\"0\"/>").size(),
+         read_model_vertices},
+        {"<triangle", "</triangles", 1, std::string_view("<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>").size(),
          read_model_triangles}};
     return form;
 }

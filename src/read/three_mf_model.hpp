@@ -58,8 +58,8 @@ struct ThreeMfModel {
 /// Reads a model part. `skim`: leave the vertices and triangles of meshes in `text`, unread, where they stand
 /// as plain runs. Throws Error{input} with the line for what is no model, and Error{limit} for what is too
 /// much, as soon as it is; the limits count what is returned.
-[[nodiscard]] ThreeMfModel read_three_mf_model(const ByteSource& source, std::string part, bool is_root,
-                                               bool skim, ReadLimits& limits,
+[[nodiscard]] ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part,
+                                               bool is_root, bool skim, ReadLimits& limits,
                                                const std::function<void(std::size_t)>& progress);
 
 /// How meshes are written in model parts.

@@ -1,0 +1,153 @@
+#pragma once
+
+// XML documents with meshes, element by element. Runs of vertices and triangles may be left to
+// `read/mesh_text`.
+
+#include "lamella/core/error.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
+
+#include "container/xml.hpp"
+#include "read/mesh_text.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// Which elements have business where, and the step to take for each: it says what the element is, so that
+/// those in it are taken for what they are.
+template <class Where, class Step>
+struct ElementRule {
+    Where in;
+    std::string_view element;
+    Step step;
+};
+
+/// Null where the element has no business.
+template <class Where, class Step, std::size_t count>
+[[nodiscard]] Step step_for(const std::array<ElementRule<Where, Step>, count>& rules, Where in,
+                            std::string_view element) {
+    for (const ElementRule<Where, Step>& rule : rules)
+        if (rule.in == in && rule.element == element)
+            return rule.step;
+    return nullptr;
+}
+
+/// Reads a document, whose `objects` have a `mesh` and a `text` each. `Where` says in what an element stands:
+/// `outside` of the root element, in the `vertices` or `triangles` of the last object, ...
+template <class Document, class Where>
+class MeshDocumentReader {
+  public:
+    virtual ~MeshDocumentReader() = default;
+
+  protected:
+    /// `name` is what errors call the document; places in it are lines, with `part` before them. `skim`:
+    /// leave runs of vertices and triangles in `text`, unread.
+    MeshDocumentReader(const std::string& name, const std::string& part, bool skim, ReadLimits& limits)
+        : name_(name), part_(part), skim_(skim), count_(limits) {}
+
+    /// Says what an element is.
+    virtual Where start(XmlName name, const XmlAttributes& attributes) = 0;
+    virtual void end(Where ended) = 0;
+
+    /// `handlers` lack what is done here.
+    void parse(std::string_view text, const MeshTextForm& form, XmlHandlers handlers,
+               const XmlRules& rules = {}) {
+        handlers.start = [this](XmlName name, const XmlAttributes& attributes, std::size_t line) {
+            line_ = line;
+            where_.push_back(start(name, attributes));
+        };
+        handlers.end = [this](XmlName) {
+            const Where ended = in();
+            where_.pop_back();
+            end(ended);
+        };
+        if (skim_) {
+            handlers.many = {form.vertex.tag, form.triangle.tag};
+            handlers.skim = [this, &form](std::string_view document, std::size_t place) {
+                return skim(document, place, form);
+            };
+        }
+        parse_xml(text, name_, handlers, rules);
+    }
+
+    /// What was read, and is kept.
+    [[nodiscard]] Document take() {
+        count_.keep(here());
+        return std::move(document_);
+    }
+
+    [[nodiscard]] Where in() const { return where_.back(); }
+    [[nodiscard]] std::size_t line() const { return line_; }
+    [[nodiscard]] Document& document() { return document_; }
+    [[nodiscard]] auto& object() { return document_.objects.back(); }
+
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", name_, line_, what));
+    }
+
+    [[nodiscard]] std::string here() const { return fmt::format("{}line {}", part_, line_); }
+
+    /// To be called before memory is taken.
+    void count(std::uint64_t bytes, std::uint64_t triangles = 0) {
+        count_.add(triangles, bytes, [this] { return here(); });
+    }
+
+    void add(const Point3& vertex) {
+        require_all_by_parser();
+        count(sizeof vertex);
+        object().mesh.vertices.push_back(vertex);
+    }
+    void add(const TriangleIndices& triangle) {
+        require_all_by_parser();
+        count(sizeof triangle, 1);
+        object().mesh.triangles.push_back(triangle);
+    }
+
+  private:
+    std::size_t skim(std::string_view document, std::size_t place, const MeshTextForm& form) {
+        const bool vertices = in() == Where::vertices;
+        if (!vertices && in() != Where::triangles)
+            return 0;
+        MeshText& text = object().text;
+        text.place = here();
+        return vertices ? take_run(document, place, form.vertex.end_of_list, text.vertices)
+                        : take_run(document, place, form.triangle.end_of_list, text.triangles);
+    }
+
+    /// Where runs are skimmed no vertex may come past the parser: their order would be lost.
+    void require_all_by_parser() const {
+        if (skim_)
+            fail("found a mesh that is not written plainly");
+    }
+
+    const std::string& name_;
+    const std::string part_;
+    const bool skim_;
+    GrowingMeshCount count_;
+    Document document_;
+    std::size_t line_ = 1;
+    std::vector<Where> where_{Where::outside};
+};
+
+/// What `read(true)` gives, which skims, or else `read(false)`: the document may be at fault, or only be
+/// written in a way that is no good for skimming.
+template <class Read>
+[[nodiscard]] auto skimmed_or_parsed(const Read& read) {
+    try {
+        return read(true);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input)
+            throw;
+    }
+    return read(false);
+}
+
+} // namespace lamella
