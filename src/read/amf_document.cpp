@@ -7,6 +7,7 @@
 #include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
 #include "read/mesh_document.hpp"
+#include "read/plain_elements.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <utility>
 
@@ -40,52 +40,20 @@ constexpr std::array units = {Unit{"millimeter", 1}, Unit{"inch", 25.4},        
                               Unit{"microns", 0.001}};
 
 /// Elements without attributes that hold a number or others of their kind.
-class PlainTags {
+class PlainNumbers : public PlainTags {
   public:
-    explicit PlainTags(std::string_view run) : at_(run.data()), end_(run.data() + run.size()) {}
-
-    bool take(std::string_view tag) {
-        skip_blanks();
-        if (static_cast<std::size_t>(end_ - at_) < tag.size() ||
-            std::memcmp(at_, tag.data(), tag.size()) != 0)
-            return false;
-        at_ += tag.size();
-        return true;
-    }
+    using PlainTags::PlainTags;
+    using PlainTags::take;
 
     bool take(double& number) {
-        skip_blanks();
-        return move(read_decimal(at_, end_, number)) && std::abs(number) <= farthest_coordinate;
+        return move(read_decimal(next(), end(), number)) && std::abs(number) <= farthest_coordinate;
     }
 
-    bool take(std::uint32_t& number) {
-        skip_blanks();
-        return move(read_index(at_, end_, number));
-    }
-
-    bool done() {
-        skip_blanks();
-        return at_ == end_;
-    }
-
-  private:
-    // Behind the run there is another byte, and it is no blank.
-    void skip_blanks() {
-        while (*at_ == ' ' || *at_ == '\n' || *at_ == '\r' || *at_ == '\t')
-            ++at_;
-    }
-
-    bool move(const char* to) {
-        at_ = to == nullptr ? at_ : to;
-        return to != nullptr;
-    }
-
-    const char* at_;
-    const char* end_;
+    bool take(std::uint32_t& number) { return move(read_index(next(), end(), number)); }
 };
 
 bool read_vertices(std::string_view run, const MeshText&, std::span<Point3> vertices) {
-    PlainTags tags(run);
+    PlainNumbers tags(run);
     for (Point3& v : vertices)
         if (!(tags.take("<vertex>") && tags.take("<coordinates>") && tags.take("<x>") && tags.take(v.x) &&
               tags.take("</x>") && tags.take("<y>") && tags.take(v.y) && tags.take("</y>") &&
@@ -96,7 +64,7 @@ bool read_vertices(std::string_view run, const MeshText&, std::span<Point3> vert
 }
 
 bool read_triangles(std::string_view run, const MeshText&, std::span<TriangleIndices> triangles) {
-    PlainTags tags(run);
+    PlainNumbers tags(run);
     for (TriangleIndices& t : triangles)
         if (!(tags.take("<triangle>") && tags.take("<v1>") && tags.take(t[0]) && tags.take("</v1>") &&
               tags.take("<v2>") && tags.take(t[1]) && tags.take("</v2>") && tags.take("<v3>") &&

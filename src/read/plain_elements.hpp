@@ -14,30 +14,63 @@
 
 namespace lamella {
 
+/// Walks over a run of tags with blanks between them. Behind the run there is another byte, and it is '<'.
+class PlainTags {
+  public:
+    explicit PlainTags(std::string_view run) : at_(run.data()), end_(run.data() + run.size()) {}
+
+    [[nodiscard]] const char* end() const noexcept { return end_; }
+
+    /// Takes a tag, or the begin of one, when it is next.
+    bool take(std::string_view tag) {
+        const char* const at = next();
+        return static_cast<std::size_t>(end_ - at) >= tag.size() &&
+               std::memcmp(at, tag.data(), tag.size()) == 0 && move(at + tag.size());
+    }
+
+    /// Nothing but blanks is left.
+    bool done() { return next() == end_; }
+
+  protected:
+    static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
+    /// What comes behind blanks.
+    const char* next() {
+        while (is_blank(*at_))
+            ++at_;
+        return at_;
+    }
+
+    /// Goes on behind what was read; false where it is null.
+    bool move(const char* to) {
+        at_ = to == nullptr ? at_ : to;
+        return to != nullptr;
+    }
+
+    const char* at_;
+
+  private:
+    const char* end_;
+};
+
 /// What a reader makes of an attribute.
 struct PlainValue {
     int index = -1;            ///< which of the ones that it wants; -1 for another one, which is passed over
     const char* end = nullptr; ///< where the value ends, null when it is not what was wanted
 };
 
-/// Walks over a run of elements with blanks between them. Behind the run there is another byte, and it is
-/// '<'.
-class PlainElements {
+/// Walks over a run of elements.
+class PlainElements : public PlainTags {
   public:
     PlainElements(std::string_view run, std::span<const std::string> prefixes)
-        : at_(run.data()), end_(run.data() + run.size()), prefixes_(prefixes) {}
-
-    [[nodiscard]] const char* end() const noexcept { return end_; }
+        : PlainTags(run), prefixes_(prefixes) {}
 
     /// Reads the next element, which begins with `tag`, and of it each of `wanted` attributes once:
     /// read(name, length of the name, value) gives a PlainValue. False when it is not plain, or lacks one.
     template <class Read>
     bool take(std::string_view tag, int wanted, const Read& read) {
-        skip_blanks();
-        if (static_cast<std::size_t>(end_ - at_) < tag.size() ||
-            std::memcmp(at_, tag.data(), tag.size()) != 0)
+        if (!PlainTags::take(tag))
             return false;
-        at_ += tag.size();
         unsigned seen = 0;
         std::size_t others = 0;
         for (;;) {
@@ -72,24 +105,11 @@ class PlainElements {
         }
     }
 
-    /// Nothing but blanks is left.
-    bool done() {
-        skip_blanks();
-        return at_ == end_;
-    }
-
   private:
-    static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
-
     static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
     static bool is_name(char c) {
         return is_letter(c) || (c >= '0' && c <= '9') || c == ':' || c == '-' || c == '.';
-    }
-
-    void skip_blanks() {
-        while (is_blank(*at_))
-            ++at_;
     }
 
     /// Whether an attribute of another meaning has a name that may stand here once more.
@@ -117,8 +137,6 @@ class PlainElements {
         return at;
     }
 
-    const char* at_;
-    const char* end_;
     std::span<const std::string> prefixes_;
     std::array<std::string_view, 16> others_; ///< names of attributes that were passed over in this element
 };
