@@ -65,12 +65,10 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name,
                             const ExposureOfLabel& exposure_of, ReadLimits& limits,
                             const Execution& execution) {
     const CommonLayerHeader header = read_common_layer_header(bytes, name);
-    LayerFile file;
-    file.path = name;
-    file.format = header.binary ? "cli" : "cli-ascii";
-    file.units_mm = header.units_mm;
-    file.rounding = {.step_mm = header.units_mm, .single_precision = header.binary};
-
+    LayerFile file{.path = name,
+                   .format = header.binary ? "cli" : "cli-ascii",
+                   .units_mm = header.units_mm,
+                   .rounding = {.step_mm = header.units_mm, .single_precision = header.binary}};
     CommonLayerGeometry geometry(header, name, limits);
     if (header.binary)
         read_binary_geometry(bytes, name, header, execution, geometry);

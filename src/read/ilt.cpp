@@ -169,10 +169,7 @@ bool is_ilt(const ZipReader& zip) {
 LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
     const ByteSource list = zip.read(*zip.find(ilt_parameters));
     std::vector<LayerFile> files;
-    LayerFile result;
-    result.path = zip.name();
-    result.format = "ilt";
-    result.warnings = zip.oddities();
+    LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.oddities()};
     std::uint64_t bytes = 0;
     std::set<const ZipEntry*> known;
     for (const Section& section : read_parameters(list.text(), list.name, limits)) {

@@ -354,11 +354,7 @@ bool is_svg(std::string_view bytes) {
 
 LayerFile read_layered_svg(std::string_view bytes, const std::string& name, ReadLimits& limits,
                            const Execution& execution) {
-    LayerFile file;
-    file.path = name;
-    file.format = "svg";
-    file.units_mm = 1;
-    file.rounding = text_rounding;
+    LayerFile file{.path = name, .format = "svg", .units_mm = 1, .rounding = text_rounding};
     SvgReader reader(name, bytes.size(), file, limits);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());

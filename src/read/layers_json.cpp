@@ -218,10 +218,7 @@ bool is_json(std::string_view bytes) {
 
 LayerFile read_layers_json(std::string_view bytes, const std::string& name, ReadLimits& limits,
                            const Execution& execution) {
-    LayerFile file;
-    file.path = name;
-    file.format = "json";
-    file.units_mm = 1;
+    LayerFile file{.path = name, .format = "json", .units_mm = 1};
     JsonText text(bytes, name);
     LayersJsonReader(text, bytes.size(), file, limits, execution).read();
     return file;

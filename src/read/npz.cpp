@@ -362,11 +362,7 @@ bool is_npz(const ZipReader& zip) {
 }
 
 LayerFile read_npz(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
-    LayerFile file;
-    file.path = zip.name();
-    file.format = "npz";
-    file.units_mm = 1;
-    file.warnings = zip.oddities();
+    LayerFile file{.path = zip.name(), .format = "npz", .units_mm = 1, .warnings = zip.oddities()};
     NpzReader(zip, file, limits).read(execution);
     return file;
 }

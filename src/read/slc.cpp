@@ -270,10 +270,7 @@ std::string_view other_slc(std::string_view bytes) {
 
 LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& limits,
                    const Execution& execution) {
-    LayerFile file;
-    file.path = name;
-    file.format = "slc";
-    file.rounding = {.single_precision = true};
+    LayerFile file{.path = name, .format = "slc", .rounding = {.single_precision = true}};
     SlcReader(bytes, name, file, limits).read(execution);
     return file;
 }

@@ -454,12 +454,12 @@ bool is_3mf(const ZipReader& zip) {
 }
 
 LayerFile read_slices_3mf(const OpcPackage& package, ReadLimits& limits, const Execution& execution) {
-    LayerFile file;
-    file.path = package.zip().name();
-    file.format = "3mf";
-    file.units_mm = 1;
-    file.rounding = text_rounding;
-    file.warnings = package.zip().oddities();
+    const ZipReader& zip = package.zip();
+    LayerFile file{.path = zip.name(),
+                   .format = "3mf",
+                   .units_mm = 1,
+                   .rounding = text_rounding,
+                   .warnings = zip.oddities()};
     PackageReader(package, file, limits, execution).read();
     return file;
 }

@@ -38,11 +38,11 @@ struct LayerFile {
     std::string
         format; ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json", "npz", "ilt", "ovf" or "3mf-toolpath"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
-    Rounding rounding;   ///< of coordinates and heights, by the format
+    Rounding rounding = {}; ///< of coordinates and heights, by the format
     /// By which the layers were cut, where the format says it; else the usual one.
     PlaneRule rule = PlaneRule::section_above;
-    std::vector<LayerPart> parts;      ///< at least one; all have the same planes
-    std::vector<std::string> warnings; ///< one line each: what was odd and what was made of it
+    std::vector<LayerPart> parts = {};      ///< at least one; all have the same planes
+    std::vector<std::string> warnings = {}; ///< one line each: what was odd and what was made of it
 
     /// All parts as one: the layers of the only part, or for each plane the contours of all. O(points).
     [[nodiscard]] LayerStack merged() const;
