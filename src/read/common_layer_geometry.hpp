@@ -18,7 +18,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,9 +41,9 @@ inline constexpr const char* common_layer_directions =
 class CommonLayerGeometry {
   public:
     CommonLayerGeometry(const CommonLayerHeader& header, const std::string& name, ReadLimits& limits)
-        : units_(header.units_mm), name_(name), limits_(limits) {
+        : units_(header.units_mm), name_(name), limits_(limits), parts_(limits) {
         for (const auto& [number, label] : header.labels)
-            part_slot(number, [] { return std::string_view("the header"); });
+            parts_.number_of(number, [] { return std::string_view("the header"); });
     }
 
     void start_layer(double units, std::string place) {
@@ -75,7 +74,7 @@ class CommonLayerGeometry {
     template <class Place>
     void end_hatches(std::int64_t part, const Place& place) {
         limits_.make_room(layers_.back().hatch_ends, 1, place);
-        layers_.back().end_hatches(part_slot(part, place));
+        layers_.back().end_hatches(parts_.number_of(part, place));
     }
 
     /// Ends a polyline of the direction given.
@@ -86,7 +85,7 @@ class CommonLayerGeometry {
         const bool closed = direction != CommonLayerDirection::open;
         const bool returns = layer.points.size() > begin && layer.points.back() == layer.points[begin];
         limits_.make_room(layer.ends, 1, place);
-        if (!layer.end_clean_contour(begin, closed, part_slot(part, place))) {
+        if (!layer.end_clean_contour(begin, closed, parts_.number_of(part, place))) {
             dropped_.note(place);
             return;
         }
@@ -104,20 +103,12 @@ class CommonLayerGeometry {
 
     /// Puts the parts into `file` in the order of their numbers.
     void number_parts(const CommonLayerHeader& header, LayerFile& file) {
-        if (slots_.empty())
-            part_slot(1, [] { return std::string_view("the end"); });
-        std::vector<std::uint32_t> places(slots_.size());
-        for (const auto& [number, slot] : slots_) {
-            places[slot] = static_cast<std::uint32_t>(file.parts.size());
+        if (parts_.empty())
+            parts_.number_of(1, [] { return std::string_view("the end"); });
+        parts_.put(file, layers_, [&](std::int64_t number) {
             const auto label = header.labels.find(number);
-            file.parts.push_back({label == header.labels.end() ? std::string() : label->second, {}});
-        }
-        for (RawLayer& layer : layers_) {
-            for (auto& contour : layer.ends)
-                contour.part = places[contour.part];
-            for (auto& hatches : layer.hatch_ends)
-                hatches.part = places[hatches.part];
-        }
+            return LayerPart{label == header.labels.end() ? std::string() : label->second, {}};
+        });
     }
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
@@ -141,20 +132,6 @@ class CommonLayerGeometry {
         return mm;
     }
 
-    /// Which of the parts met so far has this number.
-    template <class Place>
-    std::uint32_t part_slot(std::int64_t number, const Place& place) {
-        // A node of `slots_`, the part, and what is made of both for a while.
-        constexpr std::uint64_t part_bytes = 2 * (64 + sizeof(LayerPart));
-        if (last_slot_ == slots_.end() || last_slot_->first != number)
-            last_slot_ = slots_.find(number);
-        if (last_slot_ == slots_.end()) {
-            limits_.add_bytes_at(part_bytes, place);
-            last_slot_ = slots_.emplace(number, static_cast<std::uint32_t>(slots_.size())).first;
-        }
-        return last_slot_->second;
-    }
-
     static double twice_area(const RawLayer& layer, std::size_t begin) {
         const Point2& o = layer.points[begin];
         double twice = 0;
@@ -170,8 +147,7 @@ class CommonLayerGeometry {
     const std::string& name_;
     ReadLimits& limits_;
     std::vector<RawLayer> layers_;
-    std::map<std::int64_t, std::uint32_t> slots_; ///< of parts, by their numbers
-    std::map<std::int64_t, std::uint32_t>::iterator last_slot_ = slots_.end();
+    PartNumbers<std::int64_t> parts_;
     Oddity unclosed_{"closed contours did not return to their first point; they were closed"};
     Oddity turned_{"contours ran against their stated direction; they were turned round"};
     Oddity dropped_{"contours had too few different points; they were dropped"};

@@ -2,8 +2,6 @@
 
 #include "lamella/core/error.hpp"
 
-#include "read/read_limits.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,15 +25,6 @@ bool RawLayer::end_clean_contour(std::size_t begin, bool closed, std::uint32_t p
     }
     end_contour(closed, part);
     return true;
-}
-
-void renumber_parts(std::span<RawLayer> layers, std::span<const std::uint32_t> places) {
-    for (RawLayer& layer : layers) {
-        for (RawLayer::Contour& contour : layer.ends)
-            contour.part = places[contour.part];
-        for (RawLayer::Hatches& hatches : layer.hatch_ends)
-            hatches.part = places[hatches.part];
-    }
 }
 
 void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,

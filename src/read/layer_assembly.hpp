@@ -5,15 +5,16 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include "read/read_limits.hpp"
+
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace lamella {
-
-class ReadLimits;
 
 /// Counts of one kind of oddity, said once for the whole file.
 class Oddity {
@@ -64,8 +65,48 @@ struct RawLayer {
     void end_hatches(std::uint32_t part) { hatch_ends.push_back({hatches.size(), part}); }
 };
 
-/// Gives contours and hatches other numbers of parts: places[part] instead of each.
-void renumber_parts(std::span<RawLayer> layers, std::span<const std::uint32_t> places);
+/// The parts that contours and hatches are of, where each has a key in the file: numbered as they are met,
+/// and put into the file in the order of their keys.
+template <class Key>
+class PartNumbers {
+  public:
+    explicit PartNumbers(ReadLimits& limits) : limits_(limits) {}
+
+    [[nodiscard]] bool empty() const noexcept { return numbers_.empty(); }
+
+    template <class Place>
+    std::uint32_t number_of(const Key& key, const Place& place) {
+        if (last_ == numbers_.end() || last_->first != key)
+            last_ = numbers_.find(key);
+        if (last_ == numbers_.end()) {
+            // The part, and what is made of it for a while.
+            limits_.add_bytes_at(node_bytes + sizeof key + 2 * sizeof(LayerPart), place);
+            last_ = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size())).first;
+        }
+        return last_->second;
+    }
+
+    /// `part_of(key)` makes a part; contours and hatches get the numbers that parts have in the file.
+    template <class PartOf>
+    void put(LayerFile& file, std::span<RawLayer> layers, const PartOf& part_of) const {
+        std::vector<std::uint32_t> places(numbers_.size());
+        for (const auto& [key, number] : numbers_) {
+            places[number] = static_cast<std::uint32_t>(file.parts.size());
+            file.parts.push_back(part_of(key));
+        }
+        for (RawLayer& layer : layers) {
+            for (RawLayer::Contour& contour : layer.ends)
+                contour.part = places[contour.part];
+            for (RawLayer::Hatches& hatches : layer.hatch_ends)
+                hatches.part = places[hatches.part];
+        }
+    }
+
+  private:
+    ReadLimits& limits_;
+    std::map<Key, std::uint32_t> numbers_;
+    typename std::map<Key, std::uint32_t>::iterator last_ = numbers_.end();
+};
 
 /// What a layer takes besides itself, even where it is empty: the list of offsets, and what owns the points.
 inline constexpr std::uint64_t of_empty_layer = 128;

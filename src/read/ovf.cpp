@@ -206,7 +206,7 @@ class OvfReader {
     OvfReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
               const Execution& execution)
         : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
-          progress_(execution, Stage::read, bytes.size()), job_(name, limits) {}
+          progress_(execution, Stage::read, bytes.size()), job_(name, limits), parts_(limits) {}
 
     void read() {
         std::uint64_t place = position_at(ovf::magic.size());
@@ -311,9 +311,9 @@ class OvfReader {
                 read_lpbf_meta_data(fields.message(), kind);
         }
         if (lines)
-            add_line_sequence(*lines, begin, slot_of(kind, begin), raw);
+            add_line_sequence(*lines, begin, parts_.number_of(kind, at_byte(begin)), raw);
         if (hatches)
-            add_hatches(*hatches, begin, slot_of(kind, begin), raw);
+            add_hatches(*hatches, begin, parts_.number_of(kind, at_byte(begin)), raw);
     }
 
     static void read_meta_data(ProtobufReader fields, BlockKind& kind) {
@@ -358,43 +358,32 @@ class OvfReader {
         }
     }
 
-    void add_line_sequence(const ProtobufReader& lines, std::uint64_t begin, std::uint32_t slot,
+    void add_line_sequence(const ProtobufReader& lines, std::uint64_t begin, std::uint32_t part,
                            RawLayer& raw) {
         const std::size_t first = raw.points.size();
         add_points(lines, begin, 2, raw.points);
         limits_.make_room(raw.ends, 1, at_byte(begin));
         const bool closed = raw.points.size() - first > 3 && raw.points.back() == raw.points[first];
-        if (!raw.end_clean_contour(first, closed, slot))
+        if (!raw.end_clean_contour(first, closed, part))
             dropped_.note(at_byte(begin));
     }
 
-    void add_hatches(const ProtobufReader& hatches, std::uint64_t begin, std::uint32_t slot, RawLayer& raw) {
+    void add_hatches(const ProtobufReader& hatches, std::uint64_t begin, std::uint32_t part, RawLayer& raw) {
         add_points(hatches, begin, 4, raw.hatches);
         limits_.make_room(raw.hatch_ends, 1, at_byte(begin));
-        raw.end_hatches(slot);
-    }
-
-    std::uint32_t slot_of(const BlockKind& kind, std::uint64_t begin) {
-        const auto found = slots_.find(kind);
-        if (found != slots_.end())
-            return found->second;
-        limits_.add_bytes_at(node_bytes + sizeof(BlockKind) + 2 * sizeof(LayerPart), at_byte(begin));
-        return slots_.emplace(kind, static_cast<std::uint32_t>(slots_.size())).first->second;
+        raw.end_hatches(part);
     }
 
     /// Parts by their keys, and exposures of each by those of their parameters.
     void number_parts() {
-        if (slots_.empty())
-            slots_.emplace(BlockKind{.part = job_.first_part()}, 0);
-        std::vector<std::uint32_t> places(slots_.size());
-        for (const auto& [kind, slot] : slots_) {
-            places[slot] = static_cast<std::uint32_t>(file_.parts.size());
+        if (parts_.empty())
+            parts_.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));
+        parts_.put(file_, layers_, [&](const BlockKind& kind) {
             LayerPart part{job_.label(kind.part), {}, job_.exposure(kind)};
             if (part.exposure)
                 part.label = part.exposure->label();
-            file_.parts.push_back(std::move(part));
-        }
-        renumber_parts(layers_, places);
+            return part;
+        });
     }
 
     /// Heights are tops of layers.
@@ -419,7 +408,7 @@ class OvfReader {
     ProgressMeter progress_;
     JobShell job_;
     std::vector<RawLayer> layers_;
-    std::map<BlockKind, std::uint32_t> slots_;
+    PartNumbers<BlockKind> parts_;
     std::uint64_t end_of_blocks_ = 0;
     std::uint64_t reported_ = 0;
     Oddity moved_{"work planes are moved or turned; their vectors were read as they stand"};
@@ -435,11 +424,7 @@ bool is_ovf(std::string_view bytes) {
 
 LayerFile read_ovf(std::string_view bytes, const std::string& name, ReadLimits& limits,
                    const Execution& execution) {
-    LayerFile file;
-    file.path = name;
-    file.format = "ovf";
-    file.units_mm = 1;
-    file.rounding = {.single_precision = true};
+    LayerFile file{.path = name, .format = "ovf", .units_mm = 1, .rounding = {.single_precision = true}};
     OvfReader(bytes, name, file, limits, execution).read();
     return file;
 }

@@ -182,14 +182,11 @@ struct SegmentKind {
     friend auto operator<=>(const SegmentKind&, const SegmentKind&) = default;
 };
 
-/// Numbers for the kinds of segments that were met.
-using Slots = std::map<SegmentKind, std::uint32_t>;
-
 class LayerReader {
   public:
-    LayerReader(const std::string& document, const Model& model, const Toolpath& toolpath, Slots& slots,
-                RawLayer& raw, ReadLimits& limits)
-        : document_(document), model_(model), toolpath_(toolpath), slots_(slots), raw_(raw), limits_(limits),
+    LayerReader(const std::string& document, const Model& model, const Toolpath& toolpath,
+                PartNumbers<SegmentKind>& kinds, RawLayer& raw, ReadLimits& limits)
+        : document_(document), model_(model), toolpath_(toolpath), kinds_(kinds), raw_(raw), limits_(limits),
           unit_mm_(toolpath.unit * model.unit_mm) {}
 
     void start(const ThreeMfElement& element) {
@@ -220,11 +217,11 @@ class LayerReader {
         };
         if (in_contour_) {
             limits_.make_room(raw_.ends, 1, place);
-            if (!raw_.end_clean_contour(begin_, closed_, slot_))
+            if (!raw_.end_clean_contour(begin_, closed_, kind_))
                 dropped.note(place);
         } else if (in_hatches_) {
             limits_.make_room(raw_.hatch_ends, 1, place);
-            raw_.end_hatches(slot_);
+            raw_.end_hatches(kind_);
         }
         in_contour_ = in_hatches_ = false;
     }
@@ -262,16 +259,14 @@ class LayerReader {
                                                     : "a segment of a profile that the model does not have",
                          "one of the model");
         const bool says_kind = known->second.says_kind || !known->second.exposure;
-        const SegmentKind kind{item->second.first, known->second.number, !says_kind && in_hatches_};
-        if (!slots_.contains(kind))
-            limits_.add_bytes_at(node_bytes + sizeof kind + 2 * sizeof(LayerPart), element.place());
-        slot_ = slots_.try_emplace(kind, static_cast<std::uint32_t>(slots_.size())).first->second;
+        kind_ = kinds_.number_of({item->second.first, known->second.number, !says_kind && in_hatches_},
+                                 element.place());
     }
 
     const std::string& document_;
     const Model& model_;
     const Toolpath& toolpath_;
-    Slots& slots_;
+    PartNumbers<SegmentKind>& kinds_;
     RawLayer& raw_;
     ReadLimits& limits_;
     double unit_mm_;
@@ -282,13 +277,13 @@ class LayerReader {
     bool closed_ = false;
     std::size_t begin_ = 0;
     std::size_t line_ = 0;
-    std::uint32_t slot_ = 0;
+    std::uint32_t kind_ = 0; ///< its number
 };
 
 class ToolpathReader {
   public:
     ToolpathReader(const OpcPackage& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
-        : package_(package), file_(file), limits_(limits), executor_(execution) {}
+        : package_(package), file_(file), limits_(limits), executor_(execution), kinds_(limits) {}
 
     void read() {
         const std::string root = root_model(package_);
@@ -335,7 +330,7 @@ class ToolpathReader {
         executor_.check_cancelled();
         const ByteSource source = unpack_part(package_, name);
         raw.place = source.name;
-        LayerReader reader(source.name, model_, toolpath, slots_, raw, limits_);
+        LayerReader reader(source.name, model_, toolpath, kinds_, raw, limits_);
         parse_part(
             source, [&](const ThreeMfElement& element) { reader.start(element); },
             [&](XmlName element) { reader.end(element, dropped_); }, executor_);
@@ -349,14 +344,11 @@ class ToolpathReader {
         std::vector<const Toolpath::Profile*> profiles(toolpath.profiles.size());
         for (const auto& [uuid, profile] : toolpath.profiles)
             profiles[profile.number] = &profile;
-        std::vector<std::uint32_t> places(slots_.size());
-        for (const auto& [kind, slot] : slots_) {
-            places[slot] = static_cast<std::uint32_t>(file_.parts.size());
-            file_.parts.push_back(part_of(kind, labels[kind.item], *profiles[kind.profile]));
-        }
+        kinds_.put(file_, layers, [&](const SegmentKind& kind) {
+            return part_of(kind, labels[kind.item], *profiles[kind.profile]);
+        });
         if (file_.parts.empty())
             file_.parts.push_back({labels.empty() ? std::string() : labels.front(), {}});
-        renumber_parts(layers, places);
     }
 
     static LayerPart part_of(const SegmentKind& kind, const std::string& label,
@@ -391,7 +383,7 @@ class ToolpathReader {
     ReadLimits& limits_;
     Executor executor_;
     Model model_;
-    Slots slots_;
+    PartNumbers<SegmentKind> kinds_;
     Oddity dropped_{"contours had too few different points; they were dropped"};
 };
 
@@ -406,10 +398,8 @@ bool is_toolpath_3mf(const OpcPackage& package) {
 }
 
 LayerFile read_toolpath_3mf(const OpcPackage& package, ReadLimits& limits, const Execution& execution) {
-    LayerFile file;
-    file.path = package.zip().name();
-    file.format = "3mf-toolpath";
-    file.warnings = package.zip().oddities();
+    LayerFile file{
+        .path = package.zip().name(), .format = "3mf-toolpath", .warnings = package.zip().oddities()};
     ToolpathReader(package, file, limits, execution).read();
     return file;
 }
