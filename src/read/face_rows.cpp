@@ -5,7 +5,6 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/coordinate_text.hpp"
-#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -81,19 +80,14 @@ inline void RowWords::to_word(std::string_view expected) {
     if (at_ != end_ && !is_line_end(*at_))
         return;
     if (layout_ == RowLayout::words)
-        at_ = skip_blanks(at_, end_);
+        skip_blanks();
     if (at_ == end_ || is_line_end(*at_))
         throw TextFault{offset(), std::string(expected)};
 }
 
 double RowWords::coordinate() {
     to_word("a number");
-    double value = 0;
-    const char* const stop = parse_coordinate(at_, end_, value);
-    if (stop == nullptr)
-        throw TextFault{offset(), std::string(expected_instead(word_at(at_, end_)))};
-    at_ = stop;
-    return value + 0.0; // turns -0 into +0, as everywhere
+    return take_coordinate();
 }
 
 std::int64_t RowWords::integer() {
@@ -117,7 +111,7 @@ std::int64_t RowWords::integer() {
 
 void RowWords::skip_word() {
     to_word("another value");
-    at_ += word_at(at_, end_).size();
+    Words::skip_word();
 }
 
 void RowWords::skip_list() {
@@ -268,7 +262,7 @@ class RowsReader {
         const char* const begin = text_.data();
         const char* const end = begin + text_.size();
         const char* const limit = begin + piece.limit;
-        RowWords words(text_, begin + piece.begin, layout);
+        RowWords words(text_, piece.begin, layout);
         const char* at = skip_blanks(begin + piece.begin, end);
         piece.after = piece.before;
         try {

@@ -9,6 +9,7 @@
 #include "read/face_mesh.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "read/text_pieces.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,10 +28,13 @@ enum class RowLayout {
 };
 
 /// The words of one row. Each function throws TextFault where the row has no such word.
-class RowWords {
+class RowWords : Words {
   public:
-    RowWords(std::string_view text, const char* at, RowLayout layout)
-        : begin_(text.data()), at_(at), end_(text.data() + text.size()), layout_(layout) {}
+    RowWords(std::string_view text, std::size_t from, RowLayout layout)
+        : Words(text, from), layout_(layout) {}
+
+    using Words::move_to;
+    using Words::offset;
 
     [[nodiscard]] double coordinate();
     [[nodiscard]] std::int64_t integer();
@@ -43,8 +47,6 @@ class RowWords {
     /// them.
     void add_strips(FacePiece& piece);
 
-    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
-    void move_to(const char* at) { at_ = at; }
     /// Ends the row. Returns where the next one may begin.
     [[nodiscard]] const char* end_row();
 
@@ -53,9 +55,6 @@ class RowWords {
     std::int64_t count(std::string_view expected);
     bool take_triangle(FacePiece& piece);
 
-    const char* begin_;
-    const char* at_;
-    const char* end_;
     RowLayout layout_;
     std::vector<std::uint32_t> corners_;
 };

@@ -2,7 +2,6 @@
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
-#include "read/coordinate_text.hpp"
 #include "read/face_mesh.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
@@ -23,11 +22,10 @@ namespace {
 using namespace std::string_view_literals;
 
 /// Parses a piece line by line.
-class ObjLines {
+class ObjLines : Words {
   public:
     ObjLines(std::string_view text, FacePiece& piece, std::uint64_t most_triangles)
-        : text_(text.data()), at_(text_ + piece.begin), end_(text_ + text.size()), piece_(piece),
-          most_triangles_(most_triangles) {}
+        : Words(text, piece.begin), piece_(piece), most_triangles_(most_triangles) {}
 
     void run() {
         try {
@@ -40,10 +38,8 @@ class ObjLines {
     }
 
   private:
-    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - text_); }
-
     bool next_line() {
-        at_ = skip_blanks(at_, end_);
+        skip_blanks();
         if (at_ == end_ || offset() >= piece_.limit)
             return false;
         if (begins_with_keyword("v"))
@@ -71,13 +67,9 @@ class ObjLines {
             to_word();
             if (at_ == end_ || is_line_end(*at_))
                 throw TextFault{offset(), "the x, y and z of a vertex"};
-            const char* const stop = parse_coordinate(at_, end_, value);
-            if (stop == nullptr)
-                throw TextFault{offset(), std::string(expected_instead(word_at(at_, end_)))};
-            at_ = stop;
+            value = take_coordinate();
         }
-        // Adding zero turns -0 into +0, as everywhere.
-        piece_.vertices.push_back({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0});
+        piece_.vertices.push_back({p[0], p[1], p[2]});
     }
 
     bool face() {
@@ -92,7 +84,7 @@ class ObjLines {
         if (relative)
             note_relative(first);
         if (piece_.triangles.size() > most_triangles_) {
-            at_ = text_ + begin;
+            at_ = begin_ + begin;
             return false;
         }
         skip_line();
@@ -103,7 +95,7 @@ class ObjLines {
     std::uint32_t corner(bool& relative) {
         const char* const word = at_;
         const auto fail = [&]() -> std::uint32_t {
-            throw TextFault{static_cast<std::size_t>(word - text_),
+            throw TextFault{static_cast<std::size_t>(word - begin_),
                             "the number of a vertex, such as 7, 7/1 or 7//3"};
         };
         const bool backwards = *at_ == '-';
@@ -175,9 +167,6 @@ class ObjLines {
         }
     }
 
-    const char* text_;
-    const char* at_;
-    const char* end_;
     FacePiece& piece_;
     std::uint64_t most_triangles_;
     std::vector<std::uint32_t> corners_;

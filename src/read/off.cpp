@@ -1,6 +1,5 @@
 #include "lamella/core/error.hpp"
 
-#include "read/coordinate_text.hpp"
 #include "read/face_rows.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
@@ -41,17 +40,15 @@ std::optional<OffKind> kind_of(std::string_view word) {
 }
 
 /// Walks over the words before the rows.
-class OffHead {
+class OffHead : public Words {
   public:
-    explicit OffHead(std::string_view text) : words_(text, after_byte_order_mark(text)) {}
+    explicit OffHead(std::string_view text) : Words(text, after_byte_order_mark(text)) {}
 
     /// The next word, across lines and comments; empty at the end.
     std::string_view peek() {
-        words_.skip_comments();
-        return words_.peek();
+        skip_comments();
+        return Words::peek();
     }
-
-    void skip() { words_.skip_word(); }
 
     std::uint64_t count(std::string_view expected) {
         const std::string_view word = peek();
@@ -64,19 +61,12 @@ class OffHead {
                 throw TextFault{offset(), std::string(expected)};
             value = value * 10 + static_cast<std::uint64_t>(digit - '0');
         }
-        skip();
+        skip_word();
         return value;
     }
 
-    [[nodiscard]] std::size_t offset() const { return words_.offset(); }
-
     /// Whether there is another word in this line.
-    [[nodiscard]] bool line_goes_on() { return words_.skip_blanks_in_line() && *words_.position() != '#'; }
-
-    void skip_line() { words_.skip_line(); }
-
-  private:
-    Words words_;
+    [[nodiscard]] bool line_goes_on() { return skip_blanks_in_line() && *position() != '#'; }
 };
 
 struct OffCounts {
@@ -92,7 +82,7 @@ OffCounts read_head(std::string_view text) {
     const std::string_view first = head.peek();
     if (const auto kind = kind_of(first)) {
         counts.kind = *kind;
-        head.skip();
+        head.skip_word();
     }
     if (const std::string_view word = head.peek(); word == "BINARY" || word == "binary")
         throw TextFault{head.offset(), "a text (binary OFF is not read; save it as ASCII OFF or PLY)"};

@@ -57,6 +57,13 @@ namespace lamella {
                                                        [](char w, char k) { return lower_case(w) == k; });
 }
 
+/// What makes a text unreadable.
+struct TextFault {
+    std::size_t offset;
+    std::string text;  ///< what was expected, or the whole story where `found` is false
+    bool found = true; ///< the error shows the word at the offset
+};
+
 /// Walks over a text word by word.
 class Words {
   public:
@@ -100,17 +107,20 @@ class Words {
         return true;
     }
 
-  private:
+    /// Takes the number that begins here, which is not the end. Throws TextFault where there is none.
+    double take_coordinate() {
+        double value = 0;
+        const char* const stop = parse_coordinate(at_, end_, value);
+        if (stop == nullptr)
+            throw TextFault{offset(), std::string(expected_instead(peek()))};
+        at_ = stop;
+        return value + 0.0; // turns -0 into +0, as everywhere
+    }
+
+  protected:
     const char* begin_;
     const char* at_;
     const char* end_;
-};
-
-/// What makes a text unreadable.
-struct TextFault {
-    std::size_t offset;
-    std::string text;  ///< what was expected, or the whole story where `found` is false
-    bool found = true; ///< the error shows the word at the offset
 };
 
 /// The number of the line that holds byte `offset`. O(offset), in little memory.
