@@ -137,9 +137,7 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             return is_long ? std::int64_t{in.take<std::int32_t>(what)}
                            : std::int64_t{in.take<std::uint16_t>(what)};
         };
-        const auto place = [&] {
-            return fmt::format("byte {}", at);
-        };
+        const auto place = at_byte(at);
         switch (command) {
         case CommonLayerCommand::layer_long:
             geometry.start_layer(finite_number(in, at, in.take<float>("a layer"), "a height"), place());

@@ -42,7 +42,7 @@ std::vector<Section> read_parameters(std::string_view text, const std::string& n
         const std::string_view words = trimmed(text.substr(begin, end - begin));
         begin = end + 1;
         if (words.starts_with('[') && words.ends_with(']')) {
-            limits.make_room(sections, 1, [&] { return fmt::format("line {}", line); });
+            limits.make_room(sections, 1, at_line(line));
             sections.push_back({std::string(words.substr(1, words.size() - 2)), line});
             sections.back().parameters.name = sections.back().name.substr(0, sections.back().name.rfind('.'));
             continue;

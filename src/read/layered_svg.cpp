@@ -164,7 +164,7 @@ class SvgReader {
             else if (kind == "g")
                 start_part(attributes, line);
             else if (kind != "title" && kind != "desc")
-                other_.note([&] { return fmt::format("line {}", line); });
+                other_.note(at_line(line));
         }
     }
 
@@ -255,7 +255,7 @@ class SvgReader {
         }
         end_contour(begin, closed, line);
         if (!closed)
-            open_.note([&] { return fmt::format("line {}", line); });
+            open_.note(at_line(line));
     }
 
     /// Straight outlines: M, L, H, V and Z in both cases. Slic3r turns y upside down in paths.
@@ -319,13 +319,13 @@ class SvgReader {
         const bool empty = layer.points.size() == begin;
         make_room(layer.ends, line);
         if (!layer.end_clean_contour(begin, closed, part_) && !empty)
-            dropped_.note([&] { return fmt::format("line {}", line); });
+            dropped_.note(at_line(line));
     }
 
     /// For one more.
     template <class T>
     void make_room(std::vector<T>& items, std::size_t line) {
-        limits_.make_room(items, 1, [&] { return fmt::format("line {}", line); });
+        limits_.make_room(items, 1, at_line(line));
     }
 
     const std::string& name_;

@@ -157,7 +157,7 @@ class LayersJsonReader {
                     read_points(raw.points);
                     make_room(raw.ends);
                     if (!raw.end_clean_contour(begin, key == "rings", part))
-                        dropped_.note([&] { return fmt::format("byte {}", text_.at()); });
+                        dropped_.note(at_byte(text_.at()));
                 });
             else if (key == "hatches")
                 read_hatches(raw, part);
@@ -178,7 +178,7 @@ class LayersJsonReader {
     /// For one more.
     template <class T>
     void make_room(std::vector<T>& items) {
-        limits_.make_room(items, 1, [&] { return fmt::format("byte {}", text_.at()); });
+        limits_.make_room(items, 1, at_byte(text_.at()));
     }
 
     // x and y in turn.

@@ -48,13 +48,6 @@ struct Table {
 
 constexpr std::size_t most_text = 4096;
 
-/// Says where a byte is, for errors that are yet to be made.
-auto at_byte(std::uint64_t place) {
-    return [place] {
-        return fmt::format("byte {}", place);
-    };
-}
-
 double finite_real(const ProtobufReader& field) {
     const float value = field.real();
     if (!std::isfinite(value))

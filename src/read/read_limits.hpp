@@ -24,6 +24,18 @@ namespace lamella {
 /// What a node of a set or map takes besides its value, about.
 inline constexpr std::uint64_t node_bytes = 80;
 
+/// Say where something is, for errors that are yet to be made.
+[[nodiscard]] inline auto at_byte(std::uint64_t byte) {
+    return [byte] {
+        return fmt::format("byte {}", byte);
+    };
+}
+[[nodiscard]] inline auto at_line(std::uint64_t line) {
+    return [line] {
+        return fmt::format("line {}", line);
+    };
+}
+
 /// Adds up, from any thread, what a reader is about to make. The first that is too much is Error{limit},
 /// which names the place up to which was counted, where that is given.
 class ReadLimits {

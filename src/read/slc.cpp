@@ -158,11 +158,10 @@ class SlcReader {
             if (contours > left() / (2 * sizeof(std::uint32_t)))
                 fail(at, fmt::format("a layer of {} contours", contours),
                      fmt::format("{} bytes are left in the file", left()));
-            std::string place = fmt::format("byte {}", at);
-            limits_.make_room(raw_, 1, [&] { return std::string_view(place); });
+            limits_.make_room(raw_, 1, at_byte(at));
             RawLayer& layer = raw_.emplace_back();
             layer.z = z;
-            layer.place = std::move(place);
+            layer.place = fmt::format("byte {}", at);
             for (std::uint32_t i = 0; i < contours; ++i)
                 read_contour(layer);
             if (at_ - reported > (std::size_t{1} << 22)) {
@@ -176,9 +175,7 @@ class SlcReader {
 
     void read_contour(RawLayer& layer) {
         const std::size_t at = at_;
-        const auto place = [&] {
-            return fmt::format("byte {}", at);
-        };
+        const auto place = at_byte(at);
         const auto count = take<std::uint32_t>("a contour");
         const auto gaps = take<std::uint32_t>("a contour");
         constexpr std::size_t point_size = 2 * sizeof(float);

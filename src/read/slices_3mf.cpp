@@ -94,11 +94,7 @@ class SliceModelReader {
 
   private:
     /// Where the parser is, as errors call it.
-    auto place() const {
-        return [this] {
-            return fmt::format("line {}", line_);
-        };
-    }
+    auto place() const { return at_line(line_); }
 
     void start_core_element(const ThreeMfElement& element) {
         const std::string_view name = element.name.local;
@@ -305,11 +301,8 @@ class PackageReader {
                 place(model, component, placement, support, depth + 1);
             return;
         }
-        const auto line = [&] {
-            return fmt::format("line {}", use.line);
-        };
-        limits_.make_room(placed_, 1, line);
-        limits_.add_bytes_at(object->second.name.size(), line);
+        limits_.make_room(placed_, 1, at_line(use.line));
+        limits_.add_bytes_at(object->second.name.size(), at_line(use.line));
         placed_.push_back(in_millimetres(object->second, placement, use.line));
         placed_.back().support = support;
     }

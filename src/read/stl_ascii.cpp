@@ -404,8 +404,7 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
     FacetPiece sum;
     std::vector<FacetPiece> pieces = parser.rest([&](const FacetPiece& piece) {
         count_triangles(parser, piece, limits);
-        limits.add_bytes_at(piece.triangles.size() * sizeof(Triangle3f),
-                            [&] { return fmt::format("byte {}", piece.end); });
+        limits.add_bytes_at(piece.triangles.size() * sizeof(Triangle3f), at_byte(piece.end));
         add(sum, piece);
     });
     progress.finish();

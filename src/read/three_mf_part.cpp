@@ -8,6 +8,8 @@
 #include "read/mesh_text.hpp"
 #include "read/three_mf_terms.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>

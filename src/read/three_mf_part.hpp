@@ -8,8 +8,7 @@
 #include "container/xml.hpp"
 #include "core/byte_source.hpp"
 #include "read/opc_package.hpp"
-
-#include <fmt/format.h>
+#include "read/read_limits.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -61,12 +60,7 @@ struct ThreeMfElement {
 
     /// Throws Error{input}: "x, part 'y', line 7: found `found`, expected `expected`".
     [[noreturn]] void fail(std::string_view found, std::string_view expected) const;
-    /// A function that says where it stands, for errors that are yet to be made.
-    [[nodiscard]] auto place() const {
-        return [line = line] {
-            return fmt::format("line {}", line);
-        };
-    }
+    [[nodiscard]] auto place() const { return at_line(line); }
 };
 
 /// The part that the package names as its model, or the usual one where it names none.

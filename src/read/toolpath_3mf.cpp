@@ -303,7 +303,7 @@ class ToolpathReader {
                     ErrorKind::input,
                     fmt::format("{}, line {}: found the layer '{}' a second time; each has a part of its own",
                                 source.name, listed.line, printable(listed.path, 100)));
-            limits_.make_room(layers, 1, [&] { return fmt::format("line {}", listed.line); });
+            limits_.make_room(layers, 1, at_line(listed.line));
             layers.emplace_back().z = listed.top * file_.units_mm;
             read_layer(OpcPackage::resolve(root, listed.path), toolpath, layers.back());
         }
