@@ -8,6 +8,7 @@
 
 #include "container/xml.hpp"
 #include "read/mesh_text.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -45,13 +46,16 @@ template <class Where, class Step, std::size_t count>
 template <class Document, class Where>
 class MeshDocumentReader {
   public:
-    virtual ~MeshDocumentReader() = default;
+    MeshDocumentReader(const MeshDocumentReader&) = delete;
+    MeshDocumentReader& operator=(const MeshDocumentReader&) = delete;
+    /// Gives back what was counted, unless it was taken.
+    virtual ~MeshDocumentReader() { limits_.give_back(triangles_, bytes_); }
 
   protected:
     /// `name` is what errors call the document; places in it are lines, with `part` before them. `skim`:
     /// leave runs of vertices and triangles in `text`, unread.
     MeshDocumentReader(const std::string& name, const std::string& part, bool skim, ReadLimits& limits)
-        : name_(name), part_(part), skim_(skim), count_(limits) {}
+        : name_(name), part_(part), skim_(skim), limits_(limits) {}
 
     /// Says what an element is.
     virtual Where start(XmlName name, const XmlAttributes& attributes) = 0;
@@ -80,7 +84,8 @@ class MeshDocumentReader {
 
     /// What was read, and is kept.
     [[nodiscard]] Document take() {
-        count_.keep(here());
+        count_open();
+        triangles_ = bytes_ = 0;
         return std::move(document_);
     }
 
@@ -95,9 +100,13 @@ class MeshDocumentReader {
 
     [[nodiscard]] std::string here() const { return fmt::format("{}line {}", part_, line_); }
 
-    /// To be called before memory is taken.
+    /// To be called before memory is taken. Threads share the limits, which are asked stretch by stretch.
     void count(std::uint64_t bytes, std::uint64_t triangles = 0) {
-        count_.add(triangles, bytes, [this] { return here(); });
+        constexpr std::uint64_t stretch = 1 << 16;
+        open_triangles_ += triangles;
+        open_bytes_ += bytes;
+        if (open_bytes_ >= stretch)
+            count_open();
     }
 
     void add(const Point3& vertex) {
@@ -128,10 +137,21 @@ class MeshDocumentReader {
             fail("found a mesh that is not written plainly");
     }
 
+    void count_open() {
+        triangles_ += open_triangles_;
+        bytes_ += open_bytes_;
+        limits_.add_triangles(std::exchange(open_triangles_, 0), here());
+        limits_.add_bytes(std::exchange(open_bytes_, 0), here());
+    }
+
     const std::string& name_;
     const std::string part_;
     const bool skim_;
-    GrowingMeshCount count_;
+    ReadLimits& limits_;
+    std::uint64_t open_triangles_ = 0; ///< not yet counted
+    std::uint64_t open_bytes_ = 0;
+    std::uint64_t triangles_ = 0;
+    std::uint64_t bytes_ = 0;
     Document document_;
     std::size_t line_ = 1;
     std::vector<Where> where_{Where::outside};

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace lamella {
 
@@ -114,22 +113,6 @@ std::uint64_t mesh_bytes(std::uint64_t vertices, std::uint64_t triangles) {
 }
 
 } // namespace
-
-GrowingMeshCount::~GrowingMeshCount() {
-    limits_.give_back(triangles_, bytes_);
-}
-
-void GrowingMeshCount::count(const std::string& place) {
-    triangles_ += open_triangles_;
-    bytes_ += open_bytes_;
-    limits_.add_triangles(std::exchange(open_triangles_, 0), place);
-    limits_.add_bytes(std::exchange(open_bytes_, 0), place);
-}
-
-void GrowingMeshCount::keep(const std::string& place) {
-    count(place);
-    triangles_ = bytes_ = 0;
-}
 
 void give_back(const IndexedMesh& mesh, ReadLimits& limits) {
     limits.give_back(mesh.triangles.size(), mesh_bytes(mesh.vertices.size(), mesh.triangles.size()));

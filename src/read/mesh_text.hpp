@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -95,38 +94,6 @@ template <class Document>
                 give_back(object.mesh, limits);
     return plain;
 }
-
-/// Counts a mesh that grows while a parser reads it, stretch by stretch. What was counted by the time that it
-/// is destroyed is given back, unless it is kept.
-class GrowingMeshCount {
-  public:
-    explicit GrowingMeshCount(ReadLimits& limits) : limits_(limits) {}
-    GrowingMeshCount(const GrowingMeshCount&) = delete;
-    GrowingMeshCount& operator=(const GrowingMeshCount&) = delete;
-    ~GrowingMeshCount();
-
-    /// What is about to be added; `place` says where, as errors call it.
-    template <class Place>
-    void add(std::uint64_t triangles, std::uint64_t bytes, const Place& place) {
-        open_triangles_ += triangles;
-        open_bytes_ += bytes;
-        if (open_bytes_ >= stretch_bytes)
-            count(place());
-    }
-    /// Counts what is left, and keeps it counted.
-    void keep(const std::string& place);
-
-  private:
-    static constexpr std::uint64_t stretch_bytes = 1 << 16;
-
-    void count(const std::string& place);
-
-    ReadLimits& limits_;
-    std::uint64_t open_triangles_ = 0; ///< not yet counted
-    std::uint64_t open_bytes_ = 0;
-    std::uint64_t triangles_ = 0;
-    std::uint64_t bytes_ = 0;
-};
 
 /// Triangles that use a vertex twice.
 [[nodiscard]] std::size_t degenerate_triangles(const IndexedMesh& mesh);
