@@ -120,15 +120,13 @@ class CommonLayerGeometry {
     }
 
   private:
-    /// Coordinates beyond the limit could make areas and thicknesses overflow; no part is near it.
     [[nodiscard]] double in_mm(double units, const std::string& place) const {
-        constexpr double farthest = 1e100;
         const double mm = units * units_;
-        if (!(std::abs(mm) <= farthest))
+        if (!(std::abs(mm) <= farthest_mm))
             throw Error(ErrorKind::input,
                         fmt::format("{}, layer at {}: found {} units of {} mm; heights and coordinates must "
                                     "lie within {} mm",
-                                    name_, place, units, units_, farthest));
+                                    name_, place, units, units_, farthest_mm));
         return mm;
     }
 

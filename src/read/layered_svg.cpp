@@ -49,13 +49,11 @@ class Numbers {
         if (from != end && *from == '+')
             ++from;
         const char* const to = parse_number(from, end, value);
-        // What lies further away could make sums and areas overflow; no part is near it.
-        constexpr double farthest = 1e100;
-        if (to == from || !(std::abs(value) <= farthest))
+        if (to == from || !(std::abs(value) <= farthest_mm))
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: found '{}'; a coordinate must be a number within {}", name_,
                                     line_, printable(text_.substr(0, text_.find_first_of(" ,")), 40),
-                                    farthest));
+                                    farthest_mm));
         text_.remove_prefix(static_cast<std::size_t>(to - text_.data()));
         return value;
     }

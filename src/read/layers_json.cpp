@@ -99,10 +99,8 @@ class LayersJsonReader {
 
     double length() {
         const double value = text_.number();
-        // What lies further away could make sums and areas overflow; no part is near it.
-        constexpr double farthest = 1e100;
-        if (!(std::abs(value) <= farthest))
-            text_.fail(fmt::format("{}", value), fmt::format("lengths must lie within {} mm", farthest));
+        if (!(std::abs(value) <= farthest_mm))
+            text_.fail(fmt::format("{}", value), fmt::format("lengths must lie within {} mm", farthest_mm));
         return value + 0.0;
     }
 

@@ -23,9 +23,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as memory has them");
 
-// What lies further away could make sums and areas overflow; no part is near it.
-constexpr double farthest = 1e100;
-
 /// One array of the archive.
 class Array {
   public:
@@ -59,8 +56,9 @@ class Array {
             value = at<float>(i);
         else
             fail(fmt::format("numbers of type '{}'", type_), "lengths are '<f8' or '<f4'");
-        if (!(std::abs(value) <= farthest))
-            fail(fmt::format("the number {}", value), fmt::format("lengths must lie within {} mm", farthest));
+        if (!(std::abs(value) <= farthest_mm))
+            fail(fmt::format("the number {}", value),
+                 fmt::format("lengths must lie within {} mm", farthest_mm));
         return value + 0.0;
     }
 
