@@ -5,7 +5,9 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "container/xml.hpp"
 #include "core/executor.hpp"
+#include "core/lower_case.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
@@ -32,13 +34,6 @@ constexpr std::size_t reserved = 256;
 constexpr std::uint32_t no_more_layers = 0xFFFFFFFF;
 constexpr char header_end = '\x1a';
 
-std::string upper_case(std::string_view text) {
-    std::string result(text);
-    for (char& c : result)
-        c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    return result;
-}
-
 std::string_view header_of(std::string_view bytes) {
     const std::string_view begin = bytes.substr(0, longest_header);
     std::size_t end = begin.find("\r\n\x1a");
@@ -47,24 +42,21 @@ std::string_view header_of(std::string_view bytes) {
     return end == std::string_view::npos ? std::string_view() : begin.substr(0, end);
 }
 
-/// What stands behind a keyword, up to the next one. Some writers leave out the blanks before and behind.
+/// What stands behind a keyword, which is in lower case, up to the next one. Some writers leave out the
+/// blanks before and behind.
 std::optional<std::string_view> value_of(std::string_view header, std::string_view keyword) {
-    const std::string upper = upper_case(header);
-    const std::size_t at = upper.find(keyword);
+    const std::string lower = lower_case(header);
+    const std::size_t at = lower.find(keyword);
     if (at == std::string::npos)
         return std::nullopt;
     std::size_t begin = at + keyword.size();
-    if (begin < header.size() && upper[begin] == 'S') // -UNITS
+    if (begin < header.size() && lower[begin] == 's') // -UNITS
         ++begin;
     std::size_t end = begin;
     while (end < header.size() &&
-           !(header[end] == '-' && end + 1 < header.size() && upper[end + 1] >= 'A' && upper[end + 1] <= 'Z'))
+           !(header[end] == '-' && end + 1 < header.size() && lower[end + 1] >= 'a' && lower[end + 1] <= 'z'))
         ++end;
-    const std::string_view value = header.substr(begin, end - begin);
-    const std::size_t first = value.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos)
-        return std::string_view();
-    return value.substr(first, value.find_last_not_of(" \t\r\n") + 1 - first);
+    return trimmed(header.substr(begin, end - begin));
 }
 
 class SlcReader {
@@ -110,18 +102,18 @@ class SlcReader {
 
     void read_header() {
         const std::string_view header = header_of(bytes_);
-        const auto unit = value_of(header, "-UNIT");
-        const std::string name = unit ? upper_case(*unit) : "";
-        if (name.starts_with("INCH")) {
+        const auto unit = value_of(header, "-unit");
+        const std::string name = unit ? lower_case(*unit) : "";
+        if (name.starts_with("inch")) {
             file_.units_mm = 25.4;
         } else {
             file_.units_mm = 1;
-            if (!name.starts_with("MM"))
+            if (!name.starts_with("mm"))
                 file_.warnings.push_back(unit ? fmt::format("the unit '{}' is unknown; millimetres are taken",
                                                             printable(*unit, 20))
                                               : "the header has no unit; millimetres are taken");
         }
-        open_ = upper_case(value_of(header, "-TYPE").value_or("")).starts_with("WEB");
+        open_ = lower_case(value_of(header, "-type").value_or("")).starts_with("web");
         at_ = bytes_.find(header_end, header.size()) + 1;
         if (left() < reserved)
             fail(at_, fmt::format("{} bytes", left()), "256 reserved bytes must follow the header");
@@ -254,7 +246,7 @@ class SlcReader {
 } // namespace
 
 bool is_slc(std::string_view bytes) {
-    return upper_case(header_of(bytes)).find("-SLCVER") != std::string::npos;
+    return lower_case(header_of(bytes)).find("-slcver") != std::string::npos;
 }
 
 std::string_view other_slc(std::string_view bytes) {
