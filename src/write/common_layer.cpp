@@ -147,7 +147,7 @@ class AsciiWriter final : public CommonLayerWriter {
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
-    std::string layer_head(const Place& place) override {
+    std::string layer_head(const PlanePlace& place) override {
         return fmt::format("$$LAYER/{}\n", position_text(place.top, units_));
     }
 
@@ -251,7 +251,7 @@ class LongWriter final : public CommonLayerWriter {
         return {bytes.data(), bytes.size()};
     }
 
-    std::string layer_head(const Place& place) override {
+    std::string layer_head(const PlanePlace& place) override {
         const float height = height_of(place.top, units_);
         if (!(height > last_height_))
             throw Error(ErrorKind::usage,
@@ -370,7 +370,7 @@ class ShortWriter final : public CommonLayerWriter {
         return {bytes.data(), bytes.size()};
     }
 
-    std::string layer_head(const Place& place) override {
+    std::string layer_head(const PlanePlace& place) override {
         const std::int64_t height = whole_units(place.top, units_);
         check_short(fmt::format("layer {}", place.index), "z", height, units_);
         if (height <= last_height_)

@@ -38,7 +38,7 @@ class DxfWriter final : public SequentialWriter {
                "  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n";
     }
 
-    std::string layer_head(const Place&) override { return {}; }
+    std::string layer_head(const PlanePlace&) override { return {}; }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for (std::size_t part = 0; part < parts.size(); ++part)

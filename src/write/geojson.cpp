@@ -93,7 +93,7 @@ class GeoJsonWriter final : public SequentialWriter {
                            decimal_text(box.max.y));
     }
 
-    std::string layer_head(const Place& place) override { return place.position == 0 ? "\n" : ",\n"; }
+    std::string layer_head(const PlanePlace& place) override { return place.position == 0 ? "\n" : ",\n"; }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for (std::size_t part = 0; part < parts.size(); ++part) {

@@ -6,8 +6,7 @@
 #include "container/zip_writer.hpp"
 #include "write/decimal.hpp"
 #include "write/layer_writers.hpp"
-#include "write/left_out.hpp"
-#include "write/sequential_writer.hpp"
+#include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -103,10 +102,10 @@ std::string parameters_text(const std::vector<Section>& sections) {
     return text;
 }
 
-class IltWriter final : public LayerWriter {
+class IltWriter final : public OrderedWriter {
   public:
     IltWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : parts_(info.parts), order_(info), zip_(path) {
+        : OrderedWriter(info, {.open_chains = true, .hatches = true, .parameters = true}), zip_(path) {
         Sections sections;
         for (std::size_t part = 0; part < info.parts.size(); ++part) {
             const PartInfo& known = info.parts[part];
@@ -121,45 +120,10 @@ class IltWriter final : public LayerWriter {
             open(i, info, options);
     }
 
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
-        std::vector<std::function<void()>> writes;
-        for (std::size_t i = 0; i < sections_.size(); ++i) {
-            std::vector<Layer> layers;
-            for (const std::size_t part : sections_[i].parts)
-                layers.push_back(parts[part]);
-            writes.push_back(entries_[i].writer->prepare(layers));
-        }
-        return [this, writes = std::move(writes), z = parts.front().z] {
-            order_.next(z);
-            for (const std::function<void()>& write : writes)
-                write();
-        };
-    }
-
-    void finish() override {
-        order_.end();
-        for (const Entry& entry : entries_)
-            entry.writer->finish();
-        zip_.end();
-        for (std::size_t i = 1; i < sections_.size(); ++i) {
-            zip_.begin(sections_[i].name, ZipMethod::stored);
-            std::string bytes;
-            for (const auto& [place, size] : entries_[i].waiting) {
-                bytes.resize(size);
-                store_.read(place, bytes);
-                zip_.append_stored(bytes);
-            }
-            zip_.end();
-        }
-        zip_.finish();
-    }
-
     std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
 
     std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines;
-        say_unexposed(parts_, lines);
+        std::vector<std::string> lines = OrderedWriter::warnings();
         for (std::size_t i = 0; i < sections_.size(); ++i)
             for (const std::string& line : entries_[i].writer->warnings())
                 lines.push_back(fmt::format("{}: {}", sections_[i].name, line));
@@ -177,6 +141,37 @@ class IltWriter final : public LayerWriter {
         std::unique_ptr<LayerWriter> writer;
         std::vector<Stretch> waiting;
     };
+
+    Write formatted(std::span<const Layer> parts) override {
+        std::vector<std::function<void()>> writes;
+        for (std::size_t i = 0; i < sections_.size(); ++i) {
+            std::vector<Layer> layers;
+            for (const std::size_t part : sections_[i].parts)
+                layers.push_back(parts[part]);
+            writes.push_back(entries_[i].writer->prepare(layers));
+        }
+        return [writes = std::move(writes)](const PlanePlace&) {
+            for (const std::function<void()>& write : writes)
+                write();
+        };
+    }
+
+    void end_file() override {
+        for (const Entry& entry : entries_)
+            entry.writer->finish();
+        zip_.end();
+        for (std::size_t i = 1; i < sections_.size(); ++i) {
+            zip_.begin(sections_[i].name, ZipMethod::stored);
+            std::string bytes;
+            for (const auto& [place, size] : entries_[i].waiting) {
+                bytes.resize(size);
+                store_.read(place, bytes);
+                zip_.append_stored(bytes);
+            }
+            zip_.end();
+        }
+        zip_.finish();
+    }
 
     /// All of the file is one piece, which goes where it is put.
     void open(std::size_t section, const LayerFileInfo& info, const LayerWriteOptions& options) {
@@ -212,8 +207,6 @@ class IltWriter final : public LayerWriter {
         store_.add(bytes);
     }
 
-    std::vector<PartInfo> parts_;
-    LayerOrder order_;
     ZipWriter zip_;
     std::vector<Section> sections_;
     std::vector<Entry> entries_; ///< of sections_; their pieces stay where they are

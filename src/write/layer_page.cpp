@@ -10,9 +10,9 @@
 
 #include "container/base64.hpp"
 #include "core/atomic_file.hpp"
+#include "write/ordered_writer.hpp"
 #include "write/page_bytes.hpp"
 #include "write/page_text.hpp"
-#include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -31,11 +31,8 @@ namespace {
 
 /// What is told of a plane whether or not all of it is shown.
 struct PlaneFacts {
-    std::uint64_t index = 0;
-    double z = 0;
-    double bottom = 0;
-    double top = 0;
-    LayerMeasure measure;
+    PlanePlace place;
+    LayerMeasure measure = {};
     OpenGaps gaps = {};
     std::uint64_t crossings = 0;
     std::uint64_t misoriented = 0;
@@ -211,33 +208,22 @@ class PlaneTable {
     explicit PlaneTable(bool vectors) : shown_(vectors ? columns.size() : columns.size() - columns_of_scan) {}
 
     void add(const PlaneFacts& facts, const Picture& picture) {
-        const std::array<std::string, columns.size()> values{std::to_string(facts.index),
-                                                             page_number(facts.z),
-                                                             page_number(facts.bottom),
-                                                             page_number(facts.top),
-                                                             page_number(facts.measure.area_mm2),
-                                                             page_number(facts.measure.perimeter_mm),
-                                                             std::to_string(facts.measure.contours),
-                                                             std::to_string(facts.measure.holes),
-                                                             std::to_string(facts.measure.points),
-                                                             std::to_string(facts.measure.open_chains),
-                                                             page_number(facts.gaps.longest_mm),
-                                                             page_number(facts.gaps.total_mm),
-                                                             std::to_string(facts.crossings),
-                                                             std::to_string(facts.misoriented),
-                                                             std::to_string(facts.overlapping),
-                                                             std::to_string(facts.hatches),
-                                                             std::to_string(picture.shown),
-                                                             std::to_string(picture.hatches_shown),
-                                                             page_number(picture.tolerance_mm),
-                                                             std::to_string(facts.scan.vectors),
-                                                             page_number(facts.scan.marked_mm),
-                                                             page_number(facts.scan.jumped_mm),
-                                                             page_number(facts.scan.build_seconds),
-                                                             page_number(facts.scan.energy_j)};
+        const std::array<std::string, columns.size()> values{
+            std::to_string(facts.place.index),      page_number(facts.place.z),
+            page_number(facts.place.bottom),        page_number(facts.place.top),
+            page_number(facts.measure.area_mm2),    page_number(facts.measure.perimeter_mm),
+            std::to_string(facts.measure.contours), std::to_string(facts.measure.holes),
+            std::to_string(facts.measure.points),   std::to_string(facts.measure.open_chains),
+            page_number(facts.gaps.longest_mm),     page_number(facts.gaps.total_mm),
+            std::to_string(facts.crossings),        std::to_string(facts.misoriented),
+            std::to_string(facts.overlapping),      std::to_string(facts.hatches),
+            std::to_string(picture.shown),          std::to_string(picture.hatches_shown),
+            page_number(picture.tolerance_mm),      std::to_string(facts.scan.vectors),
+            page_number(facts.scan.marked_mm),      page_number(facts.scan.jumped_mm),
+            page_number(facts.scan.build_seconds),  page_number(facts.scan.energy_j)};
         for (std::size_t i = 0; i < shown_; ++i)
             append(texts_[i], values[i]);
-        planes_.push_back({facts.index, facts.measure.area_mm2});
+        planes_.push_back({facts.place.index, facts.measure.area_mm2});
     }
 
     /// `changes`: what steps did to the planes; without any, there are no columns about it.
@@ -299,15 +285,14 @@ class PageWriter final : public LayerPageWriter {
 
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
         order_.check_parts(parts.size());
-        const Layer& first = parts.front();
-        PlaneFacts facts{
-            .index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top, .measure = {}};
+        PlaneFacts facts{.place = plane_place(parts)};
         std::vector<Point2> places;
         look_at(parts, parts_, facts, places);
-        return [this, facts, pictures = pictures_of(parts, parts_, places, grid_, budget_.thinned())] {
-            order_.next(facts.z);
-            write(facts, pictures);
-        };
+        return
+            [this, facts, pictures = pictures_of(parts, parts_, places, grid_, budget_.thinned())]() mutable {
+                order_.next(facts.place);
+                write(facts, pictures);
+            };
     }
 
     void tell(PageNotes notes) override {
@@ -379,7 +364,7 @@ class PageWriter final : public LayerPageWriter {
     PageFrame frame_;
     PageGrid grid_;
     AtomicFile file_;
-    LayerOrder order_;
+    PlaneOrder order_;
     std::vector<PartInfo> parts_;
     Budget budget_;
     std::uint64_t without_hatches_ = 0;

@@ -1,3 +1,4 @@
+#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
 #include "core/atomic_directory.hpp"
@@ -52,6 +53,13 @@ std::string height_text(double mm) {
     return decimal_text(mm, 9, 4);
 }
 
+/// Rings by how they are listed in a file, with their signed areas: computed once, used for order, direction
+/// and rounding.
+struct MeasuredRing {
+    std::size_t contour;
+    double area;
+};
+
 class LayeredSvgWriter final : public SequentialWriter {
   public:
     LayeredSvgWriter(const std::string& path, const LayerFileInfo& info)
@@ -83,7 +91,7 @@ class LayeredSvgWriter final : public SequentialWriter {
                                : fmt::format(" data-lamella-rule=\"{}\"", plane_rule_name(info.rule)));
     }
 
-    std::string layer_head(const Place& place) override {
+    std::string layer_head(const PlanePlace& place) override {
         return fmt::format(
             "  <g id=\"layer{}\" slic3r:z=\"{}\" slic3r:slice-z=\"{}\" slic3r:layer-height=\"{}\">\n",
             place.position, height_text(place.top), height_text(place.z),
@@ -103,7 +111,9 @@ class LayeredSvgWriter final : public SequentialWriter {
 
     void format_part(const Layer& layer, ByteBuffer& out) const {
         // Painted one after the other, each ring must come after those around it, which are larger.
-        std::vector<MeasuredRing> rings = measured_rings(layer);
+        std::vector<MeasuredRing> rings;
+        for (std::size_t i = 0; i < layer.rings; ++i)
+            rings.push_back({i, ring_area(layer.contour(i))});
         std::stable_sort(rings.begin(), rings.end(), [](const MeasuredRing& a, const MeasuredRing& b) {
             return std::abs(a.area) > std::abs(b.area);
         });
@@ -157,38 +167,30 @@ bool is_our_picture(const fs::path& path) {
     return file && begin == picture_mark;
 }
 
-class SvgLayersWriter final : public LayerWriter {
+class SvgLayersWriter final : public OrderedWriter {
   public:
     SvgLayersWriter(const std::string& path, const LayerFileInfo& info)
-        : directory_(path, is_our_picture), order_(info), head_(head(info)) {}
+        : OrderedWriter(info, {.open_chains = true, .hatches = false}, Ascending::z_and_index),
+          directory_(path, is_our_picture), head_(head(info)) {}
 
+    std::uint64_t bytes() const noexcept override { return bytes_.load(std::memory_order_relaxed); }
+
+  private:
     // Each layer has a file of its own, so it is written here and not in order.
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
-        const std::shared_ptr<ByteBuffer> buffer = buffers_->take();
-        format(parts, *buffer);
-        const Layer& layer = parts.front();
-        const fs::path path = directory_.working_path() / fmt::format("layer_{:05}.svg", layer.index);
+    Write formatted(std::span<const Layer> parts) override {
+        const std::shared_ptr<ByteBuffer> text = buffer();
+        format(parts, *text);
+        const fs::path path = directory_.working_path() / fmt::format("layer_{:05}.svg", parts.front().index);
         AtomicFile file(path.string());
-        file.append(buffer->view());
+        file.append(text->view());
         file.commit();
-        return [this, z = layer.z, index = layer.index, size = buffer->view().size(),
-                extras = extras_of(parts)] {
-            order_.next(z, index);
-            left_out_.note(extras);
+        return [this, size = text->view().size()](const PlanePlace&) {
             bytes_.fetch_add(size, std::memory_order_relaxed);
         };
     }
 
-    void finish() override {
-        order_.end();
-        directory_.commit();
-    }
+    void end_file() override { directory_.commit(); }
 
-    std::uint64_t bytes() const noexcept override { return bytes_.load(std::memory_order_relaxed); }
-    std::vector<std::string> warnings() const override { return left_out_.warnings(); }
-
-  private:
     // Millimetres, with y upwards and a margin around the part, so that all pictures have the same frame.
     static std::string head(const LayerFileInfo& info) {
         const Box3& box = info.box;
@@ -239,11 +241,8 @@ class SvgLayersWriter final : public LayerWriter {
     }
 
     AtomicDirectory directory_;
-    LayerOrder order_;
-    LeftOut left_out_{{.open_chains = true, .hatches = false}};
     std::string head_;
-    WriterGrid grid_{text_step_mm, &left_out_.rounding()};
-    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+    WriterGrid grid_{text_step_mm, &rounding_loss()};
     std::atomic<std::uint64_t> bytes_{0};
 };
 

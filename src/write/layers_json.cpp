@@ -50,7 +50,7 @@ class LayersJsonWriter final : public SequentialWriter {
         return text + ",\"layers\":[";
     }
 
-    std::string layer_head(const Place& place) override {
+    std::string layer_head(const PlanePlace& place) override {
         return fmt::format("{}{{\"index\":{},\"z\":{},\"bottom\":{},\"top\":{},\"parts\":[",
                            place.position == 0 ? "\n" : ",\n", place.index, exact(place.z),
                            exact(place.bottom), exact(place.top));

@@ -6,13 +6,9 @@
 
 namespace lamella {
 
-void say_unexposed(std::span<const PartInfo> parts, std::vector<std::string>& warnings) {
-    const auto count =
-        std::count_if(parts.begin(), parts.end(), [](const PartInfo& part) { return !part.exposure; });
-    if (count != 0)
-        warnings.push_back(fmt::format("{} no scan vectors: contours were written without parameters",
-                                       count == 1 ? "1 part has" : fmt::format("{} parts have", count)));
-}
+LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts)
+    : holds_(holds), unexposed_(static_cast<std::uint64_t>(std::count_if(
+                         parts.begin(), parts.end(), [](const PartInfo& part) { return !part.exposure; }))) {}
 
 PlaneExtras extras_of(std::span<const Layer> parts) {
     PlaneExtras extras;
@@ -60,6 +56,10 @@ std::vector<std::string> LeftOut::warnings() const {
                         "some of the characters",
                         changed_labels_ == 1 ? "1 label was" : fmt::format("{} labels were", changed_labels_),
                         first_label_, first_written_));
+    if (holds_.parameters && unexposed_ != 0)
+        lines.push_back(
+            fmt::format("{} no scan vectors: contours were written without parameters",
+                        unexposed_ == 1 ? "1 part has" : fmt::format("{} parts have", unexposed_)));
     return lines;
 }
 

@@ -19,6 +19,7 @@ namespace lamella {
 struct Holds {
     bool open_chains = true;
     bool hatches = false;
+    bool parameters = false; ///< of scan vectors, which it wants of each part
 };
 
 /// Open chains and hatches of one plane.
@@ -28,16 +29,12 @@ struct PlaneExtras {
     double z = 0;
 };
 
-/// Of formats of scan vectors, which want parameters: says how many parts have no exposure. Nothing where all
-/// have one.
-void say_unexposed(std::span<const PartInfo> parts, std::vector<std::string>& warnings);
-
 [[nodiscard]] PlaneExtras extras_of(std::span<const Layer> parts);
 
 /// Counts what a file leaves out. Planes are noted in ascending z.
 class LeftOut {
   public:
-    explicit LeftOut(Holds holds) : holds_(holds) {}
+    LeftOut(Holds holds, std::span<const PartInfo> parts);
 
     void note(const PlaneExtras& plane);
     /// For what rounds.
@@ -49,7 +46,8 @@ class LeftOut {
 
   private:
     Holds holds_;
-    PlaneExtras chains_; ///< all of them, and the lowest plane that has some
+    std::uint64_t unexposed_; ///< parts without parameters
+    PlaneExtras chains_;      ///< all of them, and the lowest plane that has some
     PlaneExtras hatches_;
     RoundingLoss rounding_;
     std::uint64_t changed_labels_ = 0;

@@ -6,8 +6,7 @@
 #include "container/text_place.hpp"
 #include "container/zip_writer.hpp"
 #include "write/layer_writers.hpp"
-#include "write/left_out.hpp"
-#include "write/sequential_writer.hpp"
+#include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -59,15 +58,18 @@ std::u32string characters(std::string_view text) {
     return result;
 }
 
-class NpzWriter final : public LayerWriter {
+class NpzWriter final : public OrderedWriter {
   public:
     NpzWriter(const std::string& path, const LayerFileInfo& info)
-        : labels_(info.parts), rule_(info.rule), zip_(path, Overwriting::yes), order_(info) {
+        : OrderedWriter(info, {.open_chains = true, .hatches = true}), labels_(info.parts), rule_(info.rule),
+          zip_(path, Overwriting::yes) {
         zip_.begin_headed("points.npy", head_size);
     }
 
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
+    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+
+  private:
+    Write formatted(std::span<const Layer> parts) override {
         struct Prepared {
             std::vector<PointArray> points;
             std::vector<std::uint32_t> crcs;
@@ -81,10 +83,8 @@ class NpzWriter final : public LayerWriter {
             prepared->offsets.emplace_back(layer.offsets.begin() + 1, layer.offsets.end());
             prepared->counts.push_back({layer.contours(), layer.rings, layer.hatches});
         }
-        const Layer& layer = parts.front();
-        return [this, prepared, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
-            order_.next(z);
-            planes_.push_back({static_cast<std::int64_t>(index), z, bottom, top});
+        return [this, prepared](const PlanePlace& place) {
+            planes_.push_back(place);
             for (std::size_t part = 0; part < prepared->points.size(); ++part) {
                 const std::string_view bytes = bytes_of(prepared->points[part].span());
                 zip_.append({bytes, bytes.size(), prepared->crcs[part]});
@@ -96,17 +96,17 @@ class NpzWriter final : public LayerWriter {
         };
     }
 
-    void finish() override {
-        order_.end();
+    void end_file() override {
         zip_.end_headed(npy_head("<f8", fmt::format("{}, 2", points_), head_size));
         add_numbers<std::int64_t>("offsets", "<i8", offsets_);
         add_contour_numbers<char>("closed", "|b1", [](const Contour& c) -> char { return c.closed ? 1 : 0; });
         add_contour_numbers<std::int64_t>("layer", "<i8", [](const Contour& c) { return c.layer; });
         add_contour_numbers<std::int64_t>("part", "<i8", [](const Contour& c) { return c.part; });
-        add_plane_numbers<std::int64_t>("index", "<i8", [](const Plane& p) { return p.index; });
-        add_plane_numbers<double>("z", "<f8", [](const Plane& p) { return p.z; });
-        add_plane_numbers<double>("bottom", "<f8", [](const Plane& p) { return p.bottom; });
-        add_plane_numbers<double>("top", "<f8", [](const Plane& p) { return p.top; });
+        add_plane_numbers<std::int64_t>(
+            "index", "<i8", [](const PlanePlace& p) { return static_cast<std::int64_t>(p.index); });
+        add_plane_numbers<double>("z", "<f8", [](const PlanePlace& p) { return p.z; });
+        add_plane_numbers<double>("bottom", "<f8", [](const PlanePlace& p) { return p.bottom; });
+        add_plane_numbers<double>("top", "<f8", [](const PlanePlace& p) { return p.top; });
         add_labels();
         if (rule_ != PlaneRule::section_above)
             add_texts("rule", {characters(plane_rule_name(rule_))});
@@ -114,15 +114,6 @@ class NpzWriter final : public LayerWriter {
         zip_.finish();
     }
 
-    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
-
-  private:
-    struct Plane {
-        std::int64_t index;
-        double z;
-        double bottom;
-        double top;
-    };
     /// What one part has on one plane.
     struct PartPlane {
         std::uint64_t contours;
@@ -135,8 +126,7 @@ class NpzWriter final : public LayerWriter {
         bool closed;
     };
 
-    /// An array of a known number of elements, made and written some thousand at a time: `make` fills a
-    /// vector up to its capacity or the array's end and says so by returning false.
+    /// An array of a known size, written some thousand elements at a time.
     class Array {
       public:
         Array(ZipWriter& zip, std::string_view name, std::string_view type, const std::string& shape,
@@ -177,7 +167,7 @@ class NpzWriter final : public LayerWriter {
     template <class T, class Value>
     void add_plane_numbers(std::string_view name, std::string_view type, const Value& value) {
         std::vector<T> values;
-        for (const Plane& plane : planes_)
+        for (const PlanePlace& plane : planes_)
             values.push_back(value(plane));
         add_numbers<T>(name, type, values);
     }
@@ -246,8 +236,7 @@ class NpzWriter final : public LayerWriter {
     std::vector<PartInfo> labels_;
     PlaneRule rule_;
     ZipWriter zip_;
-    LayerOrder order_;
-    std::vector<Plane> planes_;
+    std::vector<PlanePlace> planes_;
     std::vector<PartPlane> counts_; ///< of all parts of the first plane, then of the second ...
     std::vector<std::int64_t> offsets_{0};
     std::int64_t points_ = 0;

@@ -12,8 +12,7 @@
 #include "write/exposure_keys.hpp"
 #include "write/float_contour.hpp"
 #include "write/layer_writers.hpp"
-#include "write/left_out.hpp"
-#include "write/sequential_writer.hpp"
+#include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -176,19 +175,20 @@ class BlockWriter {
     Blocks& blocks_;
 };
 
-class OvfWriter final : public LayerWriter {
+class OvfWriter final : public OrderedWriter {
   public:
     OvfWriter(const std::string& path, const LayerFileInfo& info)
-        : box_(info.box), parts_(info.parts), keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)),
-          file_(path, Overwriting::yes), order_(info), left_out_({.open_chains = true, .hatches = true}),
-          floats_(1, &left_out_.rounding()) {
+        : OrderedWriter(info, {.open_chains = true, .hatches = true, .parameters = true}), box_(info.box),
+          keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)), file_(path, Overwriting::yes) {
         file_.append(ovf::magic);
         file_.append(position_bytes(0));
     }
 
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
-        auto blocks = std::make_shared<Blocks>(Blocks{buffers_->take(), {}});
+    std::uint64_t bytes() const noexcept override { return file_.bytes(); }
+
+  private:
+    Write formatted(std::span<const Layer> parts) override {
+        auto blocks = std::make_shared<Blocks>(Blocks{buffer(), {}});
         for (std::size_t part = 0; part < parts.size(); ++part) {
             const Layer& layer = parts[part];
             BlockWriter writer(floats_, layer.index, *blocks);
@@ -196,18 +196,15 @@ class OvfWriter final : public LayerWriter {
                 writer.put_contour(layer.contour(i), layer.closed(i), ends_of_blocks_[part]);
             writer.put_hatches(layer.hatches.span(), ends_of_blocks_[part]);
         }
-        const Layer& layer = parts.front();
-        return [this, blocks, index = layer.index, z = layer.z, bottom = layer.bottom, top = layer.top] {
-            order_.next(z);
-            check_top(top, index);
-            if (order_.count() == 1)
-                layer_thickness_ = top - bottom;
-            append_plane(*blocks, top);
+        return [this, blocks](const PlanePlace& place) {
+            check_top(place);
+            if (place.position == 0)
+                layer_thickness_ = place.top - place.bottom;
+            append_plane(*blocks, place.top);
         };
     }
 
-    void finish() override {
-        order_.end();
+    void end_file() override {
         ProtobufMessage bounds;
         bounds.real(ovf::box::x_min, box_.min.x);
         bounds.real(ovf::box::y_min, box_.min.y);
@@ -230,23 +227,14 @@ class OvfWriter final : public LayerWriter {
         file_.commit();
     }
 
-    std::uint64_t bytes() const noexcept override { return file_.bytes(); }
-
-    std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines = left_out_.warnings();
-        say_unexposed(parts_, lines);
-        return lines;
-    }
-
-  private:
-    void check_top(double top, std::uint64_t index) {
-        const auto single = static_cast<float>(top);
+    void check_top(const PlanePlace& place) {
+        const auto single = static_cast<float>(place.top);
         if (!(single > last_top_))
             throw Error(
                 ErrorKind::usage,
                 fmt::format("layer {} is so thin that its top, z = {} mm, is that of the layer before "
                             "in single precision",
-                            index, top));
+                            place.index, place.top));
         last_top_ = single;
     }
 
@@ -278,14 +266,10 @@ class OvfWriter final : public LayerWriter {
     }
 
     Box3 box_;
-    std::vector<PartInfo> parts_;
     ExposureKeys keys_;
     std::vector<std::string> ends_of_blocks_; ///< of parts
     AtomicFile file_;
-    LayerOrder order_;
-    LeftOut left_out_;
-    FloatContours floats_;
-    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+    FloatContours floats_{1, &rounding_loss()};
     std::vector<std::uint64_t> planes_; ///< where they begin
     float last_top_ = -std::numeric_limits<float>::infinity();
     double layer_thickness_ = 0;

@@ -6,8 +6,7 @@
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
 #include "write/layer_writers.hpp"
-#include "write/left_out.hpp"
-#include "write/sequential_writer.hpp"
+#include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -46,11 +45,11 @@ class Manifest {
                             pictures.options().antialias, pictures.options().gamma);
     }
 
-    void add(std::uint64_t index, double z, double bottom, double top, double covered) {
+    void add(const PlanePlace& place, double covered) {
         text_ += fmt::format("{}\n    {{\"file\": \"{}\", \"z\": {}, \"bottom\": {}, \"top\": {}, "
                              "\"area_mm2\": {}}}",
-                             text_.ends_with('[') ? "" : ",", picture_name(index), z, bottom, top,
-                             covered * pixel_mm2_);
+                             text_.ends_with('[') ? "" : ",", picture_name(place.index), place.z,
+                             place.bottom, place.top, covered * pixel_mm2_);
     }
 
     [[nodiscard]] std::string text() const { return text_ + "\n  ]\n}\n"; }
@@ -79,32 +78,11 @@ bool is_ours(const fs::path& path) {
             std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; }));
 }
 
-class PictureStackWriter : public LayerWriter {
-  public:
-    std::function<void()> prepare(std::span<const Layer> parts) final {
-        order_.check_parts(parts.size());
-        LayerPicture picture = pictures_.picture(parts);
-        const Layer& layer = parts.front();
-        made(layer.index, picture);
-        return [this, picture = std::move(picture), extras = extras_of(parts), index = layer.index,
-                z = layer.z, bottom = layer.bottom, top = layer.top] {
-            order_.next(z, index);
-            left_out_.note(extras);
-            add(index, picture);
-            manifest_.add(index, z, bottom, top, picture.covered);
-        };
-    }
-
-    void finish() final {
-        order_.end();
-        end(manifest_.text());
-    }
-
-    std::vector<std::string> warnings() const final { return left_out_.warnings(); }
-
+class PictureStackWriter : public OrderedWriter {
   protected:
     PictureStackWriter(const LayerFileInfo& info, const LayerWriteOptions& options)
-        : display_(display_for(info.box, options.picture, {})), order_(info),
+        : OrderedWriter(info, {.open_chains = false, .hatches = false}, Ascending::z_and_index),
+          display_(display_for(info.box, options.picture, {})),
           pictures_(display_.grid(info.box), options.picture.raster), manifest_(display_, pictures_) {}
 
     /// Called as soon as there is a picture, from any threads.
@@ -114,9 +92,18 @@ class PictureStackWriter : public LayerWriter {
     virtual void end(const std::string& manifest) = 0;
 
   private:
+    Write formatted(std::span<const Layer> parts) final {
+        LayerPicture picture = pictures_.picture(parts);
+        made(parts.front().index, picture);
+        return [this, picture = std::move(picture)](const PlanePlace& place) {
+            add(place.index, picture);
+            manifest_.add(place, picture.covered);
+        };
+    }
+
+    void end_file() final { end(manifest_.text()); }
+
     Display display_;
-    LayerOrder order_;
-    LeftOut left_out_{{.open_chains = false, .hatches = false}};
     LayerPictures pictures_;
     Manifest manifest_;
 };

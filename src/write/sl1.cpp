@@ -5,9 +5,8 @@
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
 #include "write/layer_writers.hpp"
-#include "write/left_out.hpp"
+#include "write/ordered_writer.hpp"
 #include "write/png.hpp"
-#include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -97,11 +96,12 @@ double exposure(const std::optional<double>& given, double common, std::string_v
     return seconds;
 }
 
-class Sl1Writer final : public LayerWriter {
+class Sl1Writer final : public OrderedWriter {
   public:
     Sl1Writer(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options,
               const PicturePrinter& printer)
-        : printer_(printer), display_(display_for(info.box, options.picture, printer)), order_(info),
+        : OrderedWriter(info, {.open_chains = false, .hatches = false}), printer_(printer),
+          display_(display_for(info.box, options.picture, printer)),
           pictures_(display_.grid(info.box), options.picture.raster),
           relief_(info.box, relief_side, relief_side),
           normal_s_(exposure(options.exposure.normal_s, printer.normal_s, "an exposure")),
@@ -109,32 +109,26 @@ class Sl1Writer final : public LayerWriter {
           fade_layers_(options.exposure.fade_layers), created_(time_text(options.exposure.created_s)),
           job_(job_name(path)), archive_(path) {}
 
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
-        const Layer& layer = parts.front();
-        return [this, picture = pictures_.picture(parts), seen = relief_.spans(parts),
-                extras = extras_of(parts), z = layer.z, thickness = layer.thickness()] {
-            order_.next(z);
-            relief_.add(seen);
-            left_out_.note(extras);
-            count(picture.covered * display_.pixel_mm2(), thickness);
-            archive_.add_ready(fmt::format("{}{:05}.png", job_, order_.count() - 1), ZipMethod::stored,
-                               {picture.file->view(), picture.file->view().size(), picture.crc});
-        };
+    std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
+
+  private:
+    Write formatted(std::span<const Layer> parts) override {
+        return
+            [this, picture = pictures_.picture(parts), seen = relief_.spans(parts)](const PlanePlace& place) {
+                relief_.add(seen);
+                count(place.position, picture.covered * display_.pixel_mm2(), place.top - place.bottom);
+                archive_.add_ready(fmt::format("{}{:05}.png", job_, place.position), ZipMethod::stored,
+                                   {picture.file->view(), picture.file->view().size(), picture.crc});
+            };
     }
 
-    void finish() override {
-        order_.end();
+    void end_file() override {
         archive_.add("config.ini", text_of(job()), ZipMethod::deflated);
         archive_.add("prusaslicer.ini", text_of(profile()), ZipMethod::deflated);
         add_thumbnails();
         archive_.finish();
     }
 
-    std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
-    std::vector<std::string> warnings() const override { return left_out_.warnings(); }
-
-  private:
     void add_thumbnails() {
         const ColourPicture whole = relief_.picture();
         for (const auto& [width, height] : thumbnail_sizes) {
@@ -144,9 +138,7 @@ class Sl1Writer final : public LayerWriter {
         }
     }
 
-    /// Counts the layer that `order_` has just let through.
-    void count(double area_mm2, double thickness) {
-        const std::uint64_t position = order_.count() - 1;
+    void count(std::uint64_t position, double area_mm2, double thickness) {
         if (position == 0)
             first_thickness_ = thickness;
         if (position <= 1)
@@ -221,8 +213,6 @@ class Sl1Writer final : public LayerWriter {
 
     PicturePrinter printer_;
     Display display_;
-    LayerOrder order_;
-    LeftOut left_out_{{.open_chains = false, .hatches = false}};
     LayerPictures pictures_;
     Relief relief_;
     double normal_s_;

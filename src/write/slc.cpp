@@ -64,7 +64,7 @@ class SlcWriter final : public SequentialWriter {
         return table;
     }
 
-    std::string layer_head(const Place& place) override {
+    std::string layer_head(const PlanePlace& place) override {
         std::string bytes;
         if (place.position == 0)
             bytes = sampling_table(place.bottom, place.top - place.bottom);

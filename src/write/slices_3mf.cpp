@@ -10,10 +10,9 @@
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
-#include "write/left_out.hpp"
+#include "write/ordered_writer.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"
-#include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -83,43 +82,44 @@ void put_slice(const Layer& layer, const WriterGrid& grid, ByteBuffer& out) {
     out.append("</s:slice>\n");
 }
 
-class Slices3mfWriter final : public LayerWriter {
+class Slices3mfWriter final : public OrderedWriter {
   public:
     Slices3mfWriter(const std::string& path, const LayerFileInfo& info)
-        : info_(info), zip_(path), order_(info), later_(info.parts.size() - 1), last_top_(info.bottom) {
+        : OrderedWriter(info, {.open_chains = false, .hatches = false}), info_(info), zip_(path),
+          later_(info.parts.size() - 1), last_top_(info.bottom) {
         zip_.add("[Content_Types].xml", package_3mf::content_types(), ZipMethod::deflated);
         zip_.add("_rels/.rels", package_3mf::relations, ZipMethod::deflated);
         zip_.begin("3D/3dmodel.model", ZipMethod::deflated);
         append(std::string(model_begin) + stack_begin(0));
     }
 
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
-        const std::shared_ptr<ByteBuffer> text = buffers_->take();
+    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+
+  private:
+    static constexpr std::string_view stack_end = "</s:slicestack>\n";
+
+    Write formatted(std::span<const Layer> parts) override {
+        const std::shared_ptr<ByteBuffer> text = buffer();
         auto pieces = std::make_shared<std::vector<package_3mf::Piece>>();
         for (const Layer& layer : parts) {
             text->clear();
             put_slice(layer, grid_, *text);
             pieces->push_back(compression_.piece(text->view()));
         }
-        const Layer& layer = parts.front();
-        return [this, pieces, extras = extras_of(parts), index = layer.index, z = layer.z, top = layer.top] {
-            order_.next(z);
-            left_out_.note(extras);
-            if (!(top > last_top_))
+        return [this, pieces](const PlanePlace& place) {
+            if (!(place.top > last_top_))
                 throw Error(ErrorKind::usage,
                             fmt::format("layer {} ends at z = {} mm, where the one below it does; the tops "
                                         "of slices must ascend",
-                                        index, top));
-            last_top_ = top;
+                                        place.index, place.top));
+            last_top_ = place.top;
             zip_.append(pieces->front().in_zip());
             for (std::size_t part = 1; part < pieces->size(); ++part)
                 later_[part - 1].push_back(std::move((*pieces)[part]));
         };
     }
 
-    void finish() override {
-        order_.end();
+    void end_file() override {
         append(stack_end);
         for (std::size_t part = 1; part <= later_.size(); ++part) {
             append(stack_begin(part));
@@ -142,12 +142,6 @@ class Slices3mfWriter final : public LayerWriter {
         zip_.finish();
     }
 
-    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
-    std::vector<std::string> warnings() const override { return left_out_.warnings(); }
-
-  private:
-    static constexpr std::string_view stack_end = "</s:slicestack>\n";
-
     [[nodiscard]] static std::size_t stack_id(std::size_t part) { return part + 1; }
     [[nodiscard]] std::size_t object_id(std::size_t part) const { return info_.parts.size() + part + 1; }
     [[nodiscard]] std::string stack_begin(std::size_t part) const {
@@ -159,11 +153,8 @@ class Slices3mfWriter final : public LayerWriter {
 
     LayerFileInfo info_;
     ZipWriter zip_;
-    LayerOrder order_;
-    LeftOut left_out_{{.open_chains = false, .hatches = false}};
-    WriterGrid grid_{text_step_mm, &left_out_.rounding()};
+    WriterGrid grid_{text_step_mm, &rounding_loss()};
     package_3mf::Compression compression_;
-    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
     /// The stacks of all parts but the first, which wait for the end of the first one.
     std::vector<std::vector<package_3mf::Piece>> later_;
     double last_top_;

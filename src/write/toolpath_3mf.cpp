@@ -12,10 +12,9 @@
 #include "write/exposure_keys.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
-#include "write/left_out.hpp"
+#include "write/ordered_writer.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"
-#include "write/sequential_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -90,12 +89,12 @@ std::string profile_text(const std::string& uuid, const std::string& name, const
         attribute("l:markdelay", set.mark_delay_us), attribute("l:jumpdelay", set.jump_delay_us));
 }
 
-class Toolpath3mfWriter final : public LayerWriter {
+class Toolpath3mfWriter final : public OrderedWriter {
   public:
     Toolpath3mfWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : info_(info), keys_(info.parts), units_(options.units_mm), zip_(path), order_(info),
-          grid_(options.units_mm, &left_out_.rounding()), bottom_(whole_height(info.bottom)),
-          last_top_(bottom_) {
+        : OrderedWriter(info, {.open_chains = true, .hatches = true, .parameters = true}), info_(info),
+          keys_(info.parts), units_(options.units_mm), zip_(path), grid_(options.units_mm, &rounding_loss()),
+          bottom_(whole_height(info.bottom)), last_top_(bottom_) {
         const std::string file = head_text(info);
         uuid_ = uuid_of("toolpath " + file);
         for (std::size_t part = 0; part < keys_.parts.size(); ++part)
@@ -111,32 +110,31 @@ class Toolpath3mfWriter final : public LayerWriter {
         zip_.add("_rels/.rels", package_3mf::relations, ZipMethod::deflated);
     }
 
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
-        const std::shared_ptr<ByteBuffer> text = buffers_->take();
+    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+
+  private:
+    Write formatted(std::span<const Layer> parts) override {
+        const std::shared_ptr<ByteBuffer> text = buffer();
         put_layer(parts, *text);
         auto piece = std::make_shared<package_3mf::Piece>(compression_.whole(text->view()));
-        const Layer& layer = parts.front();
-        return [this, piece, index = layer.index, z = layer.z, top = layer.top] {
-            order_.next(z);
-            const std::int64_t height = whole_height(top);
+        return [this, piece](const PlanePlace& place) {
+            const std::int64_t height = whole_height(place.top);
             if (height <= last_top_)
                 throw Error(
                     ErrorKind::usage,
                     fmt::format("layer {} ends at z = {} mm, which is not above the one below it in units "
                                 "of {} mm; use smaller units",
-                                index, top, units_));
+                                place.index, place.top, units_));
             last_top_ = height;
-            const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", order_.count());
+            const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", place.position + 1);
             zip_.add_ready(name, ZipMethod::deflated, piece->in_zip());
             layers_ += fmt::format("<tp:toolpathlayer ztop=\"{}\" path=\"/{}\"/>\n", height, name);
             relations_ += fmt::format("<Relationship Id=\"layer{}\" Target=\"/{}\" Type=\"{}\"/>\n",
-                                      order_.count(), name, toolpath_3mf::layer_type);
+                                      place.position + 1, name, toolpath_3mf::layer_type);
         };
     }
 
-    void finish() override {
-        order_.end();
+    void end_file() override {
         zip_.add("3D/_rels/3dmodel.model.rels",
                  fmt::format("{}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/"
                              "relationships\">\n{}</Relationships>\n",
@@ -146,15 +144,6 @@ class Toolpath3mfWriter final : public LayerWriter {
         zip_.finish();
     }
 
-    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
-
-    std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines = left_out_.warnings();
-        say_unexposed(info_.parts, lines);
-        return lines;
-    }
-
-  private:
     [[nodiscard]] std::int64_t whole_height(double z) const {
         const double units = std::nearbyint(z / units_);
         if (!(units >= 0 && units <= static_cast<double>(most_coordinate)))
@@ -282,11 +271,8 @@ class Toolpath3mfWriter final : public LayerWriter {
     ExposureKeys keys_;
     double units_;
     ZipWriter zip_;
-    LayerOrder order_;
-    LeftOut left_out_{{.open_chains = true, .hatches = true}};
     WriterGrid grid_;
     package_3mf::Compression compression_;
-    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
     std::string uuid_;
     std::vector<std::string> item_uuids_;    ///< of the parts of keys_
     std::vector<std::string> profile_uuids_; ///< of its exposures, then of what has no parameters

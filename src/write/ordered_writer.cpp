@@ -1,0 +1,57 @@
+#include "write/ordered_writer.hpp"
+
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
+namespace lamella {
+
+PlanePlace plane_place(std::span<const Layer> parts) {
+    const Layer& layer = parts.front();
+    return {0, layer.index, layer.z, layer.bottom, layer.top};
+}
+
+PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)
+    : before_(info.piece != nullptr ? info.piece->before : 0),
+      announced_(info.piece != nullptr ? info.piece->layers : info.layers), parts_(info.parts.size()),
+      ascending_(ascending) {}
+
+void PlaneOrder::check_parts(std::size_t parts) const {
+    if (parts != parts_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} parts were announced and a plane has layers of {}", parts_, parts));
+}
+
+void PlaneOrder::next(PlanePlace& plane) {
+    if (count_ > 0 && !(plane.z > last_.z))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("layers must be written in ascending z: z = {} follows z = {}", plane.z, last_.z));
+    if (count_ > 0 && ascending_ == Ascending::z_and_index && plane.index <= last_.index)
+        throw Error(ErrorKind::usage,
+                    fmt::format("the layer with index {} follows the one with {}", plane.index, last_.index));
+    plane.position = before_ + count_++;
+    last_ = plane;
+}
+
+void PlaneOrder::end() const {
+    if (count_ != announced_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} layers were announced and {} were written", announced_, count_));
+}
+
+std::function<void()> OrderedWriter::prepare(std::span<const Layer> parts) {
+    order_.check_parts(parts.size());
+    return [this, write = formatted(parts), extras = extras_of(parts), place = plane_place(parts)]() mutable {
+        order_.next(place);
+        left_out_.note(extras);
+        write(place);
+    };
+}
+
+void OrderedWriter::finish() {
+    order_.end();
+    end_file();
+}
+
+} // namespace lamella

@@ -1,0 +1,96 @@
+#pragma once
+
+// What the writers of all formats check and count while planes pass by.
+
+#include "lamella/write/layer_writer.hpp"
+
+#include "write/byte_buffer.hpp"
+#include "write/left_out.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+
+/// Where a plane lies; its position is known when it is written.
+struct PlanePlace {
+    std::uint64_t position = 0; ///< 0 for the first of the file
+    std::uint64_t index = 0;
+    double z = 0;
+    double bottom = 0;
+    double top = 0;
+};
+
+/// Of what the layers of a plane have in common.
+[[nodiscard]] PlanePlace plane_place(std::span<const Layer> parts);
+
+/// What must ascend from plane to plane.
+enum class Ascending {
+    z,
+    z_and_index, ///< files are called after the indices of layers
+};
+
+/// The order of planes, checked as they are written: ascending, and as many planes and parts as were
+/// announced.
+class PlaneOrder {
+  public:
+    explicit PlaneOrder(const LayerFileInfo& info, Ascending ascending = Ascending::z);
+
+    /// Throws Error{usage} when there is not one layer for each part.
+    void check_parts(std::size_t parts) const;
+    /// Tells the plane its position. Throws Error{usage} when it does not follow the one before.
+    void next(PlanePlace& plane);
+    /// Throws Error{usage} when there were more or fewer planes than announced.
+    void end() const;
+    /// Planes so far.
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+
+  private:
+    std::uint64_t before_; ///< planes of the file that other pieces of it have
+    std::uint64_t announced_;
+    std::size_t parts_;
+    Ascending ascending_;
+    std::uint64_t count_ = 0;
+    PlanePlace last_;
+};
+
+/// A writer that knows the order of its planes, and what it leaves out.
+class OrderedWriter : public LayerWriter {
+  public:
+    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
+    void finish() final;
+    [[nodiscard]] std::vector<std::string> warnings() const override { return left_out_.warnings(); }
+
+  protected:
+    /// What writes a plane that was formatted; called in order.
+    using Write = std::function<void(const PlanePlace& place)>;
+
+    OrderedWriter(const LayerFileInfo& info, Holds holds, Ascending ascending = Ascending::z)
+        : order_(info, ascending), left_out_(holds, info.parts) {}
+
+    /// Called from any threads.
+    [[nodiscard]] virtual Write formatted(std::span<const Layer> parts) = 0;
+    /// Ends the file and gives it its name. Called once, after the last plane.
+    virtual void end_file() = 0;
+
+    /// For the members that round.
+    [[nodiscard]] RoundingLoss& rounding_loss() noexcept { return left_out_.rounding(); }
+    /// To be called where a label cannot be written as it is.
+    void note_label(std::string_view label, std::string_view written) {
+        left_out_.note_label(label, written);
+    }
+    /// For what is formatted.
+    [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }
+
+  private:
+    PlaneOrder order_;
+    LeftOut left_out_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+};
+
+} // namespace lamella
