@@ -143,14 +143,11 @@ constexpr std::array formats{
 };
 
 std::string names() {
-    std::string text;
-    for (const LayerFormat& format : formats) {
-        text += text.empty() ? "" : ", ";
-        text += format.name;
-        if (!format.extension.empty())
-            text += fmt::format(" ({})", format.extension);
-    }
-    return text;
+    std::vector<std::string> texts;
+    for (const LayerFormat& format : formats)
+        texts.push_back(format.extension.empty() ? std::string(format.name)
+                                                 : fmt::format("{} ({})", format.name, format.extension));
+    return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 void check_info(const LayerFileInfo& info) {
@@ -163,6 +160,47 @@ void check_info(const LayerFileInfo& info) {
         throw Error(ErrorKind::usage,
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
+
+/// Another writer, held to LayerWriteOptions::most_bytes and `strict`: throws after the layer that was too
+/// much, and instead of ending a file that there are warnings of.
+class HeldWriter final : public LayerWriter {
+  public:
+    HeldWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerWriteOptions& options)
+        : writer_(std::move(writer)), path_(std::move(path)), most_bytes_(options.most_bytes),
+          strict_(options.strict) {}
+
+    std::function<void()> prepare(std::span<const Layer> parts) override {
+        return [this, write = writer_->prepare(parts)] {
+            write();
+            check_size();
+        };
+    }
+
+    void finish() override {
+        if (const std::vector<std::string> losses = warnings(); strict_ && !losses.empty())
+            throw Error(ErrorKind::defect, fmt::format("{}: {}", path_, losses.front()));
+        check_size();
+        writer_->finish();
+    }
+
+    std::uint64_t bytes() const noexcept override { return writer_->bytes(); }
+    std::vector<std::string> warnings() const override { return writer_->warnings(); }
+
+  private:
+    void check_size() const {
+        if (most_bytes_ != 0 && bytes() > most_bytes_)
+            throw Error(
+                ErrorKind::limit,
+                fmt::format("'{}' would take more than the {} bytes that it may; choose higher layers, "
+                            "another format or a larger limit",
+                            path_, most_bytes_));
+    }
+
+    std::unique_ptr<LayerWriter> writer_;
+    std::string path_;
+    std::uint64_t most_bytes_;
+    bool strict_;
+};
 
 } // namespace
 
@@ -195,9 +233,9 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
         throw Error(ErrorKind::usage,
                     fmt::format("{} writes a folder and standard output is none; give a path", format.name));
     std::unique_ptr<LayerWriter> writer = format.open(path, info, options);
-    if (options.most_bytes != 0)
-        writer = limited(std::move(writer), path, options.most_bytes);
-    return options.strict ? strict(std::move(writer), path) : std::move(writer);
+    if (options.most_bytes == 0 && !options.strict)
+        return writer;
+    return std::make_unique<HeldWriter>(std::move(writer), path, options);
 }
 
 void write_planes(LayerWriter& writer, std::size_t planes,

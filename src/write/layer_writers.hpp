@@ -4,7 +4,6 @@
 
 #include "lamella/write/layer_writer.hpp"
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -48,13 +47,5 @@ OpenLayerWriter open_slc;
 OpenLayerWriter open_slices_3mf;
 /// 3MF with toolpaths (3MF Toolpath Extension 1.0, a release candidate).
 OpenLayerWriter open_toolpath_3mf;
-
-/// The same writer, which throws Error{defect} instead of ending a file that it has warnings of.
-[[nodiscard]] std::unique_ptr<LayerWriter> strict(std::unique_ptr<LayerWriter> writer, std::string path);
-
-/// The same writer, which throws Error{limit} instead of ending a file whose layers have taken more than
-/// `most_bytes`; it does so after the layer that was too much.
-[[nodiscard]] std::unique_ptr<LayerWriter> limited(std::unique_ptr<LayerWriter> writer, std::string path,
-                                                   std::uint64_t most_bytes);
 
 } // namespace lamella
