@@ -60,4 +60,11 @@ void Deflater::append_piece(std::string_view bytes, std::string& out) {
     }
 }
 
+std::string deflated(std::string_view bytes) {
+    std::string stream;
+    Deflater().append_piece(bytes, stream);
+    stream += deflate_end;
+    return stream;
+}
+
 } // namespace lamella

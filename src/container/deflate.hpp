@@ -36,4 +36,7 @@ class Deflater {
 /// What stands after the last piece.
 inline constexpr std::string_view deflate_end{"\x03\x00", 2};
 
+/// A whole raw Deflate stream.
+[[nodiscard]] std::string deflated(std::string_view bytes);
+
 } // namespace lamella

@@ -7,7 +7,6 @@
 
 #include "container/inflate.hpp"
 #include "container/text_place.hpp"
-#include "container/zip_format.hpp"
 #include "core/pages.hpp"
 
 #include <fmt/format.h>
@@ -23,12 +22,6 @@ namespace lamella {
 
 namespace {
 
-constexpr std::uint32_t entry_mark = 0x04034b50;
-constexpr std::uint32_t directory_mark = 0x02014b50;
-constexpr std::uint32_t end_mark = 0x06054b50;
-constexpr std::uint32_t end64_mark = 0x06064b50;
-constexpr std::uint32_t end64_place_mark = 0x07064b50;
-
 constexpr std::size_t entry_head = 30;
 constexpr std::size_t directory_head = 46;
 constexpr std::size_t end_head = 22;
@@ -38,9 +31,6 @@ constexpr std::size_t end64_place_size = 20;
 constexpr unsigned flag_encrypted = 1U;
 constexpr unsigned flag_strongly_encrypted = 1U << 6;
 constexpr unsigned flag_masked = 1U << 13;
-
-constexpr std::uint16_t stored = 0;
-constexpr std::uint16_t deflated = 8;
 
 constexpr std::size_t longest_shown_name = 200;
 
@@ -108,7 +98,7 @@ class DirectoryFinder {
         directory.trailing = bytes_.size() - end - end_head - u16(bytes_, end + 20);
         std::uint64_t directory_end = end;
         if (end >= end64_place_size &&
-            has_mark(bytes_, end - end64_place_size, end64_place_mark, end64_place_size)) {
+            has_mark(bytes_, end - end64_place_size, zip_end64_place_mark, end64_place_size)) {
             directory_end = u64(bytes_, end - end64_place_size + 8);
             read_end64(directory_end, directory);
         } else if (u16(bytes_, end + 4) != 0 || u16(bytes_, end + 6) != 0 ||
@@ -138,7 +128,7 @@ class DirectoryFinder {
             const std::size_t last = bytes_.size() - end_head;
             const std::size_t first = last - std::min<std::size_t>(last, full16);
             for (std::size_t at = last + 1; at-- > first;) {
-                if (!has_mark(bytes_, at, end_mark, end_head))
+                if (!has_mark(bytes_, at, zip_end_mark, end_head))
                     continue;
                 const std::size_t end = at + end_head + u16(bytes_, at + 20);
                 if (end == bytes_.size())
@@ -153,7 +143,7 @@ class DirectoryFinder {
     }
 
     void read_end64(std::uint64_t at, Directory& directory) const {
-        if (!has_mark(bytes_, at, end64_mark, end64_head))
+        if (!has_mark(bytes_, at, zip_end64_mark, end64_head))
             fail(fmt::format("the zip archive should have its (64-bit) end at byte {}, but has not", at));
         directory.entries = u64(bytes_, at + 32);
         directory.size = u64(bytes_, at + 40);
@@ -201,11 +191,11 @@ void ZipReader::read_directory() {
     const std::uint64_t end = directory.place + directory.size;
     entries_.reserve(directory.entries);
     for (std::uint64_t i = 0; i < directory.entries; ++i) {
-        if (end - at < directory_head || u32(bytes, at) != directory_mark)
+        if (end - at < directory_head || u32(bytes, at) != zip_directory_mark)
             fail(at, fmt::format("entry {} of {} of the zip directory is missing", i + 1, directory.entries));
         ZipEntry entry;
         entry.flags = static_cast<std::uint16_t>(u16(bytes, at + 8));
-        entry.method = static_cast<std::uint16_t>(u16(bytes, at + 10));
+        entry.method = static_cast<ZipMethod>(u16(bytes, at + 10));
         entry.crc = static_cast<std::uint32_t>(u32(bytes, at + 16));
         entry.packed_size = u32(bytes, at + 20);
         entry.size = u32(bytes, at + 24);
@@ -249,7 +239,7 @@ void ZipReader::settle_places(std::uint64_t directory_place) {
     spans.reserve(entries_.size());
     for (ZipEntry& entry : entries_) {
         const std::uint64_t at = entry.place;
-        if (!has_mark(bytes.substr(0, directory_place), at, entry_mark, entry_head))
+        if (!has_mark(bytes.substr(0, directory_place), at, zip_entry_mark, entry_head))
             fail(entry, "does not begin where the directory says");
         const std::uint64_t name_size = u16(bytes, at + 26);
         const std::uint64_t extra_size = u16(bytes, at + 28);
@@ -264,7 +254,7 @@ void ZipReader::settle_places(std::uint64_t directory_place) {
         std::uint64_t packed_size = u32(bytes, at + 18);
         std::uint64_t size = u32(bytes, at + 22);
         const bool sizes_known = (flags & flag_sizes_behind) == 0;
-        if (u16(bytes, at + 8) != entry.method ||
+        if (static_cast<ZipMethod>(u16(bytes, at + 8)) != entry.method ||
             (sizes_known &&
              (!widen(bytes.substr(at + entry_head + name_size, extra_size), {&size, &packed_size}) ||
               size != entry.size || packed_size != entry.packed_size || u32(bytes, at + 14) != entry.crc)))
@@ -332,11 +322,12 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
     };
     if ((entry.flags & (flag_encrypted | flag_strongly_encrypted | flag_masked)) != 0)
         fail("is encrypted, which cannot be read; save the file without a password");
-    if (entry.method != stored && entry.method != deflated)
-        fail(fmt::format("is packed by method {}, expected 0 (stored) or 8 (Deflate)", entry.method));
+    if (entry.method != ZipMethod::stored && entry.method != ZipMethod::deflated)
+        fail(fmt::format("is packed by method {}, expected 0 (stored) or 8 (Deflate)",
+                         static_cast<unsigned>(entry.method)));
     // Before there is room for it: a few bytes must not reserve the memory of others.
-    if (entry.method == deflated ? entry.size / most_inflation > entry.packed_size
-                                 : entry.size != entry.packed_size)
+    if (entry.method == ZipMethod::deflated ? entry.size / most_inflation > entry.packed_size
+                                            : entry.size != entry.packed_size)
         fail(
             fmt::format("claims to hold {} bytes in {}, which is impossible", entry.size, entry.packed_size));
     const std::uint64_t before = unpacked_.fetch_add(entry.size);
@@ -348,7 +339,7 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
 
     const std::span<const std::byte> packed = source_.bytes.subspan(entry.place, entry.packed_size);
     ByteSource content{fmt::format("{}, part '{}'", source_.name, shown), {}, source_.owner};
-    if (entry.method == stored) {
+    if (entry.method == ZipMethod::stored) {
         content.bytes = packed;
     } else {
         const auto room = std::make_shared<PageArray<std::byte>>(entry.size);

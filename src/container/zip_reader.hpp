@@ -2,6 +2,7 @@
 
 // Reading zip archives that somebody may have made to do harm.
 
+#include "container/zip_format.hpp"
 #include "core/byte_source.hpp"
 
 #include <atomic>
@@ -11,16 +12,6 @@
 #include <vector>
 
 namespace lamella {
-
-struct ZipEntry {
-    std::string name; ///< with `/` between folders and none in front
-    std::uint64_t size = 0;
-    std::uint64_t packed_size = 0;
-    std::uint64_t place = 0; ///< of the packed bytes
-    std::uint32_t crc = 0;
-    std::uint16_t method = 0;
-    std::uint16_t flags = 0;
-};
 
 /// Whether the bytes begin as a zip archive does.
 [[nodiscard]] bool is_zip(std::string_view bytes) noexcept;

@@ -2,6 +2,7 @@
 
 // Writing zip archives from front to back.
 
+#include "container/zip_format.hpp"
 #include "core/atomic_file.hpp"
 
 #include <cstdint>
@@ -10,8 +11,6 @@
 #include <vector>
 
 namespace lamella {
-
-enum class ZipMethod : std::uint16_t { stored = 0, deflated = 8 };
 
 /// Bytes of an entry that were made ready beforehand, perhaps on another thread.
 struct ZipPiece {
@@ -57,20 +56,11 @@ class ZipWriter {
     [[nodiscard]] std::uint64_t bytes() const noexcept { return file_.bytes(); }
 
   private:
-    struct Entry {
-        std::string name;
-        ZipMethod method = ZipMethod::stored;
-        bool sizes_behind = false;
-        std::uint32_t crc = 0;
-        std::uint64_t stored_size = 0;
-        std::uint64_t size = 0;
-        std::uint64_t place = 0;
-    };
-
+    ZipEntry& add_entry(std::string_view name, ZipMethod method, bool sizes_behind);
     void append_directory();
 
     AtomicFile file_;
-    std::vector<Entry> entries_;
+    std::vector<ZipEntry> entries_;
     bool open_ = false; ///< an entry has begun and not ended
     bool open_is_large_ = false;
 };

@@ -9,6 +9,7 @@
 #include "lamella/polygon/simplify.hpp"
 
 #include "container/base64.hpp"
+#include "container/deflate.hpp"
 #include "core/atomic_file.hpp"
 #include "write/ordered_writer.hpp"
 #include "write/page_bytes.hpp"

@@ -2,7 +2,6 @@
 
 #include "lamella/polygon/fill.hpp"
 
-#include "container/deflate.hpp"
 #include "container/inflate.hpp"
 #include "write/png.hpp"
 

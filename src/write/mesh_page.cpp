@@ -2,6 +2,7 @@
 #include "lamella/write/layer_page.hpp"
 
 #include "container/base64.hpp"
+#include "container/deflate.hpp"
 #include "core/atomic_file.hpp"
 #include "core/executor.hpp"
 #include "mesh/edge_survey.hpp"

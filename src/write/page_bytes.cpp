@@ -2,8 +2,6 @@
 
 #include "lamella/contour/measure.hpp"
 
-#include "container/deflate.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -111,13 +109,6 @@ NumberBytes layer_numbers(std::span<const Layer> layers, std::span<const PartInf
     Walk walk(grid.origin, out);
     for (const GridPoint& p : snapping.snap_points(places, layers.empty() ? 0 : layers.front().index))
         walk.to(p);
-    return out;
-}
-
-std::string deflated(std::string_view bytes) {
-    std::string out;
-    Deflater().append_piece(bytes, out);
-    out += deflate_end;
     return out;
 }
 

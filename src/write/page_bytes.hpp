@@ -55,7 +55,4 @@ struct PageGrid {
                                         std::span<const Point2> places, const PageGrid& grid,
                                         std::uint64_t& shown);
 
-/// Compressed (raw Deflate).
-[[nodiscard]] std::string deflated(std::string_view bytes);
-
 } // namespace lamella

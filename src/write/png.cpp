@@ -117,8 +117,7 @@ void append_png(const ColourPicture& picture, ByteBuffer& out) {
         above = here;
     }
     std::string stream("\x78\x01", 2); // Deflate, window of 32 KB, the fastest kind
-    Deflater().append_piece(rows, stream);
-    stream += deflate_end;
+    stream += deflated(rows);
     const std::array<char, 4> checksum = big_endian(adler32_of(rows));
     stream.append(checksum.data(), checksum.size());
     append_head(picture.width, picture.height, colour_and_alpha, out);
