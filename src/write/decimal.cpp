@@ -30,6 +30,11 @@ char* put_shortest(char* out, double value) noexcept {
     return std::to_chars(out, out + most_double_digits, value).ptr;
 }
 
+std::string shortest_text(double value) {
+    std::array<char, most_double_digits> text{};
+    return {text.data(), put_shortest(text.data(), value + 0.0)};
+}
+
 std::string exact_decimal_text(double value) {
     std::array<char, longest> buffer{};
     const auto result =

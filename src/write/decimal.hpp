@@ -103,6 +103,8 @@ inline constexpr std::size_t most_double_digits = 24;
 /// Writes the shortest text that reads back as the same number, with an exponent where that is shorter, and
 /// returns the end.
 char* put_shortest(char* out, double value) noexcept;
+/// The same as a string; zero without a sign.
+[[nodiscard]] std::string shortest_text(double value);
 
 /// The shortest text that reads back as the same number, without an exponent and with at least one decimal.
 [[nodiscard]] std::string exact_decimal_text(double value);

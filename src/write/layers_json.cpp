@@ -5,17 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string_view>
 
 namespace lamella {
 
 namespace {
-
-std::string exact(double value) {
-    std::array<char, most_double_digits> text{};
-    return {text.data(), put_shortest(text.data(), value + 0.0)};
-}
 
 // "[1,2,3.5,4]": x and y in turn.
 void put_numbers(std::span<const Point2> points, ByteBuffer& out) {
@@ -52,8 +46,8 @@ class LayersJsonWriter final : public SequentialWriter {
 
     std::string layer_head(const PlanePlace& place) override {
         return fmt::format("{}{{\"index\":{},\"z\":{},\"bottom\":{},\"top\":{},\"parts\":[",
-                           place.position == 0 ? "\n" : ",\n", place.index, exact(place.z),
-                           exact(place.bottom), exact(place.top));
+                           place.position == 0 ? "\n" : ",\n", place.index, shortest_text(place.z),
+                           shortest_text(place.bottom), shortest_text(place.top));
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {

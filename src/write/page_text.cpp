@@ -3,7 +3,6 @@
 #include "lamella/core/error.hpp"
 
 #include "write/decimal.hpp"
-#include "write/quoted.hpp"
 
 #include <fmt/format.h>
 
@@ -17,19 +16,8 @@ namespace {
 
 constexpr std::string_view place_of_data = "<!--lamella-data-->";
 
-std::string_view tone_name(Tone tone) {
-    switch (tone) {
-    case Tone::good:
-        return "good";
-    case Tone::warning:
-        return "warning";
-    case Tone::bad:
-        return "bad";
-    case Tone::plain:
-        break;
-    }
-    return "plain";
-}
+/// In the order of Tone.
+constexpr std::array<std::string_view, 4> tone_names{"plain", "good", "warning", "bad"};
 
 /// [a,b,c] of what `tell` makes of each.
 template <class Range, class Tell>
@@ -49,7 +37,7 @@ std::string point_json(const Point3& p) {
 
 std::string fact_json(const PageFact& fact) {
     return fmt::format(R"({{"name":{},"value":{},"tone":"{}"}})", page_quoted(fact.name),
-                       page_quoted(fact.value), tone_name(fact.tone));
+                       page_quoted(fact.value), tone_names.at(static_cast<std::size_t>(fact.tone)));
 }
 
 std::string section_json(const PageSection& section) {
@@ -75,22 +63,8 @@ PageFrame page_frame(const PageOptions& options) {
     return {viewer.substr(0, place), viewer.substr(place + place_of_data.size())};
 }
 
-std::string page_quoted(std::string_view text) {
-    std::string quoted;
-    for (const char c : json_quoted(text)) {
-        if (c == '<')
-            quoted += "\\u003c";
-        else
-            quoted += c;
-    }
-    return quoted;
-}
-
 std::string page_number(double value) {
-    if (!std::isfinite(value))
-        return "null";
-    std::array<char, most_double_digits> text{};
-    return {text.data(), put_shortest(text.data(), value + 0.0)};
+    return std::isfinite(value) ? shortest_text(value) : "null";
 }
 
 std::string page_box(const Box3& box) {

@@ -6,6 +6,8 @@
 #include "lamella/core/point.hpp"
 #include "lamella/write/layer_page.hpp"
 
+#include "write/quoted.hpp"
+
 #include <string>
 #include <string_view>
 
@@ -19,8 +21,6 @@ struct PageFrame {
 };
 [[nodiscard]] PageFrame page_frame(const PageOptions& options);
 
-/// A string of JSON that can stand in an element of a page: no tag begins in it.
-[[nodiscard]] std::string page_quoted(std::string_view text);
 /// The shortest text that reads back to the same number; null where it is not finite.
 [[nodiscard]] std::string page_number(double value);
 /// [[x,y,z],[x,y,z]], null for an empty box.

@@ -2,7 +2,9 @@
 
 #include "container/text_place.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 
 namespace lamella {
 
@@ -10,15 +12,20 @@ namespace {
 
 constexpr std::size_t longest_quote = std::size_t{1} << 16;
 
-template <class Escape>
-std::string escaped(std::string_view text, const Escape& escape) {
+struct Instead {
+    char of;
+    std::string_view text;
+};
+
+std::string escaped(std::string_view text, std::initializer_list<Instead> escapes) {
     std::string result;
     for (const char c : printable(text, longest_quote)) {
-        const std::string_view instead = escape(c);
-        if (instead.empty())
+        const Instead* const found = std::find_if(escapes.begin(), escapes.end(),
+                                                  [&](const Instead& escape) { return escape.of == c; });
+        if (found == escapes.end())
             result += c;
         else
-            result += instead;
+            result += found->text;
     }
     return result;
 }
@@ -26,29 +33,15 @@ std::string escaped(std::string_view text, const Escape& escape) {
 } // namespace
 
 std::string json_quoted(std::string_view text) {
-    return '"' +
-           escaped(text,
-                   [](char c) -> std::string_view { return c == '"'    ? "\\\""
-                                                           : c == '\\' ? "\\\\"
-                                                                       : ""; }) +
-           '"';
+    return '"' + escaped(text, {{'"', "\\\""}, {'\\', "\\\\"}}) + '"';
+}
+
+std::string page_quoted(std::string_view text) {
+    return '"' + escaped(text, {{'"', "\\\""}, {'\\', "\\\\"}, {'<', "\\u003c"}}) + '"';
 }
 
 std::string xml_escaped(std::string_view text) {
-    return escaped(text, [](char c) -> std::string_view {
-        switch (c) {
-        case '&':
-            return "&amp;";
-        case '<':
-            return "&lt;";
-        case '>':
-            return "&gt;";
-        case '"':
-            return "&quot;";
-        default:
-            return "";
-        }
-    });
+    return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
 }
 
 } // namespace lamella

@@ -9,6 +9,8 @@ namespace lamella {
 
 /// With quotation marks.
 [[nodiscard]] std::string json_quoted(std::string_view text);
+/// The same, such that it can stand in an element of a page: no tag begins in it.
+[[nodiscard]] std::string page_quoted(std::string_view text);
 /// Without quotation marks, for text and attributes.
 [[nodiscard]] std::string xml_escaped(std::string_view text);
 
