@@ -307,17 +307,6 @@ constexpr std::int64_t most_short = 32767;
 // file may hold both.
 constexpr std::size_t most_counted = std::numeric_limits<std::uint16_t>::max();
 
-// The next of 1, 2, 5, 10, 20, 50 ... that is not below `needed`.
-double round_units(double needed) {
-    double power = std::pow(10.0, std::floor(std::log10(needed)));
-    for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
-        // So that 0.002 is not taken to lie above 2 * 0.001.
-        if (factor * power >= needed * (1 - 1e-9))
-            return factor * power;
-    }
-    return needed;
-}
-
 class ShortWriter final : public CommonLayerWriter {
   public:
     ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
@@ -350,11 +339,13 @@ class ShortWriter final : public CommonLayerWriter {
                 fmt::format("{} reaches {} = {:.6g} mm, but the short form has no negative numbers; move "
                             "the part to positive coordinates or use the long form",
                             what, axis, mm));
+        // So that 0.002 is not taken to lie above 2 * 0.001.
+        const double needed = mm / most_short * (1 - 1e-9);
         throw Error(
             ErrorKind::usage,
             fmt::format("{} reaches {} = {:.6g} mm, which is {} units of {} mm, but the short form ends at "
                         "{}; use units of {:g} mm or the long form",
-                        what, axis, mm, value, units, most_short, round_units(mm / most_short)));
+                        what, axis, mm, value, units, most_short, round_step(needed)));
     }
 
     static std::int64_t whole_units(double mm, double units) {

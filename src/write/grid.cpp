@@ -31,6 +31,15 @@ void check_units(double units) {
                                 units, least_units, most_units));
 }
 
+double round_step(double least) noexcept {
+    const double decade = std::pow(10, std::floor(std::log10(least)));
+    // The last one is for a logarithm that was rounded up.
+    for (const double digit : {1.0, 2.0, 5.0})
+        if (digit * decade >= least)
+            return digit * decade;
+    return 10 * decade;
+}
+
 double grid_area(std::span<const GridPoint> ring) noexcept {
     if (ring.size() < 3)
         return 0;

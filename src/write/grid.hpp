@@ -26,6 +26,9 @@ inline constexpr double text_step_mm = text_rounding.step_mm;
 /// Throws Error{usage} for units of LayerWriteOptions that no file can have.
 void check_units(double units);
 
+/// The smallest of 1, 2 or 5 times a power of ten that is at least this positive number.
+[[nodiscard]] double round_step(double least) noexcept;
+
 /// Signed area of a ring in square steps.
 [[nodiscard]] double grid_area(std::span<const GridPoint> ring) noexcept;
 

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,6 @@ namespace lamella {
 namespace {
 
 constexpr unsigned finest = 16; // halvings of the longest edge
-constexpr std::uint32_t unseen = 0xffffffff;
 
 /// The cube that a point lies in, in cubes from the corner of the box.
 using Cell = std::array<std::uint32_t, 3>;
@@ -74,37 +74,23 @@ bool keeps_its_corners(const std::array<std::uint32_t, 3>& triangle, const std::
     return a != b && b != c && c != a;
 }
 
-/// For each vertex the first one, by number, in the same cube.
-std::vector<std::uint32_t> representatives(const std::vector<Cell>& cells) {
-    std::vector<std::uint32_t> order(cells.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::pair(cells[a], a) < std::pair(cells[b], b);
-    });
-    std::vector<std::uint32_t> first(cells.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        first[order[i]] = i > 0 && cells[order[i]] == cells[order[i - 1]] ? first[order[i - 1]] : order[i];
-    return first;
-}
-
 CoarseMesh coarse(const IndexedMesh& mesh, const std::vector<Cell>& cells, const Shells& shells) {
-    const std::vector<std::uint32_t> first = representatives(cells);
-    std::vector<std::uint32_t> number(cells.size(), unseen);
+    static_assert(finest <= 16, "three places of a cell make one number");
+    std::unordered_map<std::uint64_t, std::uint32_t> numbers;
     CoarseMesh result;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (!keeps_its_corners(mesh.triangles[t], cells))
             continue;
-        std::array<std::uint32_t, 3> corners{};
+        std::array<std::uint32_t, 3>& corners = result.triangles.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
-            std::uint32_t& known = number[first[mesh.triangles[t][k]]];
-            if (known == unseen) {
-                known = static_cast<std::uint32_t>(result.vertices.size());
-                result.vertices.push_back(cells[mesh.triangles[t][k]]);
-            }
-            corners[k] = known;
+            const Cell& cell = cells[mesh.triangles[t][k]];
+            const std::uint64_t key = std::uint64_t{cell[0]} << 32U | cell[1] << 16U | cell[2];
+            const auto [known, is_new] =
+                numbers.try_emplace(key, static_cast<std::uint32_t>(result.vertices.size()));
+            if (is_new)
+                result.vertices.push_back(cell);
+            corners[k] = known->second;
         }
-        result.triangles.push_back(corners);
         result.shell.push_back(shells.of_triangle[t]);
     }
     return result;

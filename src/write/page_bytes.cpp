@@ -11,31 +11,23 @@ namespace lamella {
 
 namespace {
 
-/// Appends points as the way from one to the next.
-class Walk {
-  public:
-    Walk(GridPoint from, NumberBytes& out) : at_(from), out_(out) {}
-
-    void to(const GridPoint& p) {
-        out_.add_signed(p.x - at_.x);
-        out_.add_signed(p.y - at_.y);
-        at_ = p;
+/// Adds points as the way from one to the next, the first one counted from `at`.
+void add_way(GridPoint at, std::span<const GridPoint> points, NumberBytes& out) {
+    for (const GridPoint& p : points) {
+        out.add_signed(p.x - at.x);
+        out.add_signed(p.y - at.y);
+        at = p;
     }
+}
 
-  private:
-    GridPoint at_;
-    NumberBytes& out_;
-};
-
-/// Contours on the grid, one after the other in one array.
-struct SnappedContours {
-    std::vector<GridPoint> points;
-    std::vector<std::size_t> ends;
-    std::size_t rings = 0;
-};
-
-SnappedContours snapped(const Layer& layer, bool vectors, const WriterGrid& grid) {
-    SnappedContours result;
+/// Adds the counts of rings, chains and hatch lines, and the contours; returns how many points those have.
+std::uint64_t add_contours(const Layer& layer, bool vectors, const WriterGrid& grid, GridPoint origin,
+                           NumberBytes& out) {
+    NumberBytes contours;
+    std::uint64_t rings = 0;
+    std::uint64_t chains = 0;
+    std::uint64_t shown = 0;
+    GridPoint first = origin;
     std::vector<GridPoint> scratch;
     for (std::size_t i = 0; i < layer.contours(); ++i) {
         const bool closed = layer.closed(i);
@@ -47,23 +39,17 @@ SnappedContours snapped(const Layer& layer, bool vectors, const WriterGrid& grid
             points = grid.snap(contour, closed, closed ? ring_area(contour) : 0, layer.index, scratch);
         if (points.empty())
             continue;
-        result.points.insert(result.points.end(), points.begin(), points.end());
-        result.ends.push_back(result.points.size());
-        result.rings += closed ? 1 : 0;
+        ++(closed ? rings : chains);
+        shown += points.size();
+        contours.add(points.size());
+        add_way(first, points, contours);
+        first = points.front();
     }
-    return result;
-}
-
-void add_contours(const SnappedContours& contours, GridPoint origin, NumberBytes& out) {
-    GridPoint first = origin;
-    std::size_t begin = 0;
-    for (const std::size_t end : contours.ends) {
-        out.add(end - begin);
-        Walk walk(first, out);
-        first = contours.points[begin];
-        for (; begin < end; ++begin)
-            walk.to(contours.points[begin]);
-    }
+    out.add(rings);
+    out.add(chains);
+    out.add(layer.hatches.size() / 2);
+    out.append(contours);
+    return shown;
 }
 
 } // namespace
@@ -73,12 +59,7 @@ double page_step_mm(const Box3& box) {
     const double least = std::max(box.max.x - box.min.x, box.max.y - box.min.y) / steps;
     if (!(least > 0) || !std::isfinite(least))
         return 0.001;
-    const double decade = std::pow(10, std::floor(std::log10(least)));
-    // The last one is for a logarithm that was rounded up.
-    for (const double digit : {1.0, 2.0, 5.0})
-        if (digit * decade >= least)
-            return digit * decade;
-    return 10 * decade;
+    return round_step(least);
 }
 
 PageGrid page_grid(const Box3& box) {
@@ -95,20 +76,11 @@ NumberBytes layer_numbers(std::span<const Layer> layers, std::span<const PartInf
     shown = 0;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const Layer& layer = layers[i];
-        const SnappedContours contours = snapped(layer, parts[i].exposure.has_value(), snapping);
-        out.add(contours.rings);
-        out.add(contours.ends.size() - contours.rings);
-        out.add(layer.hatches.size() / 2);
-        add_contours(contours, grid.origin, out);
-        Walk walk(grid.origin, out);
-        for (const GridPoint& p : snapping.snap_points(layer.hatches.span(), layer.index))
-            walk.to(p);
-        shown += contours.points.size();
+        shown += add_contours(layer, parts[i].exposure.has_value(), snapping, grid.origin, out);
+        add_way(grid.origin, snapping.snap_points(layer.hatches.span(), layer.index), out);
     }
     out.add(places.size());
-    Walk walk(grid.origin, out);
-    for (const GridPoint& p : snapping.snap_points(places, layers.empty() ? 0 : layers.front().index))
-        walk.to(p);
+    add_way(grid.origin, snapping.snap_points(places, layers.empty() ? 0 : layers.front().index), out);
     return out;
 }
 

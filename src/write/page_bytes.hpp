@@ -27,6 +27,7 @@ class NumberBytes {
     void add_signed(std::int64_t value) {
         add((static_cast<std::uint64_t>(value) << 1U) ^ static_cast<std::uint64_t>(value >> 63U));
     }
+    void append(const NumberBytes& others) { bytes_ += others.bytes_; }
 
     [[nodiscard]] std::string_view view() const noexcept { return bytes_; }
 
