@@ -71,8 +71,8 @@ Facet facet(const TriangleSoup& soup, std::size_t i, std::uint64_t before = 0) {
 }
 
 std::string one_line(std::string text) {
-    for (char& c : text)
-        c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
     return text;
 }
 
@@ -100,14 +100,21 @@ void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put
     }
 }
 
-char* put_point(char* out, const Point3f& p) {
-    constexpr std::size_t longest_float = 16;
-    for (const float v : {p.x, p.y, p.z}) {
+/// The rest of a line: a blank before each number, the shortest text that reads back to it.
+template <class Number>
+char* put_rest_of_line(char* out, const std::array<Number, 3>& numbers) {
+    constexpr std::size_t longest_number = 24;
+    for (const Number number : numbers) {
         *out++ = ' ';
-        out = std::to_chars(out, out + longest_float, v).ptr;
+        out = std::to_chars(out, out + longest_number, number).ptr;
     }
     *out++ = '\n';
     return out;
+}
+
+template <class Point>
+auto coordinates(const Point& p) {
+    return std::array{p.x, p.y, p.z};
 }
 
 } // namespace
@@ -156,10 +163,10 @@ void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const st
     constexpr std::size_t longest_facet = 400;
     append_blocks(file, soup.size(), longest_facet, [&](char* at, std::size_t i) {
         const Facet f = facet(soup, i);
-        at = put_point(put_text(at, "facet normal"), f.normal);
+        at = put_rest_of_line(put_text(at, "facet normal"), coordinates(f.normal));
         at = put_text(at, "  outer loop\n");
         for (const Point3f& corner : f.corners)
-            at = put_point(put_text(at, "    vertex"), corner);
+            at = put_rest_of_line(put_text(at, "    vertex"), coordinates(corner));
         return put_text(at, "  endloop\nendfacet\n");
     });
     file.append("endsolid " + title + "\n");
@@ -176,7 +183,7 @@ void write_ply(const std::string& path, const IndexedMesh& mesh) {
                             "element face {2}\nproperty list uchar uint vertex_indices\nend_header\n",
                             mesh.vertices.size(), type, mesh.triangles.size()));
     append_blocks(file, mesh.vertices.size(), sizeof(Point3), [&](char* at, std::size_t i) {
-        for (const double v : {mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z})
+        for (const double v : coordinates(mesh.vertices[i]))
             at = single_precision ? put_value(at, static_cast<float>(v)) : put_value(at, v);
         return at;
     });
@@ -190,24 +197,13 @@ void write_ply(const std::string& path, const IndexedMesh& mesh) {
 void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name) {
     AtomicFile file(path);
     file.append(fmt::format("# written by Lamella, millimetres\no {}\n", one_line(name)));
-    constexpr std::size_t longest_number = 25; // with the blank before it
-    append_blocks(file, mesh.vertices.size(), 2 + 3 * longest_number, [&](char* at, std::size_t i) {
-        *at++ = 'v';
-        for (const double v : {mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z}) {
-            *at++ = ' ';
-            at = std::to_chars(at, at + longest_number, v).ptr;
-        }
-        *at++ = '\n';
-        return at;
+    constexpr std::size_t longest_line = 80;
+    append_blocks(file, mesh.vertices.size(), longest_line, [&](char* at, std::size_t i) {
+        return put_rest_of_line(put_text(at, "v"), coordinates(mesh.vertices[i]));
     });
-    append_blocks(file, mesh.triangles.size(), 2 + 3 * longest_number, [&](char* at, std::size_t i) {
-        *at++ = 'f';
-        for (const std::uint32_t v : mesh.triangles[i]) {
-            *at++ = ' ';
-            at = std::to_chars(at, at + longest_number, std::uint64_t{v} + 1).ptr;
-        }
-        *at++ = '\n';
-        return at;
+    append_blocks(file, mesh.triangles.size(), longest_line, [&](char* at, std::size_t i) {
+        const auto& [a, b, c] = mesh.triangles[i]; // which count from 1 here
+        return put_rest_of_line(put_text(at, "f"), std::array{a + 1ULL, b + 1ULL, c + 1ULL});
     });
     file.commit();
 }
