@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -106,50 +107,27 @@ LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, doubl
             any_repeats(out, points.size())};
 }
 
-FloatPoint load(const char* points, std::size_t i) {
-    FloatPoint p;
-    std::memcpy(&p, points + i * sizeof p, sizeof p);
-    return p;
-}
-
 // The signed area of a ring of such points.
 double area_of_floats(const char* points, std::size_t count) {
     std::vector<Point2> ring(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const FloatPoint p = load(points, i);
+        FloatPoint p;
+        std::memcpy(&p, points + i * sizeof p, sizeof p);
         ring[i] = {p.x, p.y};
     }
     return ring_area(ring);
 }
 
+// A point as it stands in a file, where numbers have no alignment.
+using StoredPoint = std::array<char, float_point_size>;
+
 // Removes points that rounding made equal to the one before, if there are any; returns how many stay.
-std::size_t without_repeats(char* points, std::size_t count, bool repeats, bool closed) {
-    const auto bits = [&](std::size_t i) {
-        std::uint64_t b = 0;
-        std::memcpy(&b, points + i * sizeof b, sizeof b);
-        return b;
-    };
-    std::size_t kept = count;
-    if (repeats) {
-        kept = 1;
-        for (std::size_t i = 1; i < count; ++i) {
-            const std::uint64_t b = bits(i);
-            if (b != bits(kept - 1))
-                std::memcpy(points + kept++ * sizeof b, &b, sizeof b);
-        }
-    }
-    while (closed && kept > 1 && bits(kept - 1) == bits(0))
+std::size_t without_repeats(std::span<StoredPoint> points, bool repeats, bool closed) {
+    const auto end = repeats ? std::unique(points.begin(), points.end()) : points.end();
+    auto kept = static_cast<std::size_t>(end - points.begin());
+    while (closed && kept > 1 && points[kept - 1] == points[0])
         --kept;
     return kept;
-}
-
-void reverse(char* points, std::size_t count) {
-    for (std::size_t i = 0, j = count - 1; i < j; ++i, --j) {
-        const FloatPoint a = load(points, i);
-        const FloatPoint b = load(points, j);
-        std::memcpy(points + i * sizeof b, &b, sizeof b);
-        std::memcpy(points + j * sizeof a, &a, sizeof a);
-    }
 }
 
 void check_range(const Rounded& rounded, std::uint64_t layer) {
@@ -195,7 +173,8 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
                                 char* out) const {
     const Rounded rounded = round_points(contour, per_mm_, out);
     check_range(rounded, layer);
-    const std::size_t count = without_repeats(out, contour.size(), rounded.repeats, closed);
+    const std::span points(reinterpret_cast<StoredPoint*>(out), contour.size());
+    const std::size_t count = without_repeats(points, rounded.repeats, closed);
     const bool lost = count < (closed ? 3U : 2U);
     if (is_noticed(last_place(rounded) / 2))
         loss_->add({largest_move(contour, per_mm_), contour.size() - count, lost}, layer);
@@ -206,7 +185,7 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
     // Only of a thin ring can rounding have turned the area over.
     const bool thin = !(std::abs(rounded.area_mm2) * per_mm_ * per_mm_ > moved_area(rounded, contour.size()));
     if (thin && rounded.area_mm2 * area_of_floats(out, count) < 0)
-        reverse(out, count);
+        std::reverse(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
     std::memcpy(out + count * float_point_size, out, float_point_size);
     return {count + 1, rounded.area_mm2};
 }
