@@ -10,6 +10,7 @@
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -27,6 +28,12 @@ template <class T>
 char* put_value(char* out, T value) noexcept {
     std::memcpy(out, &value, sizeof value);
     return out + sizeof value;
+}
+
+/// The same bytes as a string.
+template <class T>
+std::string bytes_of(T value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
 /// A byte array that grows. What lies beyond its end is not initialised.

@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace lamella {
@@ -210,28 +210,27 @@ class AsciiWriter final : public CommonLayerWriter {
     WriterGrid grid_;
 };
 
-constexpr std::size_t long_head = 14;
-
-char* put_long_head(char* out, int part, Direction direction, std::size_t points, std::uint64_t layer) {
-    if (points > std::size_t{std::numeric_limits<std::int32_t>::max()})
-        throw Error(
-            ErrorKind::limit,
-            fmt::format("layer {} has a contour of {} points; the format ends at 2^31 - 1", layer, points));
-    out = put_value(out, CommonLayerCommand::polyline_long);
-    out = put_value(out, std::int32_t{part});
-    out = put_value(out, static_cast<std::int32_t>(direction));
-    return put_value(out, static_cast<std::int32_t>(points));
+// What stands before the points of a polyline or, without a direction, of hatch lines.
+template <class Number>
+char* put_head(char* out, CommonLayerCommand command, int part, std::optional<Direction> direction,
+               std::size_t count) {
+    out = put_value(put_value(out, command), static_cast<Number>(part));
+    if (direction)
+        out = put_value(out, static_cast<Number>(*direction));
+    return put_value(out, static_cast<Number>(count));
 }
 
+constexpr std::size_t long_head = 14;
 constexpr std::size_t hatches_head = 10;
 
-char* put_hatches_head(char* out, int part, std::size_t hatches, std::uint64_t layer) {
-    if (hatches > std::size_t{std::numeric_limits<std::int32_t>::max()})
-        throw Error(ErrorKind::limit,
-                    fmt::format("layer {} has {} hatch lines; the format ends at 2^31 - 1", layer, hatches));
-    out = put_value(out, CommonLayerCommand::hatches_long);
-    out = put_value(out, std::int32_t{part});
-    return put_value(out, static_cast<std::int32_t>(hatches));
+char* put_long_head(char* out, int part, std::optional<Direction> direction, std::size_t count,
+                    std::uint64_t layer) {
+    if (count > std::size_t{std::numeric_limits<std::int32_t>::max()})
+        throw Error(ErrorKind::limit, fmt::format("layer {} has {}; the format ends at 2^31 - 1", layer,
+                                                  direction ? fmt::format("a contour of {} points", count)
+                                                            : fmt::format("{} hatch lines", count)));
+    const auto command = direction ? CommonLayerCommand::polyline_long : CommonLayerCommand::hatches_long;
+    return put_head<std::int32_t>(out, command, part, direction, count);
 }
 
 class LongWriter final : public CommonLayerWriter {
@@ -246,9 +245,7 @@ class LongWriter final : public CommonLayerWriter {
     static float height_of(double z, double units) { return static_cast<float>(z / units) + 0.0F; }
 
     static std::string layer_start(float height) {
-        std::array<char, 6> bytes{};
-        put_value(put_value(bytes.data(), CommonLayerCommand::layer_long), height);
-        return {bytes.data(), bytes.size()};
+        return bytes_of(CommonLayerCommand::layer_long) + bytes_of(height);
     }
 
     std::string layer_head(const PlanePlace& place) override {
@@ -278,7 +275,7 @@ class LongWriter final : public CommonLayerWriter {
         if (layer.hatches.empty())
             return;
         char* const head = out.room(hatches_head + layer.hatches.size() * float_point_size);
-        char* const points = put_hatches_head(head, part, layer.hatches.size() / 2, layer.index);
+        char* const points = put_long_head(head, part, {}, layer.hatches.size() / 2, layer.index);
         floats_.put_points(layer.hatches.span(), layer.index, points);
         out.end_at(points + layer.hatches.size() * float_point_size);
     }
@@ -355,10 +352,7 @@ class ShortWriter final : public CommonLayerWriter {
     }
 
     static std::string layer_start(std::int64_t height) {
-        std::array<char, 4> bytes{};
-        put_value(put_value(bytes.data(), CommonLayerCommand::layer_short),
-                  static_cast<std::uint16_t>(height));
-        return {bytes.data(), bytes.size()};
+        return bytes_of(CommonLayerCommand::layer_short) + bytes_of(static_cast<std::uint16_t>(height));
     }
 
     std::string layer_head(const PlanePlace& place) override {
@@ -378,10 +372,10 @@ class ShortWriter final : public CommonLayerWriter {
         for_each_part(parts, [&](const Layer& layer, int part) {
             for_each_on_grid(grid_, layer, sequence_of(part),
                              [&](std::span<const GridPoint> points, Direction direction) {
-                                 put_polyline(part, points, direction, layer.index, out);
+                                 put_points(part, points, direction, layer.index, out);
                              });
             if (!layer.hatches.empty())
-                put_hatches(part, grid_.snap_points(layer.hatches.span(), layer.index), layer.index, out);
+                put_points(part, grid_.snap_points(layer.hatches.span(), layer.index), {}, layer.index, out);
         });
     }
 
@@ -403,38 +397,21 @@ class ShortWriter final : public CommonLayerWriter {
         return put_value(put_value(at, static_cast<float>(p.x)), static_cast<float>(p.y));
     }
 
-    void put_hatches(int part, std::span<const GridPoint> points, std::uint64_t layer,
-                     ByteBuffer& out) const {
+    // A polyline or, without a direction, hatch lines.
+    void put_points(int part, std::span<const GridPoint> points, std::optional<Direction> direction,
+                    std::uint64_t layer, ByteBuffer& out) const {
         check_short(points, layer);
-        char* at = out.room(hatches_head + points.size() * float_point_size);
-        const bool counted =
-            points.size() / 2 <= most_counted && static_cast<std::size_t>(part) <= most_counted;
-        if (counted) {
-            at = put_value(at, CommonLayerCommand::hatches_short);
-            at = put_value(at, static_cast<std::uint16_t>(part));
-            at = put_value(at, static_cast<std::uint16_t>(points.size() / 2));
-        } else {
-            at = put_hatches_head(at, part, points.size() / 2, layer);
-        }
-        for (const GridPoint& p : points)
-            at = counted ? put_short(at, p) : put_long(at, p);
-        out.end_at(at);
-    }
-
-    void put_polyline(int part, std::span<const GridPoint> points, Direction direction, std::uint64_t layer,
-                      ByteBuffer& out) const {
-        check_short(points, layer);
-        const std::size_t listed = points.size() + (direction != Direction::open ? 1 : 0);
+        const bool closed = direction && *direction != Direction::open;
+        const std::size_t listed = points.size() + (closed ? 1 : 0);
+        const std::size_t count = direction ? listed : listed / 2;
         char* at = out.room(long_head + listed * float_point_size);
-        const bool counted = listed <= most_counted && static_cast<std::size_t>(part) <= most_counted;
-        if (counted) {
-            at = put_value(at, CommonLayerCommand::polyline_short);
-            at = put_value(at, static_cast<std::uint16_t>(part));
-            at = put_value(at, static_cast<std::uint16_t>(direction));
-            at = put_value(at, static_cast<std::uint16_t>(listed));
-        } else {
-            at = put_long_head(at, part, direction, listed, layer);
-        }
+        const bool counted = count <= most_counted && static_cast<std::size_t>(part) <= most_counted;
+        if (counted)
+            at = put_head<std::uint16_t>(
+                at, direction ? CommonLayerCommand::polyline_short : CommonLayerCommand::hatches_short, part,
+                direction, count);
+        else
+            at = put_long_head(at, part, direction, count, layer);
         for (std::size_t i = 0; i < listed; ++i) {
             const GridPoint& p = points[i < points.size() ? i : 0];
             at = counted ? put_short(at, p) : put_long(at, p);

@@ -39,7 +39,7 @@ std::string npy_head(std::string_view type, const std::string& shape, std::size_
 constexpr std::size_t head_size = 128;
 
 template <class T>
-std::string_view bytes_of(std::span<const T> values) {
+std::string_view bytes_in(std::span<const T> values) {
     return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
@@ -79,14 +79,14 @@ class NpzWriter final : public OrderedWriter {
         auto prepared = std::make_shared<Prepared>();
         for (const Layer& layer : parts) {
             prepared->points.push_back(layer.points);
-            prepared->crcs.push_back(crc32_of(bytes_of(layer.points.span())));
+            prepared->crcs.push_back(crc32_of(bytes_in(layer.points.span())));
             prepared->offsets.emplace_back(layer.offsets.begin() + 1, layer.offsets.end());
             prepared->counts.push_back({layer.contours(), layer.rings, layer.hatches});
         }
         return [this, prepared](const PlanePlace& place) {
             planes_.push_back(place);
             for (std::size_t part = 0; part < prepared->points.size(); ++part) {
-                const std::string_view bytes = bytes_of(prepared->points[part].span());
+                const std::string_view bytes = bytes_in(prepared->points[part].span());
                 zip_.append({bytes, bytes.size(), prepared->crcs[part]});
                 for (const std::uint64_t end : prepared->offsets[part])
                     offsets_.push_back(points_ + static_cast<std::int64_t>(end));
@@ -160,7 +160,7 @@ class NpzWriter final : public OrderedWriter {
     template <class T>
     void add_numbers(std::string_view name, std::string_view type, std::span<const T> values) {
         Array array(zip_, name, type, fmt::format("{},", values.size()), values.size_bytes());
-        array.add(bytes_of(values));
+        array.add(bytes_in(values));
         array.end();
     }
 
@@ -179,7 +179,7 @@ class NpzWriter final : public OrderedWriter {
         for (std::size_t i = 0; i < counts_.size(); ++i) {
             for (std::uint64_t k = 0; k < counts_[i].contours; ++k) {
                 const T number = value({layer_of(i), part_of(i), k < counts_[i].rings});
-                array.add(bytes_of(std::span(&number, 1)));
+                array.add(bytes_in(std::span(&number, 1)));
             }
         }
         array.end();
@@ -201,7 +201,7 @@ class NpzWriter final : public OrderedWriter {
         Array array(zip_, name, type, fmt::format("{},", texts.size()), 0);
         for (std::u32string& text : texts) {
             text.resize(longest, U'\0');
-            array.add(bytes_of(std::span<const char32_t>(text)));
+            array.add(bytes_in(std::span<const char32_t>(text)));
         }
         array.end();
     }
@@ -220,7 +220,7 @@ class NpzWriter final : public OrderedWriter {
         Array array(zip_, "hatches", "<f8", fmt::format("{}, 2, 2", layers.size()),
                     layers.size() * bytes_of_line);
         for (const PartPlane& counts : counts_)
-            array.add(bytes_of(counts.hatches.span()));
+            array.add(bytes_in(counts.hatches.span()));
         array.end();
         add_numbers<std::int64_t>("hatch_layer", "<i8", layers);
         add_numbers<std::int64_t>("hatch_part", "<i8", parts);

@@ -29,10 +29,6 @@ namespace {
 constexpr std::size_t most_text = 4096; ///< bytes of a label or name
 constexpr std::size_t position_size = sizeof(std::int64_t);
 
-std::string_view position_bytes(const std::uint64_t& position) {
-    return {reinterpret_cast<const char*>(&position), position_size};
-}
-
 /// The name of the parameters: contours further inwards have their number in it, for which there is no other
 /// place.
 std::string name_of_parameters(const Exposure& exposure) {
@@ -181,7 +177,7 @@ class OvfWriter final : public OrderedWriter {
         : OrderedWriter(info, {.open_chains = true, .hatches = true, .parameters = true}), box_(info.box),
           keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)), file_(path, Overwriting::yes) {
         file_.append(ovf::magic);
-        file_.append(position_bytes(0));
+        file_.append(bytes_of(std::int64_t{0}));
     }
 
     std::uint64_t bytes() const noexcept override { return file_.bytes(); }
@@ -223,7 +219,7 @@ class OvfWriter final : public OrderedWriter {
         file_.append(job.delimited());
         const std::uint64_t table_place = file_.bytes();
         file_.append(table.delimited());
-        file_.overwrite(ovf::magic.size(), position_bytes(table_place));
+        file_.overwrite(ovf::magic.size(), bytes_of(table_place));
         file_.commit();
     }
 
@@ -257,7 +253,7 @@ class OvfWriter final : public OrderedWriter {
         table.integer(ovf::table::shell, static_cast<std::int64_t>(shell_place));
         table.integers(ovf::table::positions, places);
 
-        file_.append(position_bytes(table_place));
+        file_.append(bytes_of(table_place));
         file_.append(blocks.bytes->view());
         assert(file_.bytes() == shell_place);
         file_.append(shell_bytes);

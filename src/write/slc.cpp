@@ -7,10 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -22,13 +20,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are written as memory has them");
 
 constexpr std::uint32_t no_more_layers = 0xFFFFFFFF;
-
-template <class T>
-void append(std::string& bytes, T value) {
-    std::array<char, sizeof value> raw{};
-    std::memcpy(raw.data(), &value, sizeof value);
-    bytes.append(raw.data(), raw.size());
-}
 
 float single(double mm) {
     return static_cast<float>(mm) + 0.0F;
@@ -60,7 +51,7 @@ class SlcWriter final : public SequentialWriter {
         constexpr float unused = 0;
         std::string table(1, '\1');
         for (const float value : {single(bottom), single(thickness), line_width_compensation, unused})
-            append(table, value);
+            table += bytes_of(value);
         return table;
     }
 
@@ -73,7 +64,7 @@ class SlcWriter final : public SequentialWriter {
                         fmt::format("layer {} is so thin that its bottom, z = {} mm, is that of the layer "
                                     "before in single precision",
                                     place.index, place.bottom));
-        append(bytes, single(place.bottom));
+        bytes += bytes_of(single(place.bottom));
         last_ = single(place.bottom);
         top_ = place.top;
         empty_ = false;
@@ -105,8 +96,8 @@ class SlcWriter final : public SequentialWriter {
 
     std::string tail() override {
         std::string bytes = empty_ ? sampling_table(bottom_, 0) : std::string();
-        append(bytes, single(top_));
-        append(bytes, no_more_layers);
+        bytes += bytes_of(single(top_));
+        bytes += bytes_of(no_more_layers);
         return bytes;
     }
 
@@ -116,8 +107,7 @@ class SlcWriter final : public SequentialWriter {
                         fmt::format("layer {} has {} points or contours at a place where the format counts "
                                     "to 2^32 - 2",
                                     layer, count));
-        const auto stored = static_cast<std::uint32_t>(count);
-        std::memcpy(out, &stored, sizeof stored);
+        put_value(out, static_cast<std::uint32_t>(count));
     }
 
     static constexpr std::size_t boundary_head = 2 * sizeof(std::uint32_t);
