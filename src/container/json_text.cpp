@@ -58,9 +58,13 @@ void JsonText::skip_blanks() {
         ++at_;
 }
 
-void JsonText::open(char bracket) {
+bool JsonText::is_next(char c) {
     skip_blanks();
-    if (at_ >= text_.size() || text_[at_] != bracket)
+    return at_ < text_.size() && text_[at_] == c;
+}
+
+void JsonText::open(char bracket) {
+    if (!is_next(bracket))
         fail(here(), bracket == '{' ? "an object is expected" : "an array is expected");
     if (++depth_ > deepest)
         fail(fmt::format("values nested deeper than {}", deepest), "no slice file is");
@@ -68,15 +72,13 @@ void JsonText::open(char bracket) {
 }
 
 void JsonText::expect(char c) {
-    skip_blanks();
-    if (at_ >= text_.size() || text_[at_] != c)
+    if (!is_next(c))
         fail(here(), fmt::format("'{}' is expected", c));
     ++at_;
 }
 
 bool JsonText::closes(char bracket, bool first) {
-    skip_blanks();
-    if (at_ < text_.size() && text_[at_] == bracket) {
+    if (is_next(bracket)) {
         ++at_;
         --depth_;
         return true;
@@ -122,8 +124,7 @@ void JsonText::append_escaped(std::string& to) {
 }
 
 std::string JsonText::string() {
-    skip_blanks();
-    if (at_ >= text_.size() || text_[at_] != '"')
+    if (!is_next('"'))
         fail(here(), "a string is expected");
     ++at_;
     std::string value;
@@ -158,13 +159,11 @@ double JsonText::number() {
 }
 
 void JsonText::skip() {
-    skip_blanks();
-    const char c = at_ < text_.size() ? text_[at_] : '\0';
-    if (c == '{') {
+    if (is_next('{')) {
         object([&](const std::string&) { skip(); });
-    } else if (c == '[') {
+    } else if (is_next('[')) {
         array([&] { skip(); });
-    } else if (c == '"') {
+    } else if (is_next('"')) {
         static_cast<void>(string());
     } else {
         for (const std::string_view word : {"true", "false", "null"}) {

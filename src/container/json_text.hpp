@@ -51,6 +51,8 @@ class JsonText {
 
   private:
     void skip_blanks();
+    /// Behind blanks.
+    [[nodiscard]] bool is_next(char c);
     void open(char bracket);
     void expect(char c);
     bool closes(char bracket, bool first);

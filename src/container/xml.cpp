@@ -59,15 +59,17 @@ class Parse {
     }
 
   private:
+    /// What Expat calls: call(parse), unless something was thrown before.
     template <class Call>
-    void guarded(const Call& call) {
-        if (error_)
+    static void guarded(void* data, const Call& call) {
+        Parse& parse = *static_cast<Parse*>(data);
+        if (parse.error_)
             return;
         try {
-            call();
+            call(parse);
         } catch (...) {
-            error_ = std::current_exception();
-            XML_StopParser(parser_.get(), XML_FALSE);
+            parse.error_ = std::current_exception();
+            XML_StopParser(parse.parser_.get(), XML_FALSE);
         }
     }
 
@@ -79,11 +81,8 @@ class Parse {
         return XML_GetCurrentLineNumber(parser_.get()) + skimmed_lines_;
     }
 
-    static Parse& self(void* data) { return *static_cast<Parse*>(data); }
-
     static void on_start(void* data, const XML_Char* name, const XML_Char** attributes) {
-        Parse& parse = self(data);
-        parse.guarded([&] {
+        guarded(data, [&](Parse& parse) {
             if (++parse.depth_ > deepest_element)
                 parse.fail(fmt::format("found elements nested deeper than {}; no file of this kind is",
                                        deepest_element));
@@ -97,8 +96,7 @@ class Parse {
     }
 
     static void on_end(void* data, const XML_Char* name) {
-        Parse& parse = self(data);
-        parse.guarded([&] {
+        guarded(data, [&](Parse& parse) {
             --parse.depth_;
             parse.note_tag();
             parse.handlers_.end(split(name));
@@ -106,20 +104,18 @@ class Parse {
     }
 
     static void on_text(void* data, const XML_Char* text, int size) {
-        Parse& parse = self(data);
-        parse.guarded([&] { parse.handlers_.text({text, static_cast<std::size_t>(size)}); });
+        guarded(data, [&](Parse& parse) { parse.handlers_.text({text, static_cast<std::size_t>(size)}); });
     }
 
     static void on_namespace(void* data, const XML_Char* prefix, const XML_Char* space) {
-        Parse& parse = self(data);
-        parse.guarded(
-            [&] { parse.handlers_.declare(prefix == nullptr ? "" : prefix, space == nullptr ? "" : space); });
+        guarded(data, [&](Parse& parse) {
+            parse.handlers_.declare(prefix == nullptr ? "" : prefix, space == nullptr ? "" : space);
+        });
     }
 
     static void on_doctype(void* data, const XML_Char*, const XML_Char*, const XML_Char*,
                            int has_internal_subset) {
-        Parse& parse = self(data);
-        parse.guarded([&] {
+        guarded(data, [&](Parse& parse) {
             if (parse.rules_.no_document_type)
                 parse.fail("found a document type (<!DOCTYPE ...>), which files of this kind must not have");
             // Drawing programs write a reference to the public definition of SVG, which is harmless as
@@ -130,8 +126,7 @@ class Parse {
     }
 
     static void on_declaration(void* data, const XML_Char*, const XML_Char* encoding, int) {
-        Parse& parse = self(data);
-        parse.guarded([&] {
+        guarded(data, [&](Parse& parse) {
             if (encoding == nullptr)
                 return;
             std::string upper = encoding;
