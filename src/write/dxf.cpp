@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <string_view>
 #include <vector>
 
@@ -69,16 +68,10 @@ class DxfWriter final : public SequentialWriter {
             constexpr std::size_t most_per_number = most_integer_digits + 6;
             char* at =
                 out.room(points.size() * (vertex.size() + 2 * most_per_number + 8 + vertex_end.size()));
-            const auto put = [&](std::string_view text) {
-                std::memcpy(at, text.data(), text.size());
-                at += text.size();
-            };
             for (const GridPoint& p : points) {
-                put(vertex);
-                at = put_real_thousandths(at, p.x);
-                put("\n 20\n");
-                at = put_real_thousandths(at, p.y);
-                put(vertex_end);
+                at = put_real_thousandths(put_text(at, vertex), p.x);
+                at = put_real_thousandths(put_text(at, "\n 20\n"), p.y);
+                at = put_text(at, vertex_end);
             }
             out.end_at(at);
             out.append(end);

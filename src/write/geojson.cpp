@@ -17,42 +17,6 @@ namespace lamella {
 
 namespace {
 
-/// Calls `ring(first, points)` for each ring that bounds material, on the grid: outer rings (`first`), and
-/// after each of them its holes. What the grid leaves nothing of is passed over, an outer ring with its
-/// holes.
-template <class Ring>
-void for_each_polygon(const Layer& layer, const Nesting& nesting, const WriterGrid& grid,
-                      std::vector<GridPoint>& scratch, const Ring& ring) {
-    const auto put = [&](std::size_t i, bool first) {
-        const auto points =
-            grid.snap(layer.contour(i), true, ring_area(layer.contour(i)), layer.index, scratch);
-        if (!points.empty())
-            ring(first, points);
-        return !points.empty();
-    };
-    for (const Polygon& polygon : polygons(nesting)) {
-        if (!put(polygon.outer, true))
-            continue;
-        for (const std::uint32_t hole : polygon.holes)
-            put(hole, false);
-    }
-}
-
-/// Calls `line(points, closed)` for what bounds no material: rings in nothing that run clockwise, rings
-/// without area, and open chains.
-template <class Line>
-void for_each_line(const Layer& layer, const Nesting& nesting, const WriterGrid& grid,
-                   std::vector<GridPoint>& scratch, const Line& line) {
-    for (std::size_t i = 0; i < layer.contours(); ++i) {
-        const bool closed = layer.closed(i);
-        if (closed && nesting.kind[i] != RingKind::misoriented && nesting.kind[i] != RingKind::flat)
-            continue;
-        const auto points = grid.snap(layer.contour(i), closed, 0, layer.index, scratch);
-        if (!points.empty())
-            line(points, closed);
-    }
-}
-
 // "[[1,2],[3.5,4],[1,2]]"; a ring ends with its first point once more.
 void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& out) {
     constexpr std::size_t per_point = 2 * (most_integer_digits + 6) + 4;
@@ -106,28 +70,52 @@ class GeoJsonWriter final : public SequentialWriter {
     void format_part(const Layer& layer, std::size_t part, ByteBuffer& out) const {
         const Nesting nested = nesting(layer);
         std::vector<GridPoint> scratch;
+        put_polygons(layer, part, nested, scratch, out);
+        put_lines(layer, part, nested, scratch, out);
+    }
+
+    // The rings that bound material: outer ones, and after each of them its holes. What the grid leaves
+    // nothing of is passed over, an outer ring with its holes.
+    void put_polygons(const Layer& layer, std::size_t part, const Nesting& nested,
+                      std::vector<GridPoint>& scratch, ByteBuffer& out) const {
+        const auto put_ring = [&](std::size_t i, std::string_view before) {
+            const auto points =
+                grid_.snap(layer.contour(i), true, ring_area(layer.contour(i)), layer.index, scratch);
+            if (points.empty())
+                return false;
+            out.append(before);
+            put_positions(points, true, out);
+            return true;
+        };
         put_feature(layer, part, "MultiPolygon", out);
         bool any = false;
-        for_each_polygon(layer, nested, grid_, scratch, [&](bool first, std::span<const GridPoint> points) {
-            if (first)
-                out.append(any ? "],[" : "[");
-            else
-                out.append(",");
-            put_positions(points, true, out);
+        for (const Polygon& polygon : polygons(nested)) {
+            if (!put_ring(polygon.outer, any ? "],[" : "["))
+                continue;
             any = true;
-        });
+            for (const std::uint32_t hole : polygon.holes)
+                put_ring(hole, ",");
+        }
         out.append(any ? "]]}}" : "]}}");
-        any = false;
-        for_each_line(layer, nested, grid_, scratch, [&](std::span<const GridPoint> points, bool closed) {
-            if (any) {
-                out.append(",");
-            } else {
-                out.append(",\n");
+    }
+
+    // What bounds no material: rings in nothing that run clockwise, rings without area, and open chains.
+    void put_lines(const Layer& layer, std::size_t part, const Nesting& nested,
+                   std::vector<GridPoint>& scratch, ByteBuffer& out) const {
+        bool any = false;
+        for (std::size_t i = 0; i < layer.contours(); ++i) {
+            const bool closed = layer.closed(i);
+            if (closed && nested.kind[i] != RingKind::misoriented && nested.kind[i] != RingKind::flat)
+                continue;
+            const auto points = grid_.snap(layer.contour(i), closed, 0, layer.index, scratch);
+            if (points.empty())
+                continue;
+            out.append(any ? "," : ",\n");
+            if (!any)
                 put_feature(layer, part, "MultiLineString", out);
-            }
             put_positions(points, closed, out);
             any = true;
-        });
+        }
         if (any)
             out.append("]}}");
     }
