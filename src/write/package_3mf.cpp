@@ -10,18 +10,28 @@
 
 namespace lamella::package_3mf {
 
-std::string content_types(std::string_view more) {
-    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                       "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
-                       "<Default Extension=\"rels\" "
-                       "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
-                       "<Default Extension=\"model\" "
-                       "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
-                       "{}</Types>\n",
-                       more);
+PackageWriter::PackageWriter(const std::string& path, const LayerFileInfo& info, Holds holds,
+                             std::string_view more_types)
+    : OrderedWriter(info, holds), zip_(path) {
+    zip_.add("[Content_Types].xml",
+             fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                         "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+                         "<Default Extension=\"rels\" "
+                         "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
+                         "<Default Extension=\"model\" "
+                         "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
+                         "{}</Types>\n",
+                         more_types),
+             ZipMethod::deflated);
+    zip_.add("_rels/.rels",
+             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+             "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+             "<Relationship Id=\"model\" Target=\"/3D/3dmodel.model\" "
+             "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n",
+             ZipMethod::deflated);
 }
 
-Piece Compression::piece(std::string_view text) {
+Piece PackageWriter::compressed(std::string_view text) {
     std::unique_ptr<Deflater> deflater;
     {
         const std::lock_guard lock(mutex_);
@@ -38,12 +48,6 @@ Piece Compression::piece(std::string_view text) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(deflater));
     return piece;
-}
-
-Piece Compression::whole(std::string_view text) {
-    Piece all = piece(text);
-    all.bytes += deflate_end;
-    return all;
 }
 
 std::string box_mesh(const Box3& box) {

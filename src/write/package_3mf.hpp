@@ -6,6 +6,7 @@
 
 #include "container/deflate.hpp"
 #include "container/zip_writer.hpp"
+#include "write/ordered_writer.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -16,16 +17,6 @@
 
 namespace lamella::package_3mf {
 
-/// Of relationships and the model; `more` are elements for parts of other types.
-[[nodiscard]] std::string content_types(std::string_view more = {});
-
-/// Which part is the model.
-inline constexpr std::string_view relations =
-    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-    "<Relationship Id=\"model\" Target=\"/3D/3dmodel.model\" "
-    "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
-
 /// Bytes of a part of the package, compressed.
 struct Piece {
     std::string bytes;
@@ -35,16 +26,25 @@ struct Piece {
     [[nodiscard]] ZipPiece in_zip() const { return {bytes, size, crc}; }
 };
 
-/// Deflaters that wait to be used again: each has some hundred kilobytes. For any number of threads.
-class Compression {
+/// A package under construction.
+class PackageWriter : public OrderedWriter {
   public:
-    /// One of several that make up a part.
-    [[nodiscard]] Piece piece(std::string_view text);
-    /// All of a part.
-    [[nodiscard]] Piece whole(std::string_view text);
+    [[nodiscard]] std::uint64_t bytes() const noexcept final { return zip_.bytes(); }
+
+  protected:
+    /// Begins it with what it says of its parts: relationships, the model, and `more_types`, which are
+    /// elements for parts of other types.
+    PackageWriter(const std::string& path, const LayerFileInfo& info, Holds holds,
+                  std::string_view more_types = {});
+
+    [[nodiscard]] ZipWriter& zip() noexcept { return zip_; }
+    /// One of several that make up a part. For any number of threads.
+    [[nodiscard]] Piece compressed(std::string_view text);
 
   private:
+    ZipWriter zip_;
     std::mutex mutex_;
+    /// They wait to be used again: each has some hundred kilobytes.
     std::vector<std::unique_ptr<Deflater>> idle_;
 };
 

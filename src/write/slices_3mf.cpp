@@ -5,12 +5,10 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
-#include "container/zip_writer.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
-#include "write/ordered_writer.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"
 
@@ -82,18 +80,14 @@ void put_slice(const Layer& layer, const WriterGrid& grid, ByteBuffer& out) {
     out.append("</s:slice>\n");
 }
 
-class Slices3mfWriter final : public OrderedWriter {
+class Slices3mfWriter final : public package_3mf::PackageWriter {
   public:
     Slices3mfWriter(const std::string& path, const LayerFileInfo& info)
-        : OrderedWriter(info, {.open_chains = false, .hatches = false}), info_(info), zip_(path),
+        : PackageWriter(path, info, {.open_chains = false, .hatches = false}), info_(info),
           later_(info.parts.size() - 1), last_top_(info.bottom) {
-        zip_.add("[Content_Types].xml", package_3mf::content_types(), ZipMethod::deflated);
-        zip_.add("_rels/.rels", package_3mf::relations, ZipMethod::deflated);
-        zip_.begin("3D/3dmodel.model", ZipMethod::deflated);
+        zip().begin("3D/3dmodel.model", ZipMethod::deflated);
         append(std::string(model_begin) + stack_begin(0));
     }
-
-    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
 
   private:
     static constexpr std::string_view stack_end = "</s:slicestack>\n";
@@ -104,7 +98,7 @@ class Slices3mfWriter final : public OrderedWriter {
         for (const Layer& layer : parts) {
             text->clear();
             put_slice(layer, grid_, *text);
-            pieces->push_back(compression_.piece(text->view()));
+            pieces->push_back(compressed(text->view()));
         }
         return [this, pieces](const PlanePlace& place) {
             if (!(place.top > last_top_))
@@ -113,7 +107,7 @@ class Slices3mfWriter final : public OrderedWriter {
                                         "of slices must ascend",
                                         place.index, place.top));
             last_top_ = place.top;
-            zip_.append(pieces->front().in_zip());
+            zip().append(pieces->front().in_zip());
             for (std::size_t part = 1; part < pieces->size(); ++part)
                 later_[part - 1].push_back(std::move((*pieces)[part]));
         };
@@ -124,7 +118,7 @@ class Slices3mfWriter final : public OrderedWriter {
         for (std::size_t part = 1; part <= later_.size(); ++part) {
             append(stack_begin(part));
             for (const package_3mf::Piece& piece : later_[part - 1])
-                zip_.append(piece.in_zip());
+                zip().append(piece.in_zip());
             append(stack_end);
         }
         std::string items;
@@ -138,8 +132,8 @@ class Slices3mfWriter final : public OrderedWriter {
             items += fmt::format("<item objectid=\"{}\"/>\n", object_id(part));
         }
         append(fmt::format("</resources>\n<build>\n{}</build>\n</model>\n", items));
-        zip_.end();
-        zip_.finish();
+        zip().end();
+        zip().finish();
     }
 
     [[nodiscard]] static std::size_t stack_id(std::size_t part) { return part + 1; }
@@ -149,12 +143,10 @@ class Slices3mfWriter final : public OrderedWriter {
                            decimal_text(info_.bottom));
     }
 
-    void append(std::string_view text) { zip_.append(compression_.piece(text).in_zip()); }
+    void append(std::string_view text) { zip().append(compressed(text).in_zip()); }
 
     LayerFileInfo info_;
-    ZipWriter zip_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
-    package_3mf::Compression compression_;
     /// The stacks of all parts but the first, which wait for the end of the first one.
     std::vector<std::vector<package_3mf::Piece>> later_;
     double last_top_;

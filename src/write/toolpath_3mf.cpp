@@ -6,13 +6,11 @@
 #include "lamella/core/error.hpp"
 
 #include "container/toolpath_3mf_format.hpp"
-#include "container/zip_writer.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
 #include "write/exposure_keys.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
-#include "write/ordered_writer.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"
 
@@ -89,11 +87,12 @@ std::string profile_text(const std::string& uuid, const std::string& name, const
         attribute("l:markdelay", set.mark_delay_us), attribute("l:jumpdelay", set.jump_delay_us));
 }
 
-class Toolpath3mfWriter final : public OrderedWriter {
+class Toolpath3mfWriter final : public package_3mf::PackageWriter {
   public:
     Toolpath3mfWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : OrderedWriter(info, {.open_chains = true, .hatches = true, .parameters = true}), info_(info),
-          keys_(info.parts), units_(options.units_mm), zip_(path), grid_(options.units_mm, &rounding_loss()),
+        : PackageWriter(path, info, {.open_chains = true, .hatches = true, .parameters = true},
+                        "<Default Extension=\"xml\" ContentType=\"application/xml\"/>"),
+          info_(info), keys_(info.parts), units_(options.units_mm), grid_(options.units_mm, &rounding_loss()),
           bottom_(whole_height(info.bottom)), last_top_(bottom_) {
         const std::string file = head_text(info);
         uuid_ = uuid_of("toolpath " + file);
@@ -104,19 +103,14 @@ class Toolpath3mfWriter final : public OrderedWriter {
         for (std::size_t i = 0; i < keys_.exposures.size() + (any_bare ? 1 : 0); ++i)
             profile_uuids_.push_back(uuid_of(fmt::format("profile {} {}", i, file)));
         layer_begin_ = layer_begin();
-        zip_.add("[Content_Types].xml",
-                 package_3mf::content_types("<Default Extension=\"xml\" ContentType=\"application/xml\"/>"),
-                 ZipMethod::deflated);
-        zip_.add("_rels/.rels", package_3mf::relations, ZipMethod::deflated);
     }
-
-    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
 
   private:
     Write formatted(std::span<const Layer> parts) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
         put_layer(parts, *text);
-        auto piece = std::make_shared<package_3mf::Piece>(compression_.whole(text->view()));
+        auto piece = std::make_shared<package_3mf::Piece>(compressed(text->view()));
+        piece->bytes += deflate_end;
         return [this, piece](const PlanePlace& place) {
             const std::int64_t height = whole_height(place.top);
             if (height <= last_top_)
@@ -127,7 +121,7 @@ class Toolpath3mfWriter final : public OrderedWriter {
                                 place.index, place.top, units_));
             last_top_ = height;
             const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", place.position + 1);
-            zip_.add_ready(name, ZipMethod::deflated, piece->in_zip());
+            zip().add_ready(name, ZipMethod::deflated, piece->in_zip());
             layers_ += fmt::format("<tp:toolpathlayer ztop=\"{}\" path=\"/{}\"/>\n", height, name);
             relations_ += fmt::format("<Relationship Id=\"layer{}\" Target=\"/{}\" Type=\"{}\"/>\n",
                                       place.position + 1, name, toolpath_3mf::layer_type);
@@ -135,13 +129,13 @@ class Toolpath3mfWriter final : public OrderedWriter {
     }
 
     void end_file() override {
-        zip_.add("3D/_rels/3dmodel.model.rels",
-                 fmt::format("{}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/"
-                             "relationships\">\n{}</Relationships>\n",
-                             xml_begin, relations_),
-                 ZipMethod::deflated);
-        zip_.add("3D/3dmodel.model", model(), ZipMethod::deflated);
-        zip_.finish();
+        zip().add("3D/_rels/3dmodel.model.rels",
+                  fmt::format("{}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/"
+                              "relationships\">\n{}</Relationships>\n",
+                              xml_begin, relations_),
+                  ZipMethod::deflated);
+        zip().add("3D/3dmodel.model", model(), ZipMethod::deflated);
+        zip().finish();
     }
 
     [[nodiscard]] std::int64_t whole_height(double z) const {
@@ -260,19 +254,15 @@ class Toolpath3mfWriter final : public OrderedWriter {
     [[nodiscard]] Box3 box_of(std::size_t part) const {
         Box3 box;
         for (std::size_t i = 0; i < keys_.keys.size(); ++i)
-            if (keys_.keys[i].part == part && !info_.parts[i].box.empty()) {
-                box.add(info_.parts[i].box.min);
-                box.add(info_.parts[i].box.max);
-            }
+            if (keys_.keys[i].part == part)
+                box.add(info_.parts[i].box);
         return box.empty() ? info_.box : box;
     }
 
     LayerFileInfo info_;
     ExposureKeys keys_;
     double units_;
-    ZipWriter zip_;
     WriterGrid grid_;
-    package_3mf::Compression compression_;
     std::string uuid_;
     std::vector<std::string> item_uuids_;    ///< of the parts of keys_
     std::vector<std::string> profile_uuids_; ///< of its exposures, then of what has no parameters
