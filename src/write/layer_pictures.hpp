@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/raster/picture.hpp"
 
+#include "container/zip_writer.hpp"
 #include "write/byte_buffer.hpp"
 
 #include <cstdint>
@@ -18,6 +19,8 @@ struct LayerPicture {
     std::shared_ptr<const ByteBuffer> file;
     std::uint32_t crc = 0; ///< of the file
     double covered = 0;    ///< pixels
+
+    [[nodiscard]] ZipPiece in_zip() const { return {file->view(), file->view().size(), crc}; }
 };
 
 /// Makes pictures of one kind. For any number of threads.

@@ -11,22 +11,21 @@ LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts)
                          parts.begin(), parts.end(), [](const PartInfo& part) { return !part.exposure; }))) {}
 
 PlaneExtras extras_of(std::span<const Layer> parts) {
-    PlaneExtras extras;
+    const double z = parts.front().z;
+    PlaneExtras extras{{0, z}, {0, z}};
     for (const Layer& layer : parts) {
-        extras.open_chains += layer.open_chains();
-        extras.hatches += layer.hatches.size() / 2;
-        extras.z = layer.z;
+        extras.open_chains.count += layer.open_chains();
+        extras.hatches.count += layer.hatches.size() / 2;
     }
     return extras;
 }
 
 void LeftOut::note(const PlaneExtras& plane) {
-    if (plane.open_chains != 0 && chains_.open_chains == 0)
-        chains_.z = plane.z;
-    chains_.open_chains += plane.open_chains;
-    if (plane.hatches != 0 && hatches_.hatches == 0)
-        hatches_.z = plane.z;
-    hatches_.hatches += plane.hatches;
+    const auto add = [](Extras& all, const Extras& more) {
+        all = {all.count + more.count, all.count == 0 ? more.z : all.z};
+    };
+    add(noted_.open_chains, plane.open_chains);
+    add(noted_.hatches, plane.hatches);
 }
 
 void LeftOut::note_label(std::string_view label, std::string_view written) {
@@ -40,16 +39,14 @@ void LeftOut::note_label(std::string_view label, std::string_view written) {
 
 std::vector<std::string> LeftOut::warnings() const {
     std::vector<std::string> lines = rounding_.warnings();
-    const auto say = [&](std::uint64_t count, const char* one, const char* many, double z) {
-        if (count != 0)
+    const auto say = [&](bool held, const Extras& extras, const char* one, const char* many) {
+        if (!held && extras.count != 0)
             lines.push_back(fmt::format("{} {} left out, the lowest at z = {:.6g} mm: the format has "
                                         "no place for such",
-                                        count, count == 1 ? one : many, z));
+                                        extras.count, extras.count == 1 ? one : many, extras.z));
     };
-    if (!holds_.open_chains)
-        say(chains_.open_chains, "open contour was", "open contours were", chains_.z);
-    if (!holds_.hatches)
-        say(hatches_.hatches, "hatch line was", "hatch lines were", hatches_.z);
+    say(holds_.open_chains, noted_.open_chains, "open contour was", "open contours were");
+    say(holds_.hatches, noted_.hatches, "hatch line was", "hatch lines were");
     if (changed_labels_ != 0)
         lines.push_back(
             fmt::format("{} changed, the first from \"{}\" to \"{}\": the format has no place for "

@@ -22,11 +22,16 @@ struct Holds {
     bool parameters = false; ///< of scan vectors, which it wants of each part
 };
 
-/// Open chains and hatches of one plane.
-struct PlaneExtras {
-    std::uint64_t open_chains = 0;
-    std::uint64_t hatches = 0;
+/// How many of a kind there are, and where the lowest of them lie.
+struct Extras {
+    std::uint64_t count = 0;
     double z = 0;
+};
+
+/// Open chains and hatches.
+struct PlaneExtras {
+    Extras open_chains;
+    Extras hatches;
 };
 
 [[nodiscard]] PlaneExtras extras_of(std::span<const Layer> parts);
@@ -47,8 +52,7 @@ class LeftOut {
   private:
     Holds holds_;
     std::uint64_t unexposed_; ///< parts without parameters
-    PlaneExtras chains_;      ///< all of them, and the lowest plane that has some
-    PlaneExtras hatches_;
+    PlaneExtras noted_;       ///< of all planes
     RoundingLoss rounding_;
     std::uint64_t changed_labels_ = 0;
     std::string first_label_; ///< of those, and

@@ -147,8 +147,7 @@ class PictureArchiveWriter final : public PictureStackWriter {
   private:
     void made(std::uint64_t, const LayerPicture&) override {}
     void add(std::uint64_t index, const LayerPicture& picture) override {
-        archive_.add_ready(picture_name(index), ZipMethod::stored,
-                           {picture.file->view(), picture.file->view().size(), picture.crc});
+        archive_.add_ready(picture_name(index), ZipMethod::stored, picture.in_zip());
     }
     void end(const std::string& manifest) override {
         archive_.add(manifest_name, manifest, ZipMethod::deflated);

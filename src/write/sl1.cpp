@@ -118,7 +118,7 @@ class Sl1Writer final : public OrderedWriter {
                 relief_.add(seen);
                 count(place.position, picture.covered * display_.pixel_mm2(), place.top - place.bottom);
                 archive_.add_ready(fmt::format("{}{:05}.png", job_, place.position), ZipMethod::stored,
-                                   {picture.file->view(), picture.file->view().size(), picture.crc});
+                                   picture.in_zip());
             };
     }
 
