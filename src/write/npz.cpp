@@ -70,28 +70,18 @@ class NpzWriter final : public OrderedWriter {
 
   private:
     Write formatted(std::span<const Layer> parts) override {
-        struct Prepared {
-            std::vector<PointArray> points;
-            std::vector<std::uint32_t> crcs;
-            std::vector<std::vector<std::uint64_t>> offsets;
-            std::vector<PartPlane> counts;
-        };
-        auto prepared = std::make_shared<Prepared>();
-        for (const Layer& layer : parts) {
-            prepared->points.push_back(layer.points);
-            prepared->crcs.push_back(crc32_of(bytes_in(layer.points.span())));
-            prepared->offsets.emplace_back(layer.offsets.begin() + 1, layer.offsets.end());
-            prepared->counts.push_back({layer.contours(), layer.rings, layer.hatches});
-        }
-        return [this, prepared](const PlanePlace& place) {
+        std::vector<std::pair<Layer, std::uint32_t>> layers; // each with the checksum of its points
+        for (const Layer& layer : parts)
+            layers.emplace_back(layer, crc32_of(bytes_in(layer.points.span())));
+        return [this, layers = std::move(layers)](const PlanePlace& place) {
             planes_.push_back(place);
-            for (std::size_t part = 0; part < prepared->points.size(); ++part) {
-                const std::string_view bytes = bytes_in(prepared->points[part].span());
-                zip_.append({bytes, bytes.size(), prepared->crcs[part]});
-                for (const std::uint64_t end : prepared->offsets[part])
-                    offsets_.push_back(points_ + static_cast<std::int64_t>(end));
-                points_ += static_cast<std::int64_t>(prepared->points[part].size());
-                counts_.push_back(std::move(prepared->counts[part]));
+            for (const auto& [layer, crc] : layers) {
+                const std::string_view bytes = bytes_in(layer.points.span());
+                zip_.append({bytes, bytes.size(), crc});
+                for (std::size_t i = 1; i < layer.offsets.size(); ++i)
+                    offsets_.push_back(points_ + static_cast<std::int64_t>(layer.offsets[i]));
+                points_ += static_cast<std::int64_t>(layer.points.size());
+                counts_.push_back({layer.contours(), layer.rings, layer.hatches});
             }
         };
     }
