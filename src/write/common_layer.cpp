@@ -100,17 +100,24 @@ void for_each_part(std::span<const Layer> parts, const Format& format) {
         format(parts[i], first_part + static_cast<int>(i));
 }
 
-// The same on a grid: calls put(points, direction) for what the grid leaves of each contour.
-template <class Put>
-void for_each_on_grid(const WriterGrid& grid, const Layer& layer, Sequence sequence, const Put& put) {
-    std::vector<GridPoint> scratch;
-    for_each_contour(layer, sequence, [&](std::span<const Point2> contour, bool closed) {
-        const double area = closed ? ring_area(contour) : 0;
-        const auto points = grid.snap(contour, closed, area, layer.index, scratch);
-        if (!points.empty())
-            put(points, closed ? direction_of(area) : Direction::open);
-    });
-}
+// What one command lists, on a grid: a polyline or, without a direction, hatch lines. Handed on by value, so
+// that compilers know that text which is written does not change it.
+struct Listed {
+    int part;
+    std::uint64_t layer;
+    std::span<const GridPoint> points;
+    std::optional<Direction> direction;
+
+    // The points of a ring end with the first one once more.
+    [[nodiscard]] std::size_t size() const {
+        return points.size() + (direction && *direction != Direction::open ? 1 : 0);
+    }
+    [[nodiscard]] const GridPoint& operator[](std::size_t i) const {
+        return points[i < points.size() ? i : 0];
+    }
+    // What stands in the command: points, or else lines.
+    [[nodiscard]] std::size_t count() const { return direction ? size() : size() / 2; }
+};
 
 // Heights are not on the grid of coordinates: a layer may be thinner than its unit.
 std::string position_text(double z, double units) {
@@ -134,6 +141,24 @@ class CommonLayerWriter : public SequentialWriter {
         return sequences_[static_cast<std::size_t>(part - first_part)];
     }
 
+    // Calls put(listed) for what the grid leaves of the contours of each part, and for its hatch lines.
+    template <class Put>
+    void for_each_on_grid(const WriterGrid& grid, std::span<const Layer> parts, const Put& put) const {
+        std::vector<GridPoint> scratch;
+        for_each_part(parts, [&](const Layer& layer, int part) {
+            for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
+                const double area = closed ? ring_area(contour) : 0;
+                const auto points = grid.snap(contour, closed, area, layer.index, scratch);
+                if (!points.empty())
+                    put(Listed{part, layer.index, points, closed ? direction_of(area) : Direction::open});
+            });
+            if (!layer.hatches.empty()) {
+                const std::vector<GridPoint> ends = grid.snap_points(layer.hatches.span(), layer.index);
+                put(Listed{part, layer.index, ends, {}});
+            }
+        });
+    }
+
   private:
     std::vector<Sequence> sequences_;
 };
@@ -152,50 +177,24 @@ class AsciiWriter final : public CommonLayerWriter {
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for_each_part(parts, [&](const Layer& layer, int part) {
-            for_each_on_grid(grid_, layer, sequence_of(part),
-                             [&](std::span<const GridPoint> points, Direction direction) {
-                                 put_polyline(part, points, direction, out);
-                             });
-            if (!layer.hatches.empty())
-                put_hatches(part, grid_.snap_points(layer.hatches.span(), layer.index), out);
-        });
+        for_each_on_grid(grid_, parts, [&](const Listed& listed) { put_command(listed, out); });
     }
 
     std::string tail() override { return "$$GEOMETRYEND\n"; }
 
-    static void put_polyline(int part, std::span<const GridPoint> points, Direction direction,
-                             ByteBuffer& out) {
-        const bool closed = direction != Direction::open;
-        char* at = put_command("$$POLYLINE/", part, points.size() + 1, out);
-        *at++ = ',';
-        *at++ = static_cast<char>('0' + static_cast<int>(direction));
-        *at++ = ',';
-        at = put_integer(at, std::uint64_t{points.size() + (closed ? 1 : 0)});
-        for (const GridPoint& p : points)
-            at = put_point(at, p);
-        if (closed)
-            at = put_point(at, points.front());
-        *at++ = '\n';
-        out.end_at(at);
-    }
-
-    static void put_hatches(int part, std::span<const GridPoint> points, ByteBuffer& out) {
-        char* at = put_command("$$HATCHES/", part, points.size(), out);
-        *at++ = ',';
-        at = put_integer(at, std::uint64_t{points.size() / 2});
-        for (const GridPoint& p : points)
-            at = put_point(at, p);
-        *at++ = '\n';
-        out.end_at(at);
-    }
-
-    // With room for so many points, a direction and a count.
-    static char* put_command(std::string_view command, int part, std::size_t points, ByteBuffer& out) {
+    static void put_command(Listed listed, ByteBuffer& out) {
         // A comma or the end, sign, digits and ".0".
         constexpr std::size_t per_number = most_integer_digits + 4;
-        char* const at = out.room(command.size() + (points + 2) * 2 * per_number);
-        return put_integer(std::copy(command.begin(), command.end(), at), static_cast<std::uint64_t>(part));
+        constexpr std::string_view command = "$$POLYLINE/";
+        char* at = out.room(command.size() + (listed.size() + 2) * 2 * per_number);
+        at = put_text(at, listed.direction ? command : "$$HATCHES/");
+        at = put_integer(at, static_cast<std::uint64_t>(listed.part));
+        if (listed.direction)
+            at = put_integer(put_text(at, ","), static_cast<std::uint64_t>(*listed.direction));
+        at = put_integer(put_text(at, ","), std::uint64_t{listed.count()});
+        for (std::size_t i = 0, n = listed.size(); i < n; ++i)
+            at = put_point(at, listed[i]);
+        out.end_at(put_text(at, "\n"));
     }
 
     // A real number has a decimal point.
@@ -369,14 +368,7 @@ class ShortWriter final : public CommonLayerWriter {
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for_each_part(parts, [&](const Layer& layer, int part) {
-            for_each_on_grid(grid_, layer, sequence_of(part),
-                             [&](std::span<const GridPoint> points, Direction direction) {
-                                 put_points(part, points, direction, layer.index, out);
-                             });
-            if (!layer.hatches.empty())
-                put_points(part, grid_.snap_points(layer.hatches.span(), layer.index), {}, layer.index, out);
-        });
+        for_each_on_grid(grid_, parts, [&](const Listed& listed) { put_command(listed, out); });
     }
 
     void check_short(std::span<const GridPoint> points, std::uint64_t layer) const {
@@ -397,14 +389,11 @@ class ShortWriter final : public CommonLayerWriter {
         return put_value(put_value(at, static_cast<float>(p.x)), static_cast<float>(p.y));
     }
 
-    // A polyline or, without a direction, hatch lines.
-    void put_points(int part, std::span<const GridPoint> points, std::optional<Direction> direction,
-                    std::uint64_t layer, ByteBuffer& out) const {
+    void put_command(Listed listed, ByteBuffer& out) const {
+        const auto [part, layer, points, direction] = listed;
         check_short(points, layer);
-        const bool closed = direction && *direction != Direction::open;
-        const std::size_t listed = points.size() + (closed ? 1 : 0);
-        const std::size_t count = direction ? listed : listed / 2;
-        char* at = out.room(long_head + listed * float_point_size);
+        const std::size_t count = listed.count();
+        char* at = out.room(long_head + listed.size() * float_point_size);
         const bool counted = count <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted)
             at = put_head<std::uint16_t>(
@@ -412,10 +401,8 @@ class ShortWriter final : public CommonLayerWriter {
                 direction, count);
         else
             at = put_long_head(at, part, direction, count, layer);
-        for (std::size_t i = 0; i < listed; ++i) {
-            const GridPoint& p = points[i < points.size() ? i : 0];
-            at = counted ? put_short(at, p) : put_long(at, p);
-        }
+        for (std::size_t i = 0, n = listed.size(); i < n; ++i)
+            at = counted ? put_short(at, listed[i]) : put_long(at, listed[i]);
         out.end_at(at);
     }
 
