@@ -354,11 +354,7 @@ class PageWriter final : public LayerPageWriter {
             ++thinned_;
             largest_tolerance_mm_ = std::max(largest_tolerance_mm_, picture.tolerance_mm);
         }
-        std::string text;
-        append_base64(picture.bytes, text);
-        file_.append(data_element_head);
-        file_.append(text);
-        file_.append(data_element_tail);
+        file_.append(data_element(picture.bytes));
         table_.add(facts, picture);
     }
 

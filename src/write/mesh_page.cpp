@@ -1,7 +1,5 @@
-#include "lamella/core/error.hpp"
 #include "lamella/write/layer_page.hpp"
 
-#include "container/base64.hpp"
 #include "container/deflate.hpp"
 #include "core/atomic_file.hpp"
 #include "core/executor.hpp"
@@ -166,11 +164,7 @@ void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Dia
                             page_quoted(options.title), page_box(box),
                             page_number(Cubes(box, halvings).edge_mm()), mesh.triangles.size(),
                             small.triangles.size(), shells_json(diagnosis.shells), diagnosis.counts.shells)));
-    std::string text;
-    append_base64(deflated(mesh_numbers(small).view()), text);
-    file.append(data_element_head);
-    file.append(text);
-    file.append(data_element_tail);
+    file.append(data_element(deflated(mesh_numbers(small).view())));
     file.append(json_element("notes", notes_json(notes)));
     file.append(frame.tail);
     file.commit();

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/base64.hpp"
 #include "write/decimal.hpp"
 
 #include <fmt/format.h>
@@ -89,6 +90,12 @@ std::string notes_json(const PageNotes& notes) {
 
 std::string json_element(std::string_view id, std::string_view json) {
     return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json);
+}
+
+std::string data_element(std::string_view bytes) {
+    std::string text = "<script type=\"text/plain\" class=\"data\">";
+    append_base64(bytes, text);
+    return text + "</script>\n";
 }
 
 } // namespace lamella

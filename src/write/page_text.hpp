@@ -32,8 +32,7 @@ struct PageFrame {
 
 /// An element that holds JSON.
 [[nodiscard]] std::string json_element(std::string_view id, std::string_view json);
-/// What stands around data in Base64.
-inline constexpr std::string_view data_element_head = "<script type=\"text/plain\" class=\"data\">";
-inline constexpr std::string_view data_element_tail = "</script>\n";
+/// An element that holds bytes, in Base64.
+[[nodiscard]] std::string data_element(std::string_view bytes);
 
 } // namespace lamella
