@@ -16,7 +16,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <utility>
 
 namespace lamella {
 
@@ -249,12 +248,7 @@ class LongWriter final : public CommonLayerWriter {
 
     std::string layer_head(const PlanePlace& place) override {
         const float height = height_of(place.top, units_);
-        if (!(height > last_height_))
-            throw Error(ErrorKind::usage,
-                        fmt::format("layer {} is so thin that its top, z = {} mm, is that of the layer "
-                                    "before in single precision",
-                                    place.index, place.top));
-        last_height_ = height;
+        heights_.add(height, place.top, "top", place.index);
         return layer_start(height);
     }
 
@@ -292,7 +286,7 @@ class LongWriter final : public CommonLayerWriter {
 
     double units_;
     FloatContours floats_;
-    float last_height_ = -std::numeric_limits<float>::infinity();
+    FloatHeights heights_;
 };
 
 // 16-bit numbers are unsigned by the standard and signed in some readers and writers: only those that mean

@@ -199,4 +199,13 @@ void FloatContours::put_points(std::span<const Point2> points, std::uint64_t lay
         loss_->add({.moved_mm = largest_move(points, per_mm_)}, layer);
 }
 
+void FloatHeights::add(float height, double mm, std::string_view end, std::uint64_t layer) {
+    if (!(height > last_))
+        throw Error(ErrorKind::usage,
+                    fmt::format("layer {} is so thin that its {}, z = {} mm, is that of the layer "
+                                "before in single precision",
+                                layer, end, mm));
+    last_ = height;
+}
+
 } // namespace lamella

@@ -8,7 +8,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <string_view>
 
 namespace lamella {
 
@@ -45,6 +47,17 @@ class FloatContours {
 
     double per_mm_;
     RoundingLoss* loss_;
+};
+
+/// Heights of layers in single precision, which must ascend.
+class FloatHeights {
+  public:
+    /// Takes the next one, which stands for `mm`. Throws Error{usage}, naming the layer and its `end`, "top"
+    /// or "bottom", where it is not above the one before.
+    void add(float height, double mm, std::string_view end, std::uint64_t layer);
+
+  private:
+    float last_ = -std::numeric_limits<float>::infinity();
 };
 
 } // namespace lamella

@@ -2,8 +2,6 @@
 // has what all of them share, and a table of where work planes lie. The file's first bytes tell where that
 // is; they are written last.
 
-#include "lamella/core/error.hpp"
-
 #include "container/ovf_format.hpp"
 #include "container/protobuf.hpp"
 #include "container/text_place.hpp"
@@ -18,8 +16,6 @@
 
 #include <cassert>
 #include <cstring>
-#include <limits>
-#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -193,7 +189,7 @@ class OvfWriter final : public OrderedWriter {
             writer.put_hatches(layer.hatches.span(), ends_of_blocks_[part]);
         }
         return [this, blocks](const PlanePlace& place) {
-            check_top(place);
+            heights_.add(static_cast<float>(place.top), place.top, "top", place.index);
             if (place.position == 0)
                 layer_thickness_ = place.top - place.bottom;
             append_plane(*blocks, place.top);
@@ -221,17 +217,6 @@ class OvfWriter final : public OrderedWriter {
         file_.append(table.delimited());
         file_.overwrite(ovf::magic.size(), bytes_of(table_place));
         file_.commit();
-    }
-
-    void check_top(const PlanePlace& place) {
-        const auto single = static_cast<float>(place.top);
-        if (!(single > last_top_))
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("layer {} is so thin that its top, z = {} mm, is that of the layer before "
-                            "in single precision",
-                            place.index, place.top));
-        last_top_ = single;
     }
 
     /// In front of a plane stands where its table lies.
@@ -267,7 +252,7 @@ class OvfWriter final : public OrderedWriter {
     AtomicFile file_;
     FloatContours floats_{1, &rounding_loss()};
     std::vector<std::uint64_t> planes_; ///< where they begin
-    float last_top_ = -std::numeric_limits<float>::infinity();
+    FloatHeights heights_;
     double layer_thickness_ = 0;
 };
 

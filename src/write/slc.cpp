@@ -8,10 +8,6 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <utility>
 
 namespace lamella {
 
@@ -59,13 +55,8 @@ class SlcWriter final : public SequentialWriter {
         std::string bytes;
         if (place.position == 0)
             bytes = sampling_table(place.bottom, place.top - place.bottom);
-        else if (!(single(place.bottom) > last_))
-            throw Error(ErrorKind::usage,
-                        fmt::format("layer {} is so thin that its bottom, z = {} mm, is that of the layer "
-                                    "before in single precision",
-                                    place.index, place.bottom));
+        heights_.add(single(place.bottom), place.bottom, "bottom", place.index);
         bytes += bytes_of(single(place.bottom));
-        last_ = single(place.bottom);
         top_ = place.top;
         empty_ = false;
         return bytes;
@@ -115,7 +106,7 @@ class SlcWriter final : public SequentialWriter {
     FloatContours floats_{1.0, &rounding_loss()};
     double bottom_;
     double top_;
-    float last_ = 0;
+    FloatHeights heights_;
     bool empty_ = true;
 };
 
