@@ -7,7 +7,6 @@
 #include "raster/edges.hpp"
 #include "raster/row_sweep.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -1,5 +1,4 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/core/error.hpp"
 
 #include "core/atomic_directory.hpp"
 #include "core/atomic_file.hpp"
@@ -16,7 +15,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <utility>
 
 namespace lamella {
 

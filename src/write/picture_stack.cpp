@@ -1,4 +1,3 @@
-#include "lamella/core/error.hpp"
 
 #include "container/zip_writer.hpp"
 #include "core/atomic_directory.hpp"

@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <utility>
 #include <vector>

@@ -21,7 +21,6 @@
 #include <initializer_list>
 #include <limits>
 #include <set>
-#include <utility>
 #include <vector>
 
 namespace lamella {
