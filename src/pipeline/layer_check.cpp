@@ -32,21 +32,22 @@ double largest_coordinate(std::span<const Point2> points) noexcept {
 
 LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
     LayerCheck result;
+    ContourFindings& found = result.found;
     result.measure = measure(layer);
+    result.open_gaps = open_gaps(layer);
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
         if (!layer.contour(i).empty())
-            result.open_chains.add(1, layer.contour(i).front());
-    result.open_gaps = open_gaps(layer);
+            found.open_chains.add(layer, layer.contour(i).front());
     const Crossings crossings = find_crossings(layer, 1);
     if (crossings.count > 0)
-        result.crossings.add(crossings.count, crossings.first.front().at);
+        found.crossings.add(layer, crossings.first.front().at, crossings.count);
     const std::vector<RingKind> kinds = nesting(layer).kind;
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         if (kinds[i] != RingKind::misoriented && kinds[i] != RingKind::overlapping)
             continue;
         if (!orientation_is_lost(layer.contour(i), rounding))
-            (kinds[i] == RingKind::misoriented ? result.misoriented : result.overlapping)
-                .add(1, layer.contour(i).front());
+            (kinds[i] == RingKind::misoriented ? found.misoriented : found.overlapping)
+                .add(layer, layer.contour(i).front());
     }
     return result;
 }
@@ -55,23 +56,16 @@ std::string where(const Layer& layer) {
     return fmt::format("layer {} (z {:.7g} mm)", layer.index, layer.z);
 }
 
-void Finding::add(const Layer& layer, const FaultCount& found) {
-    if (total == 0 && found.count > 0)
-        place = fmt::format("{} at ({:.7g}, {:.7g})", where(layer), found.first.x, found.first.y);
-    total += found.count;
+void Finding::add(const Layer& layer, const Point2& at, std::uint64_t times) {
+    if (total == 0)
+        place = fmt::format("{} at ({:.7g}, {:.7g})", where(layer), at.x, at.y);
+    total += times;
 }
 
 void Finding::add(const Finding& other) {
     if (total == 0)
         place = other.place;
     total += other.total;
-}
-
-void ContourFindings::add(const Layer& layer, const LayerCheck& found) {
-    open_chains.add(layer, found.open_chains);
-    crossings.add(layer, found.crossings);
-    misoriented.add(layer, found.misoriented);
-    overlapping.add(layer, found.overlapping);
 }
 
 void ContourFindings::add(const ContourFindings& other) {
@@ -81,19 +75,10 @@ void ContourFindings::add(const ContourFindings& other) {
     overlapping.add(other.overlapping);
 }
 
-std::string open_chains_text(const Finding& finding) {
-    return fmt::format("{} contour{} not closed, the first in {}", finding.total,
-                       finding.total == 1 ? " is" : "s are", finding.place);
-}
-
-std::string crossings_text(const Finding& finding) {
-    return fmt::format("{} crossing{} of contours, the first in {}", finding.total,
-                       finding.total == 1 ? "" : "s", finding.place);
-}
-
-std::string misoriented_text(const Finding& finding) {
-    return fmt::format("{} ring{} the wrong way round, the first in {}", finding.total,
-                       finding.total == 1 ? " runs" : "s run", finding.place);
+void tell(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines) {
+    if (finding.total > 0)
+        lines.push_back(fmt::format("{} {} the first in {}", finding.total,
+                                    finding.total == 1 ? words.one : words.many, finding.place));
 }
 
 } // namespace lamella

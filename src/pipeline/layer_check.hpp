@@ -14,40 +14,12 @@
 
 namespace lamella {
 
-/// How often something occurs in a layer, and where first.
-struct FaultCount {
-    std::uint64_t count = 0;
-    Point2 first;
-
-    void add(std::uint64_t n, const Point2& at) {
-        if (count == 0)
-            first = at;
-        count += n;
-    }
-};
-
-struct LayerCheck {
-    LayerMeasure measure;
-    FaultCount open_chains;
-    OpenGaps open_gaps;
-    FaultCount crossings;
-    FaultCount misoriented;
-    FaultCount overlapping;
-};
-
-[[nodiscard]] LayerCheck check_layer(const Layer& layer, const Rounding& rounding);
-
-/// "layer 12 (z 0.375 mm)"
-[[nodiscard]] std::string where(const Layer& layer);
-
-[[nodiscard]] double largest_coordinate(std::span<const Point2> points) noexcept;
-
 /// Of one kind of finding, in the order of the layers.
 struct Finding {
     std::uint64_t total = 0;
     std::string place; ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
 
-    void add(const Layer& layer, const FaultCount& found);
+    void add(const Layer& layer, const Point2& at, std::uint64_t times = 1);
     void add(const Finding& other);
 };
 
@@ -58,11 +30,35 @@ struct ContourFindings {
     Finding misoriented;
     Finding overlapping;
 
-    void add(const Layer& layer, const LayerCheck& found);
     void add(const ContourFindings& other);
 };
-[[nodiscard]] std::string open_chains_text(const Finding& finding);
-[[nodiscard]] std::string crossings_text(const Finding& finding);
-[[nodiscard]] std::string misoriented_text(const Finding& finding);
+
+struct LayerCheck {
+    LayerMeasure measure;
+    OpenGaps open_gaps;
+    ContourFindings found;
+};
+
+[[nodiscard]] LayerCheck check_layer(const Layer& layer, const Rounding& rounding);
+
+/// "layer 12 (z 0.375 mm)"
+[[nodiscard]] std::string where(const Layer& layer);
+
+[[nodiscard]] double largest_coordinate(std::span<const Point2> points) noexcept;
+
+/// What is said of one of a kind, and of several, up to where the first one is.
+struct FindingWords {
+    const char* one;
+    const char* many;
+};
+
+inline constexpr FindingWords open_chains_words{"contour is not closed,", "contours are not closed,"};
+inline constexpr FindingWords crossings_words{"crossing of contours,", "crossings of contours,"};
+inline constexpr FindingWords misoriented_words{"ring runs the wrong way round,",
+                                                "rings run the wrong way round,"};
+
+/// Adds a line, such as "2 rings run the wrong way round, the first in layer 12 (z 0.375 mm) at (1, 2)",
+/// where there is anything to say.
+void tell(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines);
 
 } // namespace lamella

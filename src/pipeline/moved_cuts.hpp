@@ -6,19 +6,37 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/slicing/plan.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace lamella {
 
-/// The cuts of layers, each as far above (1) or below (-1) its own as a format may have moved it, or where
-/// they are (0).
-struct MovedCuts {
-    MovedCuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, double direction);
-
-    Plan plan;
-    std::vector<std::size_t> plane; ///< of each layer
-};
+/// What cut(plan) gives for the plane of each layer: first where the layer is, and where the format rounds,
+/// as far below and above as it may have moved the cut.
+template <class Cut>
+auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, const Cut& cut) {
+    std::vector<decltype(cut(Plan{}))> of_layer(layers.size());
+    for (const double direction : {0.0, -1.0, 1.0}) {
+        if (direction != 0 && rounding == Rounding{})
+            break;
+        std::vector<double> z;
+        for (const Layer& layer : layers)
+            z.push_back(layer.z + direction * moved_cut(layer, rounding));
+        std::vector<double> ascending = z;
+        std::sort(ascending.begin(), ascending.end());
+        ascending.erase(std::unique(ascending.begin(), ascending.end()), ascending.end());
+        Plan plan{.layers = {}, .rule = rule};
+        for (const double at : ascending)
+            plan.layers.push_back({plan.layers.size(), at, at, at});
+        const auto of_plane = cut(plan);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const auto plane = std::lower_bound(ascending.begin(), ascending.end(), z[i]);
+            of_layer[i].push_back(of_plane[static_cast<std::size_t>(plane - ascending.begin())]);
+        }
+    }
+    return of_layer;
+}
 
 } // namespace lamella

@@ -36,32 +36,6 @@ std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
         worst->gaps.from.x, worst->gaps.from.y, worst->gaps.to.x, worst->gaps.to.y);
 }
 
-/// The areas that the section of a mesh has where the format may have moved the cut of a layer from.
-struct SectionArea {
-    double nominal = 0;
-    double least = 0;
-    double greatest = 0;
-};
-
-std::vector<SectionArea> areas_of_sections(std::span<const Layer> layers, const VerifyOptions& options,
-                                           const Execution& execution) {
-    std::vector<SectionArea> result(layers.size());
-    for (const double direction : {0.0, -1.0, 1.0}) {
-        if (direction != 0 && options.rounding == Rounding{})
-            break;
-        const MovedCuts cuts(layers, options.rounding, options.rule, direction);
-        const std::vector<double> areas = section_areas(*options.mesh, cuts.plan, execution);
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            const double area = areas[cuts.plane[i]];
-            if (direction == 0)
-                result[i] = {area, area, area};
-            result[i].least = std::min(result[i].least, area);
-            result[i].greatest = std::max(result[i].greatest, area);
-        }
-    }
-    return result;
-}
-
 /// How far the area of a layer may be off from that of the mesh's section, when each of its points is off by
 /// up to half a step of the format in x and y. `extent` is the mesh's.
 double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rounding& rounding,
@@ -81,19 +55,21 @@ double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rou
 
 void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> checks,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
-    const std::vector<SectionArea> sections = areas_of_sections(layers, options, execution);
+    const auto sections = at_moved_cuts(layers, options.rounding, options.rule, [&](const Plan& plan) {
+        return section_areas(*options.mesh, plan, execution);
+    });
     const Box3 box = bounding_box(*options.mesh, execution);
     const double extent = box.empty() ? 0 : std::max(box.max.x - box.min.x, box.max.y - box.min.y);
     double largest_error = 0;
     std::uint64_t differing = 0;
     std::size_t first = 0;
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (checks[i].open_chains.count > 0)
+        if (checks[i].found.open_chains.total > 0)
             continue; // its area is not known
         const double area = checks[i].measure.area_mm2;
-        const SectionArea& section = sections[i];
-        largest_error = std::max(largest_error, std::abs(area - section.nominal));
-        const double beyond = std::max(section.least - area, area - section.greatest);
+        largest_error = std::max(largest_error, std::abs(area - sections[i].front()));
+        const auto [least, greatest] = std::minmax_element(sections[i].begin(), sections[i].end());
+        const double beyond = std::max(*least - area, area - *greatest);
         if (beyond > area_tolerance(layers[i], checks[i].measure, options.rounding, extent)) {
             if (differing == 0)
                 first = i;
@@ -107,7 +83,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
                                               "is {}: {:.7g} mm^2 instead of {:.7g} mm^2",
                                               differing, differing == 1 ? " is" : "s are",
                                               where(layers[first]), checks[first].measure.area_mm2,
-                                              sections[first].nominal));
+                                              sections[first].front()));
     }
 }
 
@@ -126,34 +102,30 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     progress.finish();
 
     Verification result;
+    ContourFindings found;
     result.layers = layers.size();
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        result.contours += checks[i].measure.contours;
-        result.points += checks[i].measure.points;
-        result.volume_mm3 += checks[i].measure.area_mm2 * layers[i].thickness();
-        if (checks[i].open_gaps.count > 0)
-            result.open_layers.push_back({layers[i].index, layers[i].z, checks[i].open_gaps});
+        const LayerCheck& check = checks[i];
+        found.add(check.found);
+        result.contours += check.measure.contours;
+        result.points += check.measure.points;
+        result.volume_mm3 += check.measure.area_mm2 * layers[i].thickness();
+        if (check.open_gaps.count > 0)
+            result.open_layers.push_back({layers[i].index, layers[i].z, check.open_gaps});
     }
-    ContourFindings found;
-    for (std::size_t i = 0; i < layers.size(); ++i)
-        found.add(layers[i], checks[i]);
     result.open_chains = found.open_chains.total;
     result.crossings = found.crossings.total;
     result.misoriented = found.misoriented.total;
     result.overlapping = found.overlapping.total;
-    if (result.open_chains > 0)
-        result.findings.push_back(open_chains_text(found.open_chains));
+    tell(found.open_chains, open_chains_words, result.findings);
     if (!result.open_layers.empty())
         result.findings.push_back(gaps_text(result.open_layers));
-    if (result.crossings > 0)
-        result.findings.push_back(crossings_text(found.crossings));
-    if (result.misoriented > 0)
-        result.findings.push_back(misoriented_text(found.misoriented));
-    if (result.overlapping > 0)
-        result.findings.push_back(fmt::format(
-            "{} ring{} within material: bodies that overlap, or holes that run the wrong way "
-            "round; the first in {}",
-            result.overlapping, result.overlapping == 1 ? " lies" : "s lie", found.overlapping.place));
+    tell(found.crossings, crossings_words, result.findings);
+    tell(found.misoriented, misoriented_words, result.findings);
+    tell(found.overlapping,
+         {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
+          "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
+         result.findings);
     if (options.mesh)
         compare_areas(layers, checks, options, execution, result);
     return result;

@@ -72,9 +72,9 @@ double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept
 /// What is wrong with the vectors of a plane.
 struct PlaneCheck {
     ContourFindings contours;
-    FaultCount outside;
-    FaultCount too_short;
-    FaultCount miscovered;
+    Finding outside;
+    Finding too_short;
+    Finding miscovered;
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
     std::uint64_t unbounded = 0;
@@ -134,7 +134,7 @@ class VectorCheck {
         for (const LayerPart* const part : group.exposures) {
             const Layer& vectors = part->layers[plane];
             if (part->exposure->kind == VectorKind::contour)
-                found.contours.add(vectors, of_one_exposure(vectors));
+                found.contours.add(of_one_exposure(vectors));
             std::uint64_t of_contours = 0;
             for (std::size_t i = 0; i < vectors.contours(); ++i)
                 of_contours += vectors.contour(i).size() - (vectors.closed(i) ? 0 : 1);
@@ -155,23 +155,22 @@ class VectorCheck {
 
   private:
     /// Contours of one number neither cross nor lie within one another's material.
-    [[nodiscard]] LayerCheck of_one_exposure(const Layer& vectors) const {
-        LayerCheck found = check_layer(vectors, options_.rounding);
-        found.misoriented.add(found.overlapping.count, found.overlapping.first);
+    [[nodiscard]] ContourFindings of_one_exposure(const Layer& vectors) const {
+        ContourFindings found = check_layer(vectors, options_.rounding).found;
+        found.misoriented.add(found.overlapping);
         return found;
     }
 
-    void find_short(const Layer& vectors, const HatchRule& rule, FaultCount& too_short) const {
+    void find_short(const Layer& vectors, const HatchRule& rule, Finding& too_short) const {
         for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
             const Point2& a = vectors.hatches[i];
             const Point2& b = vectors.hatches[i + 1];
             if (distance(a, b) < rule.shortest - 2 * tolerance_)
-                too_short.add(1, a);
+                too_short.add(vectors, a);
         }
     }
 
-    void find_outside(const Group& group, std::size_t plane, const Bounds& bounds,
-                      FaultCount& outside) const {
+    void find_outside(const Group& group, std::size_t plane, const Bounds& bounds, Finding& outside) const {
         // Grown a little, so that what lies on an edge lies within.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
@@ -183,8 +182,8 @@ class VectorCheck {
                 continue;
             const double depth =
                 options_.strategy ? depth_of(*part->exposure, *options_.strategy) - bounds.depth : 0;
-            Followed followed(edges, std::max(0.0, depth) + grown - tolerance_, outside);
             const Layer& vectors = part->layers[plane];
+            Followed followed(edges, std::max(0.0, depth) + grown - tolerance_, vectors, outside);
             for (std::size_t i = 0; i < vectors.contours(); ++i) {
                 const auto contour = vectors.contour(i);
                 for (std::size_t k = 1; k < contour.size(); ++k)
@@ -201,15 +200,15 @@ class VectorCheck {
     /// edge.
     class Followed {
       public:
-        Followed(const EdgeTree& edges, double distance, FaultCount& outside)
-            : edges_(edges), squared_(distance * distance), outside_(outside) {}
+        Followed(const EdgeTree& edges, double distance, const Layer& layer, Finding& outside)
+            : edges_(edges), squared_(distance * distance), layer_(layer), outside_(outside) {}
 
         void mark(const Point2& from, const Point2& to) {
             if (!known_ || (from != at_ && edges_.distance_squared(segment_between(at_, from), 0) == 0))
                 inside_ = edges_.winding(from) > 0;
             const double nearest = edges_.distance_squared(segment_between(from, to), squared_ / 2);
             if (!inside_ || nearest < squared_)
-                outside_.add(1, from);
+                outside_.add(layer_, from);
             known_ = nearest >= squared_; // else it may have led across an edge
             at_ = to;
         }
@@ -217,7 +216,8 @@ class VectorCheck {
       private:
         const EdgeTree& edges_;
         double squared_;
-        FaultCount& outside_;
+        const Layer& layer_;
+        Finding& outside_;
         bool known_ = false;
         bool inside_ = false; ///< at at_
         Point2 at_;
@@ -256,7 +256,8 @@ class VectorCheck {
         least -= slack.less(nominal) + of_skins;
         greatest += slack.more(nominal) + of_skins;
         if (covered < least || covered > greatest)
-            found.miscovered.add(1, section.points.empty() ? Point2{} : section.points[0]);
+            found.miscovered.add(group.exposures.front()->layers[plane],
+                                 section.points.empty() ? Point2{} : section.points[0]);
         found.covered_mm2 += covered;
         found.filled_mm2 += nominal.area_mm2;
     }
@@ -264,27 +265,6 @@ class VectorCheck {
     const VectorVerifyOptions& options_;
     double tolerance_; ///< by which vectors, and contours that stand for material, may be off
 };
-
-/// The sections of a mesh for each plane, the first where the layer is, others where the format may have
-/// moved the cut from.
-std::vector<std::vector<Layer>> sections_of(std::span<const Layer> planes, const VectorVerifyOptions& options,
-                                            const Execution& execution) {
-    std::vector<std::vector<Layer>> result(planes.size());
-    for (const double direction : {0.0, -1.0, 1.0}) {
-        if (direction != 0 && options.rounding == Rounding{})
-            break;
-        const MovedCuts cuts(planes, options.rounding, options.rule, direction);
-        const LayerStack sections = slice(*options.mesh, cuts.plan, execution);
-        for (std::size_t i = 0; i < planes.size(); ++i)
-            result[i].push_back(sections[cuts.plane[i]]);
-    }
-    return result;
-}
-
-std::string counted_vectors(const Finding& finding, const char* one, const char* many) {
-    return fmt::format("{} {}; the first in {}", finding.total, finding.total == 1 ? one : many,
-                       finding.place);
-}
 
 } // namespace
 
@@ -298,7 +278,8 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     result.layers = planes.size();
     std::vector<std::vector<Layer>> sections;
     if (options.mesh)
-        sections = sections_of(planes, options, execution);
+        sections = at_moved_cuts(planes, options.rounding, options.rule,
+                                 [&](const Plan& plan) { return slice(*options.mesh, plan, execution); });
 
     double largest = 0;
     for (const Group& group : groups)
@@ -329,56 +310,44 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     });
     progress.finish();
 
-    ContourFindings contours;
-    Finding outside;
-    Finding too_short;
-    Finding miscovered;
-    double covered = 0;
-    double filled = 0;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-        const PlaneCheck& check = checks[i];
-        contours.add(check.contours);
-        outside.add(planes[i], check.outside);
-        too_short.add(planes[i], check.too_short);
-        miscovered.add(planes[i], check.miscovered);
+    PlaneCheck all;
+    for (const PlaneCheck& check : checks) {
+        all.contours.add(check.contours);
+        all.outside.add(check.outside);
+        all.too_short.add(check.too_short);
+        all.miscovered.add(check.miscovered);
         result.contour_vectors += check.contour_vectors;
         result.hatch_vectors += check.hatch_vectors;
         result.unbounded += check.unbounded;
-        covered += check.covered_mm2;
-        filled += check.filled_mm2;
+        all.covered_mm2 += check.covered_mm2;
+        all.filled_mm2 += check.filled_mm2;
     }
-    result.open_chains = contours.open_chains.total;
-    result.crossings = contours.crossings.total;
-    result.misoriented = contours.misoriented.total;
-    result.outside = outside.total;
-    result.too_short = too_short.total;
-    result.miscovered = miscovered.total;
-    if (options.strategy && filled > 0)
-        result.cover = covered / filled;
-
-    const auto tell = [&](std::uint64_t total, const auto& text) {
-        if (total > 0)
-            result.findings.push_back(text());
-    };
-    tell(result.open_chains, [&] { return open_chains_text(contours.open_chains); });
-    tell(result.crossings, [&] { return crossings_text(contours.crossings); });
-    tell(result.misoriented, [&] { return misoriented_text(contours.misoriented); });
-    tell(result.outside, [&] {
-        return options.strategy
-                   ? counted_vectors(
-                         outside,
-                         "vector is nearer to the edge of the material than the strategy says, or outside",
-                         "vectors are nearer to the edge of the material than the strategy says, or outside")
-                   : counted_vectors(outside, "vector leaves the material", "vectors leave the material");
-    });
-    tell(result.too_short, [&] {
-        return counted_vectors(too_short, "hatch line is shorter than the strategy says",
-                               "hatch lines are shorter than the strategy says");
-    });
-    tell(result.miscovered, [&] {
-        return counted_vectors(miscovered, "layer has lines that cover more or less than they should fill",
-                               "layers have lines that cover more or less than they should fill");
-    });
+    result.open_chains = all.contours.open_chains.total;
+    result.crossings = all.contours.crossings.total;
+    result.misoriented = all.contours.misoriented.total;
+    result.outside = all.outside.total;
+    result.too_short = all.too_short.total;
+    result.miscovered = all.miscovered.total;
+    if (options.strategy && all.filled_mm2 > 0)
+        result.cover = all.covered_mm2 / all.filled_mm2;
+    tell(all.contours.open_chains, open_chains_words, result.findings);
+    tell(all.contours.crossings, crossings_words, result.findings);
+    tell(all.contours.misoriented, misoriented_words, result.findings);
+    tell(
+        all.outside,
+        options.strategy
+            ? FindingWords{"vector is nearer to the edge of the material than the strategy says, or outside;",
+                           "vectors are nearer to the edge of the material than the strategy says, or "
+                           "outside;"}
+            : FindingWords{"vector leaves the material;", "vectors leave the material;"},
+        result.findings);
+    tell(all.too_short,
+         {"hatch line is shorter than the strategy says;", "hatch lines are shorter than the strategy says;"},
+         result.findings);
+    tell(all.miscovered,
+         {"layer has lines that cover more or less than they should fill;",
+          "layers have lines that cover more or less than they should fill;"},
+         result.findings);
     if (result.unbounded > 0)
         result.findings.push_back(fmt::format(
             "of {} vector{} nothing tells where the material is: no closed contour is around them",
