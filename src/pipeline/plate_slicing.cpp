@@ -75,18 +75,7 @@ std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint6
     PlaneCounts counts(planes);
     for (const PlateShape& shape : plate.shapes)
         counts.add(count_planes(shape.mesh, plan, execution));
-    const SlabSurvey survey(counts);
-    std::vector<PlaneRange> result{{0, 0}};
-    std::uint64_t points = 0;
-    for (std::uint32_t p = 0; p < planes; ++p) {
-        points += survey.points(p);
-        if (points > most_points && result.back().size() > 0) {
-            result.push_back({p, p});
-            points = survey.points(p);
-        }
-        result.back().end = p + 1;
-    }
-    return result;
+    return divide_by_points(SlabSurvey(counts), most_points);
 }
 
 /// Without the progress of slicing.

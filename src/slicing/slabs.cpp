@@ -4,8 +4,6 @@
 
 #include "core/byte_amount.hpp"
 #include "core/executor.hpp"
-#include "slicing/ranks.hpp"
-#include "slicing/tallies.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +12,7 @@
 #include <cassert>
 #include <cstring>
 #include <limits>
-#include <optional>
+#include <utility>
 
 namespace lamella {
 
@@ -24,35 +22,20 @@ namespace {
 template <class Body>
 void for_ranks(const Mesh& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
                const Body& body) {
+    const auto rank = [&](std::uint64_t i, const auto& corners) {
+        body(i, std::array{ranks(corners[0].z), ranks(corners[1].z), ranks(corners[2].z)});
+    };
     const TriangleSoup* const soup = mesh.soup();
-    std::array<std::uint32_t, 3> rank;
     if (soup == nullptr || soup->has_placement()) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            const Triangle3 corners = mesh.triangle(i);
-            for (std::size_t k = 0; k < 3; ++k)
-                rank[k] = ranks(corners[k].z);
-            body(i, rank);
-        }
+        for (std::uint64_t i = begin; i < end; ++i)
+            rank(i, mesh.triangle(i));
     } else {
         for (std::uint64_t i = begin; i < end; ++i) {
             Triangle3f corners;
             std::memcpy(&corners, soup->data() + i * soup->stride(), sizeof corners);
-            for (std::size_t k = 0; k < 3; ++k)
-                rank[k] = ranks(corners[k].z);
-            body(i, rank);
+            rank(i, corners);
         }
     }
-}
-
-void count(const Mesh& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
-           PlaneCounts& counts) {
-    for_ranks(mesh, ranks, begin, end, [&](std::uint64_t, const std::array<std::uint32_t, 3>& rank) {
-        const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
-        const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
-        const std::uint32_t middle =
-            std::max(std::min(rank[0], rank[1]), std::min(std::max(rank[0], rank[1]), rank[2]));
-        counts.add(low, middle, high);
-    });
 }
 
 } // namespace
@@ -92,60 +75,54 @@ PlaneCounts part_of(const PlaneCounts& counts, PlaneRange slab) {
 
 // ----------------------------------------------------------------------------------------------- count
 
-struct PlaneCounter::State {
-    explicit State(const Plan& plan) : ranks(plan), counts(PlaneCounts(ranks.count())) {}
-
-    Ranks ranks;
-    Tallies<PlaneCounts> counts;
-};
-
-PlaneCounter::PlaneCounter(const Plan& plan) : state_(std::make_unique<State>(plan)) {}
-PlaneCounter::~PlaneCounter() = default;
-
-void PlaneCounter::add(const Mesh& mesh) {
-    state_->counts.add([&](PlaneCounts& counts) { count(mesh, state_->ranks, 0, mesh.size(), counts); });
+void PlaneCounter::add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
+    std::unique_lock lock(mutex_);
+    if (idle_.empty())
+        idle_.emplace_back(ranks_.count());
+    PlaneCounts counts = std::move(idle_.back());
+    idle_.pop_back();
+    lock.unlock();
+    for_ranks(mesh, ranks_, begin, end, [&](std::uint64_t, const std::array<std::uint32_t, 3>& rank) {
+        const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
+        const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
+        const std::uint32_t middle =
+            std::max(std::min(rank[0], rank[1]), std::min(std::max(rank[0], rank[1]), rank[2]));
+        counts.add(low, middle, high);
+    });
+    lock.lock();
+    idle_.push_back(std::move(counts));
 }
 
 PlaneCounts PlaneCounter::total() const {
-    PlaneCounts sum(state_->ranks.count());
-    for (const PlaneCounts& counts : state_->counts.all())
+    PlaneCounts sum(ranks_.count());
+    for (const PlaneCounts& counts : idle_)
         sum.add(counts);
     return sum;
 }
 
 PlaneCounts count_planes(const Mesh& mesh, const Plan& plan, const Execution& execution) {
-    const Ranks ranks(plan);
+    PlaneCounter counter(plan);
     Executor executor(execution);
-    std::vector<std::optional<PlaneCounts>> counts(executor.workers());
     constexpr std::uint64_t chunk = std::uint64_t{1} << 15;
-    executor.for_chunks(mesh.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
-        if (!counts[worker])
-            counts[worker].emplace(ranks.count());
-        count(mesh, ranks, begin, end, *counts[worker]);
+    executor.for_chunks(mesh.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        counter.add(mesh, begin, end);
     });
     executor.check_cancelled();
-    PlaneCounts sum(ranks.count());
-    for (const auto& part : counts)
-        if (part)
-            sum.add(*part);
-    return sum;
+    return counter.total();
 }
 
 // ---------------------------------------------------------------------------------------------- survey
 
-SlabSurvey::SlabSurvey(const PlaneCounts& counts) {
-    const std::size_t planes = counts.planes();
-    begun_before_.assign(planes + 1, 0);
-    ended_before_.assign(planes + 1, 0);
-    turned_before_.assign(planes + 1, 0);
-    points_before_.assign(planes + 1, 0);
-    ended_before_[0] = counts.ends(0);
-    for (std::size_t p = 0; p < planes; ++p) {
-        begun_before_[p + 1] = begun_before_[p] + counts.begins(p);
-        ended_before_[p + 1] = ended_before_[p] + counts.ends(p + 1);
-        turned_before_[p + 1] = turned_before_[p] + counts.turns(p);
-        assert(begun_before_[p + 1] >= ended_before_[p]); // none ends that has not begun
-        points_before_[p + 1] = points_before_[p] + (begun_before_[p + 1] - ended_before_[p]);
+SlabSurvey::SlabSurvey(const PlaneCounts& counts) : before_(counts.planes() + 1) {
+    before_[0].ended = counts.ends(0);
+    for (std::size_t p = 0; p < counts.planes(); ++p) {
+        const Before& here = before_[p];
+        Before& next = before_[p + 1];
+        next.begun = here.begun + counts.begins(p);
+        next.ended = here.ended + counts.ends(p + 1);
+        next.turned = here.turned + counts.turns(p);
+        assert(next.begun >= here.ended); // none ends that has not begun
+        next.points = here.points + (next.begun - here.ended);
     }
 }
 
@@ -164,8 +141,8 @@ SlabNeeds SlabSurvey::needs(PlaneRange slab, std::uint64_t most_points) const no
     needs.triangles = triangles(slab);
     // Planes cut two edges of a triangle, and all three where the middle corner lies between two of them.
     needs.edges =
-        2 * needs.triangles + turned_before_[slab.end] - turned_before_[slab.begin + std::size_t{1}];
-    needs.points = points_before_[slab.end] - points_before_[slab.begin];
+        2 * needs.triangles + before_[slab.end].turned - before_[slab.begin + std::size_t{1}].turned;
+    needs.points = before_[slab.end].points - before_[slab.begin].points;
     needs.most_points = most_points;
     return needs;
 }
@@ -175,7 +152,7 @@ std::uint64_t SlabSurvey::work(PlaneRange slab) const noexcept {
     constexpr std::uint64_t plane_cost = 64;
     if (slab.begin >= slab.end)
         return 0;
-    return points_before_[slab.end] - points_before_[slab.begin] + triangle_cost * triangles(slab) +
+    return before_[slab.end].points - before_[slab.begin].points + triangle_cost * triangles(slab) +
            plane_cost * slab.size();
 }
 
@@ -252,22 +229,17 @@ std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan
     return level(survey, at_least, most, fits);
 }
 
+std::vector<PlaneRange> divide_by_points(const SlabSurvey& survey, std::uint64_t most_points) {
+    const std::uint64_t any_work = std::numeric_limits<std::uint64_t>::max();
+    return fill(survey, any_work, 0, [&](const SlabNeeds& needs) { return needs.points <= most_points; });
+}
+
 // ------------------------------------------------------------------------------------------------ find
 
-struct SlabFinder::State {
-    explicit State(const Plan& plan) : ranks(plan) {}
-
-    Ranks ranks;
-    std::vector<std::uint32_t> first; ///< by a triangle's lowest plane: the first slab that ends above it
-    std::vector<std::uint32_t>
-        behind; ///< by the plane behind its uppermost one: the first slab from there on
-};
-
-SlabFinder::SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs) {
-    auto state = std::make_unique<State>(plan);
+SlabFinder::SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs) : ranks_(plan) {
     assert(std::is_sorted(slabs.begin(), slabs.end(),
                           [](PlaneRange a, PlaneRange b) { return a.begin < b.begin || a.end < b.end; }));
-    const std::uint32_t planes = state->ranks.count();
+    const std::uint32_t planes = ranks_.count();
     std::uint32_t ended = 0;
     std::uint32_t begun = 0;
     for (std::uint32_t p = 0; p <= planes; ++p) {
@@ -275,23 +247,20 @@ SlabFinder::SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs) {
             ++ended;
         while (begun < slabs.size() && slabs[begun].begin < p)
             ++begun;
-        state->first.push_back(ended);
-        state->behind.push_back(begun);
+        first_.push_back(ended);
+        behind_.push_back(begun);
     }
-    state_ = std::move(state);
 }
-
-SlabFinder::~SlabFinder() = default;
 
 void SlabFinder::find(const TriangleSoup& triangles, std::vector<Touched>& touched) const {
     touched.resize(triangles.size());
-    for_ranks(triangles, state_->ranks, 0, triangles.size(),
+    for_ranks(triangles, ranks_, 0, triangles.size(),
               [&](std::uint64_t i, const std::array<std::uint32_t, 3>& rank) {
                   const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
                   const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
                   // A triangle between two slabs, or between two planes, gives begin > end: clamp it.
-                  const std::uint32_t begin = state_->first[low];
-                  touched[i] = {begin, low == high ? begin : std::max(begin, state_->behind[high])};
+                  const std::uint32_t begin = first_[low];
+                  touched[i] = {begin, low == high ? begin : std::max(begin, behind_[high])};
               });
 }
 

@@ -14,9 +14,11 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "slicing/ranks.hpp"
+
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -69,19 +71,19 @@ class PlaneCounts {
 /// Counts triangles from any number of threads at once.
 class PlaneCounter {
   public:
-    explicit PlaneCounter(const Plan& plan);
-    ~PlaneCounter();
-    PlaneCounter(const PlaneCounter&) = delete;
-    PlaneCounter& operator=(const PlaneCounter&) = delete;
+    explicit PlaneCounter(const Plan& plan) : ranks_(plan) {}
 
     /// On the calling thread, O(triangles); the placement of a soup counts.
-    void add(const Mesh& mesh);
-    /// Of all that was added.
+    void add(const Mesh& mesh) { add(mesh, 0, mesh.size()); }
+    /// The triangles [begin, end) of it.
+    void add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end);
+    /// Of all that was added; while nobody adds any.
     [[nodiscard]] PlaneCounts total() const;
 
   private:
-    struct State;
-    std::unique_ptr<State> state_;
+    Ranks ranks_;
+    std::mutex mutex_;
+    std::vector<PlaneCounts> idle_; ///< nobody counts on them; as many as ever counted at the same time
 };
 
 /// The same for a mesh in memory, on all threads.
@@ -101,14 +103,14 @@ class SlabSurvey {
     explicit SlabSurvey(const PlaneCounts& counts);
 
     [[nodiscard]] std::uint32_t planes() const noexcept {
-        return static_cast<std::uint32_t>(points_before_.size() - 1);
+        return static_cast<std::uint32_t>(before_.size() - 1);
     }
     /// Triangles that plane p cuts, which is the number of its points where the mesh is closed.
     [[nodiscard]] std::uint64_t points(std::uint32_t p) const noexcept {
-        return points_before_[p + std::size_t{1}] - points_before_[p];
+        return before_[p + std::size_t{1}].points - before_[p].points;
     }
     [[nodiscard]] std::uint64_t triangles(PlaneRange slab) const noexcept {
-        return begun_before_[slab.end] - ended_before_[slab.begin];
+        return before_[slab.end].begun - before_[slab.begin].ended;
     }
     /// O(planes of the slab)
     [[nodiscard]] SlabNeeds needs(PlaneRange slab) const noexcept;
@@ -119,11 +121,15 @@ class SlabSurvey {
     [[nodiscard]] std::uint64_t work(PlaneRange slab) const noexcept;
 
   private:
-    // Sums over the planes before p, at [p].
-    std::vector<std::uint64_t> begun_before_;
-    std::vector<std::uint64_t> ended_before_; ///< up to plane p: those that have left it
-    std::vector<std::uint64_t> turned_before_;
-    std::vector<std::uint64_t> points_before_;
+    /// Sums over the planes before one.
+    struct Before {
+        std::uint64_t begun = 0;
+        std::uint64_t ended = 0; ///< those that have left the plane itself, too
+        std::uint64_t turned = 0;
+        std::uint64_t points = 0;
+    };
+
+    std::vector<Before> before_; ///< by plane, and one more
 };
 
 /// How a slab is sliced, as far as its memory depends on it.
@@ -149,15 +155,15 @@ struct SlabMemory {
                                                     const SlabMemory& memory, std::uint64_t most_bytes,
                                                     std::uint32_t at_least = 1);
 
+/// Slabs filled one after the other with planes of `most_points` together, or with a single plane of more.
+[[nodiscard]] std::vector<PlaneRange> divide_by_points(const SlabSurvey& survey, std::uint64_t most_points);
+
 /// Tells which slabs triangles touch. Immutable; for any number of threads at once.
 class SlabFinder {
   public:
     /// Slabs of the plan, none of which begins or ends below the one before; they may overlap or have gaps
     /// between them.
     SlabFinder(const Plan& plan, std::span<const PlaneRange> slabs);
-    ~SlabFinder();
-    SlabFinder(const SlabFinder&) = delete;
-    SlabFinder& operator=(const SlabFinder&) = delete;
 
     /// Slabs [begin, end), by their positions in the division; none where begin == end.
     struct Touched {
@@ -169,8 +175,9 @@ class SlabFinder {
     void find(const TriangleSoup& triangles, std::vector<Touched>& touched) const;
 
   private:
-    struct State;
-    std::unique_ptr<const State> state_;
+    Ranks ranks_;
+    std::vector<std::uint32_t> first_;  ///< by a triangle's lowest plane: the first slab that ends above it
+    std::vector<std::uint32_t> behind_; ///< by the plane behind its uppermost: the first slab from there on
 };
 
 } // namespace lamella
