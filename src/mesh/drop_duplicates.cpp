@@ -11,27 +11,24 @@ namespace lamella {
 
 DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
-    const std::vector<std::vector<SameVertices>> groups = find_same_vertices(executor, mesh);
     std::vector<bool> dropped(mesh.triangles.size(), false);
     DroppedDuplicates result;
-    for (const std::vector<SameVertices>& part : groups)
-        for (const SameVertices& group : part) {
-            // The most frequent way round has one survivor, where there is one.
-            const std::size_t up = static_cast<std::size_t>(std::count_if(
-                group.triangles.begin(), group.triangles.end(), [](const auto& t) { return t.upwards; }));
-            const std::size_t down = group.triangles.size() - up;
-            const bool keep_up = up > down;
-            bool kept = up == down;
-            for (const auto& [triangle, upwards] : group.triangles) {
-                if (!kept && upwards == keep_up)
-                    kept = true;
-                else
-                    dropped[triangle] = true;
-            }
-            const std::size_t cancelled = 2 * std::min(up, down);
-            result.opposite_triangles += cancelled;
-            result.repeated_triangles += group.triangles.size() - cancelled - (up == down ? 0 : 1);
+    for (const std::vector<OverLowest>& group : find_same_vertices(executor, mesh)) {
+        // The most frequent way round has one survivor, where there is one.
+        const auto up = static_cast<std::size_t>(
+            std::count_if(group.begin(), group.end(), [](const OverLowest& t) { return t.upwards; }));
+        const std::size_t down = group.size() - up;
+        bool kept = up == down;
+        for (const OverLowest& t : group) {
+            if (!kept && t.upwards == (up > down))
+                kept = true;
+            else
+                dropped[t.triangle] = true;
         }
+        const std::size_t cancelled = 2 * std::min(up, down);
+        result.opposite_triangles += cancelled;
+        result.repeated_triangles += group.size() - cancelled - (up == down ? 0 : 1);
+    }
     result.mesh.vertices = mesh.vertices;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (!dropped[i])

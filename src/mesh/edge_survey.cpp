@@ -5,23 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <iterator>
 #include <span>
+#include <utility>
 
 namespace lamella {
 
 namespace {
 
-/// A triangle by its highest vertex, among those whose two lowest vertices one edge joins.
-struct OverLowest {
-    std::uint32_t highest;
-    std::uint32_t triangle;
-    bool upwards;
-
-    friend auto operator<=>(const OverLowest&, const OverLowest&) noexcept = default;
-};
-
 struct Worker {
-    EdgeCounts counts;
+    Inspection counts;
+    std::uint64_t opposite_pairs = 0;
     EdgePlaces places;
     std::vector<OverLowest> triangles;
 };
@@ -50,16 +44,11 @@ void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses, std::
     }
 }
 
-template <class Value>
-void append_sorted(std::vector<Value>& all, const std::vector<Value>& part) {
-    all.insert(all.end(), part.begin(), part.end());
-}
-
 } // namespace
 
 EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places) {
     const std::size_t n = mesh.triangles.size();
-    EdgeSurvey survey{{}, UnionFind(n), PageArray<std::atomic<std::uint8_t>>(n, Fill::zero), {}};
+    EdgeSurvey survey{.parts = UnionFind(n), .open = PageArray<std::atomic<std::uint8_t>>(n, Fill::zero)};
     std::vector<Worker> workers(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned w) {
         Worker& worker = workers[w];
@@ -74,14 +63,14 @@ EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_p
         const bool conflict = !boundary && !balanced;
         if (!balanced)
             survey.open[uses[0].triangle].store(1, std::memory_order_relaxed);
-        worker.counts.boundary += boundary ? 1 : 0;
-        worker.counts.nonmanifold += nonmanifold ? 1 : 0;
-        worker.counts.conflicts += conflict ? 1 : 0;
+        worker.counts.boundary_edges += boundary ? 1 : 0;
+        worker.counts.nonmanifold_edges += nonmanifold ? 1 : 0;
+        worker.counts.orientation_conflicts += conflict ? 1 : 0;
         for_each_same(mesh, uses, worker.triangles, [&](std::span<const OverLowest> group) {
             const auto same_way = static_cast<std::uint64_t>(
                 std::count_if(group.begin(), group.end(), [](const OverLowest& t) { return t.upwards; }));
             worker.counts.duplicate_triangles += group.size() - 1;
-            worker.counts.opposite_pairs += std::min(same_way, group.size() - same_way);
+            worker.opposite_pairs += std::min(same_way, group.size() - same_way);
             if (with_places)
                 for (const OverLowest& t : group.subspan(1))
                     worker.places.duplicates.push_back(t.triangle);
@@ -96,37 +85,38 @@ EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_p
         if (conflict)
             worker.places.conflicts.push_back(edge);
     });
-    EdgePlaces& places = survey.places;
     for (const Worker& worker : workers) {
-        survey.counts.boundary += worker.counts.boundary;
-        survey.counts.nonmanifold += worker.counts.nonmanifold;
-        survey.counts.conflicts += worker.counts.conflicts;
-        survey.counts.duplicate_triangles += worker.counts.duplicate_triangles;
-        survey.counts.opposite_pairs += worker.counts.opposite_pairs;
-        append_sorted(places.boundary, worker.places.boundary);
-        append_sorted(places.nonmanifold, worker.places.nonmanifold);
-        append_sorted(places.conflicts, worker.places.conflicts);
-        append_sorted(places.duplicates, worker.places.duplicates);
+        add(survey.counts, worker.counts);
+        survey.opposite_pairs += worker.opposite_pairs;
     }
-    std::sort(places.boundary.begin(), places.boundary.end());
-    std::sort(places.nonmanifold.begin(), places.nonmanifold.end());
-    std::sort(places.conflicts.begin(), places.conflicts.end());
-    std::sort(places.duplicates.begin(), places.duplicates.end());
+    const auto gather = [&](auto EdgePlaces::*kind) {
+        auto& all = survey.places.*kind;
+        for (const Worker& worker : workers)
+            all.insert(all.end(), (worker.places.*kind).begin(), (worker.places.*kind).end());
+        std::sort(all.begin(), all.end());
+    };
+    gather(&EdgePlaces::boundary);
+    gather(&EdgePlaces::nonmanifold);
+    gather(&EdgePlaces::conflicts);
+    gather(&EdgePlaces::duplicates);
     return survey;
 }
 
-std::vector<std::vector<SameVertices>> find_same_vertices(Executor& executor, const IndexedMesh& mesh) {
-    std::vector<std::vector<SameVertices>> found(executor.workers());
-    std::vector<std::vector<OverLowest>> work(executor.workers());
+std::vector<std::vector<OverLowest>> find_same_vertices(Executor& executor, const IndexedMesh& mesh) {
+    struct Found {
+        std::vector<OverLowest> work;
+        std::vector<std::vector<OverLowest>> groups;
+    };
+    std::vector<Found> found(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
-        for_each_same(mesh, uses, work[worker], [&](std::span<const OverLowest> group) {
-            SameVertices same;
-            for (const OverLowest& t : group)
-                same.triangles.push_back({t.triangle, t.upwards});
-            found[worker].push_back(std::move(same));
+        for_each_same(mesh, uses, found[worker].work, [&](std::span<const OverLowest> group) {
+            found[worker].groups.emplace_back(group.begin(), group.end());
         });
     });
-    return found;
+    std::vector<std::vector<OverLowest>> all;
+    for (Found& part : found)
+        std::move(part.groups.begin(), part.groups.end(), std::back_inserter(all));
+    return all;
 }
 
 } // namespace lamella

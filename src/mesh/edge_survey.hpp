@@ -3,6 +3,7 @@
 // One pass over all edges of a mesh: their defects counted, where somebody asks listed, and what connects.
 
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/inspect.hpp"
 
 #include "core/executor.hpp"
 #include "core/pages.hpp"
@@ -16,14 +17,6 @@
 
 namespace lamella {
 
-struct EdgeCounts {
-    std::uint64_t boundary = 0;
-    std::uint64_t nonmanifold = 0;
-    std::uint64_t conflicts = 0;
-    std::uint64_t duplicate_triangles = 0;
-    std::uint64_t opposite_pairs = 0;
-};
-
 /// An edge by its vertices.
 using VertexPair = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -36,25 +29,30 @@ struct EdgePlaces {
 };
 
 struct EdgeSurvey {
-    EdgeCounts counts;
+    Inspection counts = {};                    ///< what edges tell: of edges, and duplicate triangles
+    std::uint64_t opposite_pairs = 0;          ///< as a Diagnosis has them
     UnionFind parts;                           ///< of triangles connected over edges
     PageArray<std::atomic<std::uint8_t>> open; ///< 1 for some triangle at each edge that is not balanced
-    EdgePlaces places;
+    EdgePlaces places = {};
 };
+
+/// Counts and sizes of another mesh, or of another piece of one, with those of `sum`.
+void add(Inspection& sum, const Inspection& other) noexcept;
 
 [[nodiscard]] EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places);
 
-/// Triangles with the same three vertices, in ascending order.
-struct SameVertices {
-    struct Member {
-        std::uint32_t triangle;
-        bool upwards; ///< which way round, compared with the other members
-    };
-    std::vector<Member> triangles; ///< two or more
+/// A triangle by its highest vertex, among those whose two lowest vertices one edge joins.
+struct OverLowest {
+    std::uint32_t highest;
+    std::uint32_t triangle;
+    bool upwards; ///< which way round, compared with the others
+
+    friend auto operator<=>(const OverLowest&, const OverLowest&) noexcept = default;
 };
 
-/// All such groups: one list for each worker, so their order is any.
-[[nodiscard]] std::vector<std::vector<SameVertices>> find_same_vertices(Executor& executor,
-                                                                        const IndexedMesh& mesh);
+/// All groups of two or more triangles with the same three vertices, each in ascending order; their own order
+/// is any.
+[[nodiscard]] std::vector<std::vector<OverLowest>> find_same_vertices(Executor& executor,
+                                                                      const IndexedMesh& mesh);
 
 } // namespace lamella

@@ -12,38 +12,38 @@
 
 namespace lamella {
 
+void add(Inspection& sum, const Inspection& other) noexcept {
+    sum.box.add(other.box);
+    sum.volume_mm3 += other.volume_mm3;
+    sum.area_mm2 += other.area_mm2;
+    sum.triangles += other.triangles;
+    sum.vertices += other.vertices;
+    sum.shells += other.shells;
+    sum.cavities += other.cavities;
+    for (const DefectKind& kind : defect_kinds)
+        sum.*kind.count += other.*kind.count;
+}
+
 Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
     const std::size_t n = mesh.triangles.size();
     EdgeSurvey edges = survey_edges(executor, mesh, with_places);
     Survey all{.shells = find_shells(executor, mesh, edges)};
     Inspection& found = all.found;
+    found = edges.counts;
     found.triangles = n;
     found.vertices = mesh.vertices.size();
-    found.boundary_edges = edges.counts.boundary;
-    found.nonmanifold_edges = edges.counts.nonmanifold;
-    found.orientation_conflicts = edges.counts.conflicts;
-    found.duplicate_triangles = edges.counts.duplicate_triangles;
-    all.opposite_pairs = edges.counts.opposite_pairs;
+    all.opposite_pairs = edges.opposite_pairs;
     all.places = std::move(edges.places);
 
-    struct Sums {
-        double area = 0;
-        std::uint64_t degenerate = 0;
-    };
     const auto piece = [&](std::size_t begin, std::size_t end) {
-        Sums sums;
+        Inspection some;
         for (std::size_t i = begin; i < end; ++i) {
-            sums.area += area(corners(mesh, i));
-            sums.degenerate += degenerate(mesh.triangles[i]) ? 1 : 0;
+            some.area_mm2 += area(corners(mesh, i));
+            some.degenerate_triangles += degenerate(mesh.triangles[i]) ? 1 : 0;
         }
-        return sums;
+        return some;
     };
-    const Sums sums = fold(executor, n, Sums{}, piece, [](Sums& total, const Sums& part) {
-        total.area += part.area;
-        total.degenerate += part.degenerate;
-    });
-    found.area_mm2 = sums.area;
-    found.degenerate_triangles = sums.degenerate;
+    found = fold(executor, n, found, piece, add);
     found.volume_mm3 = fold_volume(executor, n, [&](std::size_t i) { return corners(mesh, i); });
 
     const Shells& shells = all.shells;

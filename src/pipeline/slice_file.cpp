@@ -6,6 +6,7 @@
 #include "core/byte_amount.hpp"
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
+#include "mesh/edge_survey.hpp"
 #include "pipeline/agreement.hpp"
 #include "pipeline/feed.hpp"
 #include "pipeline/job_memory.hpp"
@@ -186,20 +187,9 @@ std::string describe_defects(const Inspection& found) {
 Inspection together(const Plate& plate, const std::vector<Inspection>& shapes) {
     Inspection all;
     for (const PlatePart& part : plate.parts) {
-        const Inspection& one = shapes[part.shape];
-        all.box.add(part.box);
-        all.volume_mm3 += one.volume_mm3;
-        all.area_mm2 += one.area_mm2;
-        all.triangles += one.triangles;
-        all.vertices += one.vertices;
-        all.boundary_edges += one.boundary_edges;
-        all.nonmanifold_edges += one.nonmanifold_edges;
-        all.orientation_conflicts += one.orientation_conflicts;
-        all.duplicate_triangles += one.duplicate_triangles;
-        all.degenerate_triangles += one.degenerate_triangles;
-        all.shells += one.shells;
-        all.cavities += one.cavities;
-        all.inverted_shells += one.inverted_shells;
+        Inspection one = shapes[part.shape];
+        one.box = part.box;
+        add(all, one);
     }
     return all;
 }
