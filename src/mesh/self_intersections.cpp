@@ -45,32 +45,24 @@ class FirstPairs {
     std::vector<Pair> pairs_; ///< a heap with the last of them on top
 };
 
+/// Of pairs of parts; without parts, all triangles are of part 0.
 struct Found {
-    std::uint64_t crossing = 0;
-    std::uint64_t overlapping = 0;
-    std::uint64_t touching = 0;
     FirstPairs through; ///< that cross or overlap
     FirstPairs beside;  ///< that touch
     std::map<std::pair<std::uint32_t, std::uint32_t>, PartMeetings> parts;
 
     void add(const Pair& pair, const MeetingOptions& options) {
-        count(*this, pair.contact);
         (pair.contact == Contact::touching ? beside : through).add(pair, options.keep);
-        if (!options.parts.empty()) {
-            const auto [a, b] = std::minmax(options.parts[pair.a], options.parts[pair.b]);
-            PartMeetings& meetings = parts[{a, b}];
-            meetings.part_a = a;
-            meetings.part_b = b;
-            count(meetings, pair.contact);
-        }
-    }
-
-  private:
-    template <class Counts>
-    static void count(Counts& counts, Contact contact) {
-        ++(contact == Contact::crossing      ? counts.crossing
-           : contact == Contact::overlapping ? counts.overlapping
-                                             : counts.touching);
+        const auto part_of = [&](std::uint32_t triangle) {
+            return options.parts.empty() ? 0U : options.parts[triangle];
+        };
+        const auto [a, b] = std::minmax({part_of(pair.a), part_of(pair.b)});
+        PartMeetings& meetings = parts[{a, b}];
+        meetings.part_a = a;
+        meetings.part_b = b;
+        ++(pair.contact == Contact::crossing      ? meetings.crossing
+           : pair.contact == Contact::overlapping ? meetings.overlapping
+                                                  : meetings.touching);
     }
 };
 
@@ -133,9 +125,6 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
 
     Found all;
     for (const Found& part : found) {
-        result.crossing += part.crossing;
-        result.overlapping += part.overlapping;
-        result.touching += part.touching;
         for (const Pair& pair : part.through.pairs())
             all.through.add(pair, options.keep);
         for (const Pair& pair : part.beside.pairs())
@@ -155,8 +144,13 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
         for (const Pair& pair : pairs)
             result.first.push_back(described(mesh, pair));
     }
-    for (const auto& [key, meetings] : all.parts)
-        result.parts.push_back(meetings);
+    for (const auto& [key, meetings] : all.parts) {
+        result.crossing += meetings.crossing;
+        result.overlapping += meetings.overlapping;
+        result.touching += meetings.touching;
+        if (!options.parts.empty())
+            result.parts.push_back(meetings);
+    }
     return result;
 }
 
