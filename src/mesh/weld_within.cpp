@@ -13,6 +13,7 @@
 #include "core/executor.hpp"
 #include "mesh/edge_uses.hpp"
 #include "mesh/measures.hpp"
+#include "mesh/union_find.hpp"
 
 #include <fmt/format.h>
 
@@ -138,19 +139,13 @@ std::vector<PointPair> close_pairs(Executor& executor, std::span<const Point3> p
 /// Groups of points, each with its box.
 class Groups {
   public:
-    explicit Groups(std::span<const Point3> points) : boxes_(points.size()), up_(points.size()) {
-        for (std::uint32_t i = 0; i < points.size(); ++i) {
-            up_[i] = i;
+    explicit Groups(std::span<const Point3> points) : boxes_(points.size()), sets_(points.size()) {
+        for (std::size_t i = 0; i < points.size(); ++i)
             boxes_[i].add(points[i]);
-        }
     }
 
     /// The lowest member of the group.
-    [[nodiscard]] std::uint32_t find(std::uint32_t i) noexcept {
-        while (up_[i] != i)
-            i = up_[i] = up_[up_[i]];
-        return i;
-    }
+    [[nodiscard]] std::uint32_t find(std::uint32_t i) const noexcept { return sets_.find(i); }
 
     void join_where_it_fits(std::uint32_t a, std::uint32_t b, double square_of_diagonal) noexcept {
         a = find(a);
@@ -159,13 +154,13 @@ class Groups {
         box.add(boxes_[b]);
         if (a == b || square_of_gap(box.max, box.min) > square_of_diagonal)
             return;
-        up_[std::max(a, b)] = std::min(a, b);
+        sets_.join(a, b);
         boxes_[std::min(a, b)] = box;
     }
 
   private:
     std::vector<Box3> boxes_;
-    std::vector<std::uint32_t> up_;
+    UnionFind sets_;
 };
 
 } // namespace
