@@ -22,20 +22,13 @@
 namespace lamella {
 namespace {
 
-struct ShardPart {
-    std::string label;
-    std::optional<Exposure> exposure;
-    bool support;
-    Box3 box; ///< of its points
-};
-
 /// What is known of a file after it has been read, and let go of, once.
 struct ShardFile {
     std::string path;
     std::string format;
     double units_mm = 0;
     PlaneRule rule = PlaneRule::section_above;
-    std::vector<ShardPart> parts;
+    std::vector<PartInfo> parts; ///< "" is a label that the file does not say
     std::uint64_t layers = 0;
     double bottom = 0;
     double top = 0;
@@ -61,7 +54,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .lowest_layer_mm = layers.front().thickness(),
                     .highest_layer_mm = layers.back().thickness()};
     for (const LayerPart& part : file.parts) {
-        Box3& box = shard.parts.emplace_back(ShardPart{part.label, part.exposure, part.support, {}}).box;
+        Box3& box = shard.parts.emplace_back(PartInfo{part.label, {}, part.exposure, part.support}).box;
         for (const Layer& layer : part.layers)
             for (const PointArray* points : {&layer.points, &layer.hatches})
                 for (const Point2& p : *points)
@@ -72,14 +65,14 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
 
 std::vector<std::string> labels_of(const ShardFile& shard) {
     std::vector<std::string> labels;
-    for (const ShardPart& part : shard.parts)
+    for (const PartInfo& part : shard.parts)
         labels.push_back(part.label);
     return labels;
 }
 
 bool holds_vectors(const ShardFile& shard) {
     return std::all_of(shard.parts.begin(), shard.parts.end(),
-                       [](const ShardPart& part) { return part.exposure.has_value(); });
+                       [](const PartInfo& part) { return part.exposure.has_value(); });
 }
 
 void check_neighbours(const ShardFile& below, const ShardFile& above) {
@@ -226,13 +219,13 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
 // ------------------------------------------------------------------------------------------ any format
 
 /// Those of all files, each in its order; boxes of all.
-std::vector<ShardPart> parts_of(const std::vector<ShardFile>& shards) {
-    std::vector<ShardPart> all;
+std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
+    std::vector<PartInfo> all;
     for (const ShardFile& shard : shards) {
         auto next = all.begin();
-        for (const ShardPart& part : shard.parts) {
+        for (const PartInfo& part : shard.parts) {
             const auto known =
-                std::find_if(next, all.end(), [&](const ShardPart& one) { return one.label == part.label; });
+                std::find_if(next, all.end(), [&](const PartInfo& one) { return one.label == part.label; });
             if (known == all.end()) {
                 next = all.insert(next, part);
             } else {
@@ -246,11 +239,11 @@ std::vector<ShardPart> parts_of(const std::vector<ShardFile>& shards) {
 }
 
 /// What a file has of a plane of each part; an empty layer where it does not know the part.
-std::vector<Layer> plane_of(const LayerFile& file, std::size_t plane, const std::vector<ShardPart>& parts) {
+std::vector<Layer> plane_of(const LayerFile& file, std::size_t plane, const std::vector<PartInfo>& parts) {
     const Layer& any = file.parts.front().layers[plane];
     std::vector<Layer> layers;
     auto next = file.parts.begin();
-    for (const ShardPart& part : parts) {
+    for (const PartInfo& part : parts) {
         if (next != file.parts.end() && next->label == part.label)
             layers.push_back((next++)->layers[plane]);
         else
@@ -263,20 +256,16 @@ std::vector<Layer> plane_of(const LayerFile& file, std::size_t plane, const std:
 void write_anew(const std::vector<ShardFile>& shards, const std::string& output, const LayerFormat& format,
                 const LayerWriteOptions& options, const LayerReadOptions& reading, MergeResult& result,
                 const Execution& execution) {
+    const std::vector<PartInfo> parts = parts_of(shards);
     LayerFileInfo info{.box = {},
                        .layers = result.layers,
                        .bottom = result.bottom,
-                       .parts = {},
+                       .parts = parts,
                        .rule = shards.front().rule};
-    const std::vector<ShardPart> parts = parts_of(shards);
-    for (const ShardPart& part : parts) {
-        PartInfo& of_part = info.parts.emplace_back();
-        if (!part.label.empty())
-            of_part.label = part.label;
-        of_part.exposure = part.exposure;
-        of_part.support = part.support;
-        of_part.box = part.box;
-        info.box.add(of_part.box);
+    for (PartInfo& part : info.parts) {
+        if (part.label.empty())
+            part.label = PartInfo{}.label;
+        info.box.add(part.box);
     }
     if (info.box.empty())
         info.box.add(Point3{});
