@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -81,8 +82,7 @@ std::uint64_t most_points(const SlabSurvey& survey, std::uint32_t planes) {
 struct Seen {
     Box3 box;
     std::uint64_t unusable = 0;
-    std::uint64_t any = 0; ///< whether there is a first corner
-    Point3f first_corner;
+    Point3f first_corner; ///< where there is any
 };
 
 /// Of a mesh that cannot be sliced in pieces.
@@ -175,7 +175,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
 /// The first pass.
 void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
     for (MeshInput& input : inputs) {
-        File& file = files_.emplace_back(File{std::move(input), std::nullopt, 0, {}});
+        File& file = files_.emplace_back(File{std::move(input), std::nullopt, {}, 0, {}});
         if (among_->size() > 1) {
             file.part = part_of(file.input.records().value(), among_->process(), among_->size());
             figures_.triangles_read += file.part->end - file.part->begin;
@@ -194,21 +194,18 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
             read = stream(
                 file, [&](const TriangleSoup& batch, std::uint64_t number) { extent.add(batch, number); },
                 execution, file.part);
-            mine = {extent.box(), read.nonfinite_triangles, extent.box().empty() ? 0U : 1U,
-                    extent.first_corner()};
+            mine = {extent.box(), read.nonfinite_triangles, extent.first_corner()};
         });
         Box3 box;
-        bool any = false;
         file.triangles = read.stored_triangles;
         for (const std::string& message : among_->gather(Packer().put(mine).take())) {
             const Seen seen = Unpacker(message).get<Seen>();
             file.triangles -= seen.unusable;
-            box.add(seen.box);
-            if (seen.any != 0 && !any)
+            if (box.empty())
                 file.first_corner = seen.first_corner;
-            any = any || seen.any != 0;
+            box.add(seen.box);
         }
-        if (!any)
+        if (box.empty())
             throw Error(ErrorKind::input, file.input.path() + ": no triangle of the file is usable");
         builder.add(job.inputs[i], std::move(read), [&](const Mesh&, const Transform& where) {
             if (where != placement)
@@ -217,6 +214,8 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
         });
     }
     plate_ = builder.finish();
+    for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape)
+        files_[plate_.shapes[shape].input].shapes.push_back(shape);
 }
 
 std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>& part) {
@@ -271,36 +270,33 @@ PlaneCounts Feed::counts_of_parts(std::size_t planes) const {
 /// The second pass.
 void Feed::count_streams(const Plan& plan, const Execution& execution) {
     const std::size_t shapes = plate_.shapes.size();
-    std::vector<std::unique_ptr<PlaneCounter>> counters;
-    std::vector<std::unique_ptr<VolumeSum>> volumes;
+    std::deque<PlaneCounter> counters; // that stay where they are
+    std::deque<VolumeSum> volumes;
     for (std::size_t shape = 0; shape < shapes; ++shape) {
-        counters.push_back(std::make_unique<PlaneCounter>(plan));
-        volumes.push_back(
-            std::make_unique<VolumeSum>(placement(shape), files_[plate_.shapes[shape].input].first_corner));
+        counters.emplace_back(plan);
+        volumes.emplace_back(placement(shape), files_[plate_.shapes[shape].input].first_corner);
     }
     in_agreement(*among_, [&] {
-        for (std::size_t f = 0; f < files_.size(); ++f)
+        for (const File& file : files_)
             static_cast<void>(stream(
-                files_[f],
+                file,
                 [&](const TriangleSoup& batch, std::uint64_t number) {
-                    for (std::size_t shape = 0; shape < shapes; ++shape) {
-                        if (plate_.shapes[shape].input != f)
-                            continue;
+                    for (const std::size_t shape : file.shapes) {
                         const TriangleSoup placed = batch.transformed(placement(shape));
-                        counters[shape]->add(placed);
+                        counters[shape].add(placed);
                         if (measure_volume_)
-                            volumes[shape]->add(placed, number);
+                            volumes[shape].add(placed, number);
                     }
                 },
-                execution, files_[f].part));
+                execution, file.part));
     });
     std::vector<double> six_volumes(shapes, 0);
     for (std::size_t shape = 0; shape < shapes; ++shape) {
-        counts_.push_back(counters[shape]->total());
+        counts_.push_back(counters[shape].total());
         among_->sum(counts_.back().numbers());
         if (measure_volume_)
             for (const std::string& message :
-                 among_->gather(Packer().put_all(std::span(volumes[shape]->pieces())).take()))
+                 among_->gather(Packer().put_all(std::span(volumes[shape].pieces())).take()))
                 for (const double piece : Unpacker(message).get_all<double>())
                     six_volumes[shape] += piece;
     }
@@ -380,13 +376,12 @@ Error Feed::changed_while_read() const {
 /// The third pass, where this process reads all of the files.
 void Feed::bring_own(const Execution& execution) {
     std::atomic<bool> fits{true};
-    for (std::size_t f = 0; f < files_.size(); ++f)
+    for (const File& file : files_)
         static_cast<void>(stream(
-            files_[f],
+            file,
             [&](const TriangleSoup& batch, std::uint64_t) {
-                for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape)
-                    if (plate_.shapes[shape].input == f &&
-                        !store_->add(shape, batch.transformed(placement(shape))))
+                for (const std::size_t shape : file.shapes)
+                    if (!store_->add(shape, batch.transformed(placement(shape))))
                         fits = false;
             },
             execution, std::nullopt));
@@ -400,8 +395,7 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
     using Outgoing = std::vector<std::vector<Triangle3f>>; // by process
     const SlabFinder finder(plan, division);
     const std::uint64_t at_once = memory_.triangles_in_a_round(among_->size());
-    for (std::size_t f = 0; f < files_.size(); ++f) {
-        File& file = files_[f];
+    for (const File& file : files_) {
         std::uint64_t longest = 0;
         for (std::size_t p = 0; p < among_->size(); ++p) {
             const RecordRange part = part_of(file.input.records().value(), p, among_->size());
@@ -419,9 +413,7 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
                     file,
                     [&](const TriangleSoup& batch, std::uint64_t) {
                         std::vector<SlabFinder::Touched> touched;
-                        for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape) {
-                            if (plate_.shapes[shape].input != f)
-                                continue;
+                        for (const std::size_t shape : file.shapes) {
                             finder.find(batch.transformed(placement(shape)), touched);
                             Outgoing sorted(among_->size());
                             for (std::size_t i = 0; i < batch.size(); ++i)
@@ -436,9 +428,7 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
                     execution, now));
             });
             const Stopwatch exchanging;
-            for (std::size_t shape = 0; shape < plate_.shapes.size(); ++shape) {
-                if (plate_.shapes[shape].input != f)
-                    continue;
+            for (const std::size_t shape : file.shapes) {
                 const TriangleSoup incoming = exchanged(outgoing[shape]);
                 outgoing[shape].clear();
                 in_agreement(*among_, [&] { store(shape, incoming, execution); });

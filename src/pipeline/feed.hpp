@@ -76,6 +76,7 @@ class Feed {
     struct File {
         MeshInput input;
         std::optional<RecordRange> part; ///< of this process; unset: all of it
+        std::vector<std::size_t> shapes; ///< of the plate, that are made of it
         std::uint64_t triangles = 0;     ///< usable ones, of all processes
         Point3f first_corner;            ///< as stored
     };

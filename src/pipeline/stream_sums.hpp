@@ -46,9 +46,8 @@ class Extent {
 /// The volume of a mesh from its batches, with the bits of `volume` where those are whole pieces of it.
 class VolumeSum {
   public:
-    VolumeSum(const Transform& placement, const Point3f& first) : placement_(placement) {
-        origin_ = placement({first.x, first.y, first.z});
-    }
+    VolumeSum(const Transform& placement, const Point3f& first)
+        : origin_(placement({first.x, first.y, first.z})) {}
 
     /// From any thread.
     void add(const TriangleSoup& batch, std::uint64_t number) {
@@ -65,7 +64,6 @@ class VolumeSum {
     [[nodiscard]] const std::vector<double>& pieces() const noexcept { return pieces_; }
 
   private:
-    Transform placement_;
     Point3 origin_;
     std::mutex mutex_;
     std::vector<double> pieces_;
