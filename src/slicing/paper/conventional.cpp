@@ -20,37 +20,12 @@ namespace lamella {
 
 namespace {
 
-/// One triangle on one plane, in a doubly linked list.
+/// One triangle on one plane.
 struct Segment {
     Point2 from;
     Point2 to;
     Segment* next = nullptr;
     Segment* previous = nullptr;
-};
-
-/// The segments of one plane that belong to no contour yet, in the order of the triangles.
-class SegmentList {
-  public:
-    void append(const Point2& from, const Point2& to) {
-        Segment* segment = memory_.make({from, to, nullptr, last_});
-        (last_ != nullptr ? last_->next : first_) = segment;
-        last_ = segment;
-    }
-    void remove(Segment* segment) {
-        (segment->previous != nullptr ? segment->previous->next : first_) = segment->next;
-        (segment->next != nullptr ? segment->next->previous : last_) = segment->previous;
-    }
-    void clear() {
-        memory_.clear();
-        first_ = last_ = nullptr;
-    }
-    [[nodiscard]] Segment* first() const noexcept { return first_; }
-    [[nodiscard]] std::uint64_t bytes() const noexcept { return memory_.bytes(); }
-
-  private:
-    NodePool<Segment> memory_;
-    Segment* first_ = nullptr;
-    Segment* last_ = nullptr;
 };
 
 class Conventional {
@@ -61,10 +36,10 @@ class Conventional {
 
     void slice_plane(std::uint32_t plane, LayerBuilder& layer) {
         cut_triangles(plane);
-        counts_.bytes = std::max(counts_.bytes, segments_.bytes());
-        while (segments_.first() != nullptr)
+        counts_.bytes = std::max(counts_.bytes, memory_.bytes());
+        while (segments_.first != nullptr)
             sort_contour(layer);
-        segments_.clear();
+        memory_.clear();
     }
 
   private:
@@ -77,14 +52,14 @@ class Conventional {
                 const Point2 from = engine_.cut(section.from).at(z);
                 const Point2 to = engine_.cut(section.to).at(z);
                 if (!(from == to)) // a point would close a contour before it began
-                    segments_.append(from, to);
+                    segments_.append(memory_.make({from, to}));
             }
         }
     }
 
     /// Takes one contour out of the list. It runs as its first segment does.
     void sort_contour(LayerBuilder& layer) {
-        Segment* start = segments_.first();
+        Segment* start = segments_.first;
         segments_.remove(start);
         ++counts_.inserted.new_list;
         contour_.assign({start->from, start->to});
@@ -110,7 +85,7 @@ class Conventional {
         engine_.check_cancelled();
         ++counts_.searches;
         const Point2 end = contour_.back();
-        for (Segment* segment = segments_.first(); segment != nullptr; segment = segment->next) {
+        for (Segment* segment = segments_.first; segment != nullptr; segment = segment->next) {
             ++counts_.comparisons;
             const bool begins_here = segment->from == end;
             if (!begins_here && !(segment->to == end))
@@ -124,7 +99,8 @@ class Conventional {
 
     const SerialEngine& engine_;
     MatchingCounts& counts_;
-    SegmentList segments_;
+    NodePool<Segment> memory_;
+    LinkedList<Segment> segments_; ///< that belong to no contour yet, in the order of the triangles
     std::vector<Point2> contour_;
 };
 

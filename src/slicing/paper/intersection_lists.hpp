@@ -45,22 +45,7 @@ struct IntersectionList {
 
 /// CLL. New lists come last.
 template <class Node>
-struct ContourList {
-    IntersectionList<Node>* first = nullptr;
-    IntersectionList<Node>* last = nullptr;
-
-    void append(IntersectionList<Node>* list) {
-        list->next = nullptr;
-        list->previous = last;
-        (last != nullptr ? last->next : first) = list;
-        last = list;
-    }
-    void remove(IntersectionList<Node>* list) {
-        (list->previous != nullptr ? list->previous->next : first) = list->next;
-        (list->next != nullptr ? list->next->previous : last) = list->previous;
-        list->next = list->previous = nullptr;
-    }
-};
+using ContourList = LinkedList<IntersectionList<Node>>;
 
 /// What was done with an IN.
 enum class Inserted { new_list, front, back, link, close };

@@ -1,6 +1,6 @@
 #pragma once
 
-// Memory for the nodes of linked lists: as many as there are, none moved, all of them freed together.
+// Linked lists, and memory for their nodes: as many as there are, none moved, all of them freed together.
 
 #include <algorithm>
 #include <cstddef>
@@ -8,6 +8,26 @@
 #include <vector>
 
 namespace lamella {
+
+/// Leads through nodes of a pool, each of which knows its neighbours.
+template <class Node>
+struct LinkedList {
+    Node* first = nullptr;
+    Node* last = nullptr;
+
+    void append(Node* node) {
+        node->next = nullptr;
+        node->previous = last;
+        (last != nullptr ? last->next : first) = node;
+        last = node;
+    }
+
+    void remove(Node* node) {
+        (node->previous != nullptr ? node->previous->next : first) = node->next;
+        (node->next != nullptr ? node->next->previous : last) = node->previous;
+        node->next = node->previous = nullptr;
+    }
+};
 
 template <class T>
 class NodePool {
