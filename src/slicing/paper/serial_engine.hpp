@@ -10,13 +10,13 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "core/executor.hpp"
+#include "core/stopwatch.hpp"
 #include "slicing/edge_cut.hpp"
 #include "slicing/ranks.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -52,11 +52,11 @@ class SerialEngine {
     explicit SerialEngine(const SliceJob& job) : job_(job), executor_(job.execution), ranks_(job.plan) {
         executor_.check_cancelled();
         if (job.mesh.indexed() == nullptr) {
-            const auto start = Clock::now();
+            const Stopwatch welding;
             welded_ = weld(job.mesh, job.execution);
-            job.report.weld_seconds = seconds_since(start);
+            job.report.weld_seconds = welding.seconds();
         }
-        linking_ = Clock::now();
+        linking_ = Stopwatch();
         vertex_ranks_.reserve(mesh().vertices.size());
         for (const Point3& vertex : mesh().vertices)
             vertex_ranks_.push_back(ranks_(vertex.z));
@@ -119,8 +119,8 @@ class SerialEngine {
     /// the sink at once. To be called last.
     template <class Fill>
     void deliver(const Fill& fill) {
-        job_.report.link_seconds = seconds_since(linking_);
-        const auto start = Clock::now();
+        job_.report.link_seconds = linking_.seconds();
+        const Stopwatch slicing;
         ProgressMeter progress(job_.execution, Stage::slice, planes());
         LayerBuilder layer;
         for (std::uint32_t plane = 0; plane < planes(); ++plane) {
@@ -135,22 +135,16 @@ class SerialEngine {
         }
         executor_.check_cancelled();
         progress.finish();
-        job_.report.slice_seconds = seconds_since(start);
+        job_.report.slice_seconds = slicing.seconds();
     }
 
   private:
-    using Clock = std::chrono::steady_clock;
-
-    static double seconds_since(Clock::time_point start) {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    }
-
     const SliceJob& job_;
     Executor executor_;
     Ranks ranks_;
     IndexedMesh welded_;
     std::vector<std::uint32_t> vertex_ranks_;
-    Clock::time_point linking_;
+    Stopwatch linking_;
 };
 
 } // namespace lamella

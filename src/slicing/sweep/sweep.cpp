@@ -1,6 +1,7 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "core/executor.hpp"
+#include "core/stopwatch.hpp"
 #include "slicing/sweep/crew.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 #include "slicing/sweep/emit.hpp"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <memory>
 #include <span>
 #include <vector>
@@ -154,15 +154,9 @@ class alignas(128) Sweep {
     PointArena arena_;
 };
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 template <class Ends>
 void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& ranks, Executor& executor) {
-    const auto start = Clock::now();
+    const Stopwatch slicing;
     ProgressMeter progress(job.execution, Stage::slice, ranks.count());
     OrderedDelivery delivery(job.sink, executor, progress);
 
@@ -190,19 +184,19 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
     executor.check_cancelled();
     assert(delivery.delivered() == ranks.count());
     progress.finish();
-    job.report.slice_seconds = seconds_since(start);
+    job.report.slice_seconds = slicing.seconds();
 }
 
 } // namespace
 
 void slice_by_sweep(const SliceJob& job) {
     Executor executor(job.execution);
-    const auto start = Clock::now();
+    const Stopwatch linking;
     const Ranks ranks(job.plan);
     ProgressMeter progress(job.execution, Stage::link, job.mesh.size());
     const auto sweep = [&](const auto& graph) {
         progress.finish();
-        job.report.link_seconds = seconds_since(start);
+        job.report.link_seconds = linking.seconds();
         sweep_graph(job, graph, ranks, executor);
     };
     if (job.mesh.indexed() != nullptr)
