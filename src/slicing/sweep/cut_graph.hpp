@@ -52,24 +52,21 @@ struct PlaneSpan {
     std::uint32_t last;
 };
 
-/// Ends of an edge of an STL file: the coordinates themselves. Equal coordinates are the same vertex, so no
-/// weld is needed on the way from an STL file to layers.
-struct FloatEnds {
-    Point3f low, high;
-    friend bool operator==(const FloatEnds&, const FloatEnds&) = default;
+/// The two ends of an edge, as a kind of mesh knows its vertices.
+template <class Vertex>
+struct EdgeEnds {
+    Vertex low, high;
+
+    friend bool operator==(const EdgeEnds&, const EdgeEnds&) = default;
 };
 
+/// Of an STL file: the coordinates themselves. Equal coordinates are the same vertex, so no weld is needed on
+/// the way from an STL file to layers.
+using FloatEnds = EdgeEnds<Point3f>;
 /// The same for a soup with a placement.
-struct DoubleEnds {
-    Point3 low, high;
-    friend bool operator==(const DoubleEnds&, const DoubleEnds&) = default;
-};
-
-/// Ends of an edge of an indexed mesh, whose sharing is taken at its word.
-struct IndexEnds {
-    std::uint32_t low, high;
-    friend bool operator==(const IndexEnds&, const IndexEnds&) = default;
-};
+using DoubleEnds = EdgeEnds<Point3>;
+/// Of an indexed mesh, whose sharing is taken at its word.
+using IndexEnds = EdgeEnds<std::uint32_t>;
 
 static_assert(sizeof(CutNode<FloatEnds>) == 44 && sizeof(CutNode<IndexEnds>) == 28);
 
