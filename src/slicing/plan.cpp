@@ -2,7 +2,6 @@
 
 #include "lamella/core/error.hpp"
 
-#include "slicing/require_height.hpp"
 #include "slicing/stacking.hpp"
 
 #include <fmt/format.h>
@@ -45,15 +44,6 @@ void require_ranges_that_hold_something(const PlaneSelection& only) {
                                 text_of(*range)));
 }
 
-// Layer i of the stack, without a look at the part.
-PlannedLayer stacked_layer(std::uint64_t i, double z_min, double first_height, double height, double f) {
-    if (i == 0)
-        return {0, z_min + f * first_height, z_min, z_min + first_height};
-    const double base = z_min + first_height;
-    const auto below = static_cast<double>(i - 1);
-    return {i, base + (below + f) * height, base + below * height, base + (below + 1) * height};
-}
-
 } // namespace
 
 Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, SliceAt slice_at,
@@ -62,13 +52,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
     const double first_height = layers.first_layer_height.value_or(height);
     require_height(height, "the layer height");
     require_height(first_height, "the first layer height");
-    if (!(std::isfinite(z_min) && std::isfinite(z_max) && z_min < z_max))
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("the mesh has no height (z from {} to {}), so there is nothing to slice; another "
-                        "slicing direction may have some",
-                        z_min, z_max));
-
+    require_part(z_min, z_max);
     require_ranges_that_hold_something(only);
 
     const double f = fraction(slice_at);
@@ -80,13 +64,21 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
                 "the part is {:.6g} mm high (z from {} to {} mm), no more than a thousandth of the "
                 "layer height of {} mm, which counts as nothing; choose a layer height below {:.6g} mm",
                 z_max - z_min, z_min, z_max, height, (z_max - z_min) / negligible));
-    const auto meets_part = [&](double z) {
-        return at_top ? z <= z_max + negligible * height : z < z_max - negligible * height;
+    // Layer i of the stack, without a look at the part.
+    const auto layer_at = [&](std::uint64_t i) -> PlannedLayer {
+        if (i == 0)
+            return {0, z_min + f * first_height, z_min, z_min + first_height};
+        const double base = z_min + first_height;
+        const auto below = static_cast<double>(i - 1);
+        return {i, base + (below + f) * height, base + below * height, base + (below + 1) * height};
+    };
+    const auto meets = [&](std::uint64_t i) {
+        return meets_part(layer_at(i).z, height, z_max, slice_at);
     };
 
     // The closed form is exact up to rounding; one step either way mends that.
     std::uint64_t count = 0;
-    if (meets_part(stacked_layer(0, z_min, first_height, height, f).z)) {
+    if (meets(0)) {
         const double above_first = z_max - (z_min + first_height) - f * height;
         const double estimate = std::max(0.0, std::floor(above_first / height) + 2.0);
         if (estimate > static_cast<double>(max_layers))
@@ -96,9 +88,9 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
                             "{} are possible",
                             height, estimate, z_max - z_min, max_layers));
         count = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(estimate));
-        while (count > 1 && !meets_part(stacked_layer(count - 1, z_min, first_height, height, f).z))
+        while (count > 1 && !meets(count - 1))
             --count;
-        while (meets_part(stacked_layer(count, z_min, first_height, height, f).z))
+        while (meets(count))
             ++count;
     }
     if (count == 0)
@@ -106,8 +98,8 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
             ErrorKind::usage,
             fmt::format("no layer: the first cut, at z = {} mm, misses the part (z from {} to {} mm); "
                         "choose a {}layer height below {} mm",
-                        stacked_layer(0, z_min, first_height, height, f).z, z_min, z_max,
-                        layers.first_layer_height ? "first " : "", z_max - z_min));
+                        layer_at(0).z, z_min, z_max, layers.first_layer_height ? "first " : "",
+                        z_max - z_min));
 
     std::uint64_t begin = 0;
     std::uint64_t end = count;
@@ -127,7 +119,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
     const double rounding =
         4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(z_min), std::abs(z_max));
     for (std::uint64_t i = begin; i < end; ++i) {
-        PlannedLayer layer = stacked_layer(i, z_min, first_height, height, f);
+        PlannedLayer layer = layer_at(i);
         // Rounding must neither lift the last cut off the top face nor leave it just below.
         if (at_top && i + 1 == count && layer.z >= z_max - rounding) {
             layer.z = z_max;
@@ -148,9 +140,8 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
                                 "{:.6g} to {:.6g} mm",
                                 only.index_range ? "the layers " + text_of(*only.index_range)
                                                  : std::string("this part"),
-                                z_min, z_max, text_of(*only.z_range),
-                                stacked_layer(begin, z_min, first_height, height, f).z,
-                                stacked_layer(end - 1, z_min, first_height, height, f).z));
+                                z_min, z_max, text_of(*only.z_range), layer_at(begin).z,
+                                layer_at(end - 1).z));
     return plan;
 }
 

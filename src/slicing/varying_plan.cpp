@@ -3,7 +3,6 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
-#include "slicing/require_height.hpp"
 #include "slicing/stacking.hpp"
 
 #include <fmt/format.h>
@@ -22,11 +21,7 @@ namespace {
 /// Layers on one another: height_at(bottom) -> height, from z_min on as long as cuts meet the part.
 template <class HeightAt>
 Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at, const HeightAt& height_at) {
-    if (!(std::isfinite(z_min) && std::isfinite(z_max) && z_min < z_max))
-        throw Error(ErrorKind::usage,
-                    fmt::format("the mesh has no height (z from {} to {}), so there is nothing to slice; "
-                                "another slicing direction may have some",
-                                z_min, z_max));
+    require_part(z_min, z_max);
     if ((z_max - z_min) / lowest_height > static_cast<double>(max_layers))
         throw Error(ErrorKind::usage,
                     fmt::format("layers of {} mm are too many for a part that is {} mm high; at most {} are "
@@ -39,8 +34,7 @@ Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at,
         const double height = height_at(bottom);
         const double top = bottom + height;
         double z = bottom + fraction(slice_at) * height;
-        const bool meets_part = at_top ? z <= z_max + negligible * height : z < z_max - negligible * height;
-        if (!meets_part)
+        if (!meets_part(z, height, z_max, slice_at))
             break;
         if (!(bottom < top) || (!plan.layers.empty() && !(plan.layers.back().z < z)))
             throw Error(ErrorKind::usage,
