@@ -9,13 +9,17 @@
 
 namespace lamella {
 
-[[nodiscard]] inline double area(const Triangle3& t) noexcept {
+/// Across the triangle, to the side from which its corners are seen counter-clockwise; as long as twice its
+/// area.
+[[nodiscard]] inline Point3 normal(const Triangle3& t) noexcept {
     const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
     const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
-    const double x = u.y * v.z - u.z * v.y;
-    const double y = u.z * v.x - u.x * v.z;
-    const double z = u.x * v.y - u.y * v.x;
-    return std::sqrt(x * x + y * y + z * z) / 2;
+    return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+[[nodiscard]] inline double area(const Triangle3& t) noexcept {
+    const Point3 n = normal(t);
+    return std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) / 2;
 }
 
 [[nodiscard]] inline Point3 middle(const Triangle3& t) noexcept {

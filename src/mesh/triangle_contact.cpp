@@ -1,6 +1,7 @@
 #include "mesh/triangle_contact.hpp"
 
 #include "core/orientation.hpp"
+#include "mesh/measures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -123,11 +124,9 @@ Shared shared_corners(const NamedTriangle& p, const NamedTriangle& q) noexcept {
 
 Contact contact_in_a_plane(const Triangle3& p, const Triangle3& q, const Shared& shared) noexcept {
     // Any projection in which p keeps an area will do; the largest part of its normal is the safest one.
-    const Point3 u{p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
-    const Point3 v{p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
-    const std::array<double, 3> normal{std::abs(u.y * v.z - u.z * v.y), std::abs(u.z * v.x - u.x * v.z),
-                                       std::abs(u.x * v.y - u.y * v.x)};
-    int axis = static_cast<int>(std::max_element(normal.begin(), normal.end()) - normal.begin());
+    const Point3 n = normal(p);
+    const std::array<double, 3> sizes{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+    int axis = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
     const auto area_sign = [&](const Triangle3& t) {
         const Flat f = projected(t, axis);
         return orientation(f[0], f[1], f[2]);
@@ -202,12 +201,9 @@ Point3 contact_place(const Triangle3& p, const Triangle3& q, Contact contact) no
         std::array<Point3, 4> ends;
         std::size_t n = 0;
         const auto add_ends = [&](const Triangle3& t, const Triangle3& plane) {
+            const Point3 up = normal(plane);
             const auto height = [&](const Point3& x) {
-                const Point3 u{plane[1].x - plane[0].x, plane[1].y - plane[0].y, plane[1].z - plane[0].z};
-                const Point3 v{plane[2].x - plane[0].x, plane[2].y - plane[0].y, plane[2].z - plane[0].z};
-                const Point3 w{x.x - plane[0].x, x.y - plane[0].y, x.z - plane[0].z};
-                return (u.y * v.z - u.z * v.y) * w.x + (u.z * v.x - u.x * v.z) * w.y +
-                       (u.x * v.y - u.y * v.x) * w.z;
+                return up.x * (x.x - plane[0].x) + up.y * (x.y - plane[0].y) + up.z * (x.z - plane[0].z);
             };
             for (std::size_t k = 0; k < 3 && n < 4; ++k) {
                 const Point3& a = t[k];

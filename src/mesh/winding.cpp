@@ -38,12 +38,10 @@ bool above(const std::array<Point3, 3>& t, const Point3& p) {
         return true;
     if (std::max({t[0].z, t[1].z, t[2].z}) <= p.z)
         return false;
-    const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
-    const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
+    const Point3 n = normal(t);
     const Point3 w{p.x - t[0].x, p.y - t[0].y, p.z - t[0].z};
-    const double normal_z = u.x * v.y - u.y * v.x;
-    const double side = w.x * (u.y * v.z - u.z * v.y) + w.y * (u.z * v.x - u.x * v.z) + w.z * normal_z;
-    return (side < 0) == (normal_z > 0);
+    const double side = w.x * n.x + w.y * n.y + w.z * n.z;
+    return (side < 0) == (n.z > 0);
 }
 
 /// Points by cells of a square grid over the x-y plane.

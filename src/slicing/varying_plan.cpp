@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
+#include "mesh/measures.hpp"
 #include "slicing/stacking.hpp"
 
 #include <fmt/format.h>
@@ -110,15 +111,11 @@ class Slopes {
 
 /// |n.z|, rounded up; 0 for a triangle without area, which bounds nothing.
 float steepness(const Triangle3& t) noexcept {
-    const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
-    const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
-    const double x = u.y * v.z - u.z * v.y;
-    const double y = u.z * v.x - u.x * v.z;
-    const double z = u.x * v.y - u.y * v.x;
-    const double length = std::hypot(x, y, z);
+    const Point3 n = normal(t);
+    const double length = std::hypot(n.x, n.y, n.z);
     if (!(length > 0))
         return 0;
-    return std::nextafter(static_cast<float>(std::min(1.0, std::abs(z) / length)), 2.0F);
+    return std::nextafter(static_cast<float>(std::min(1.0, std::abs(n.z) / length)), 2.0F);
 }
 
 } // namespace
