@@ -2,22 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cstddef>
 
 namespace lamella {
 
 std::string_view scan_region_name(ScanRegion region) noexcept {
-    switch (region) {
-    case ScanRegion::core:
-        return "core";
-    case ScanRegion::upskin:
-        return "upskin";
-    case ScanRegion::downskin:
-        return "downskin";
-    default:
-        return "support";
-    }
+    constexpr std::array names{"core", "upskin", "downskin", "support"};
+    return names[static_cast<std::size_t>(region)];
 }
 
 std::string_view vector_kind_name(VectorKind kind) noexcept {

@@ -1,23 +1,13 @@
 #include "lamella/core/execution.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace lamella {
 
 const char* stage_name(Stage stage) noexcept {
-    switch (stage) {
-    case Stage::read:
-        return "read";
-    case Stage::weld:
-        return "weld";
-    case Stage::link:
-        return "link";
-    case Stage::slice:
-        return "slice";
-    case Stage::polygon:
-        return "polygon";
-    case Stage::write:
-        return "write";
-    }
-    return "?";
+    constexpr std::array names{"read", "weld", "link", "slice", "polygon", "write"};
+    return names[static_cast<std::size_t>(stage)];
 }
 
 } // namespace lamella

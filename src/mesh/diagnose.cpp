@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -185,17 +186,8 @@ std::vector<Shell> tell_shells(const Survey& all, const IndexedMesh& mesh) {
 } // namespace
 
 std::string_view shell_kind_name(ShellKind kind) noexcept {
-    switch (kind) {
-    case ShellKind::body:
-        return "body";
-    case ShellKind::cavity:
-        return "cavity";
-    case ShellKind::inverted:
-        return "inverted";
-    case ShellKind::open:
-        return "open";
-    }
-    return "";
+    constexpr std::array names{"body", "cavity", "inverted", "open"};
+    return names[static_cast<std::size_t>(kind)];
 }
 
 Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, const Execution& execution) {
