@@ -1,6 +1,7 @@
 #include "core/atomic_directory.hpp"
 
 #include "core/atomic_file.hpp"
+#include "core/nameless_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,16 +17,6 @@ namespace lamella {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// `target` with a number and an ending that make it a new, hidden name in the same folder.
-fs::path beside(const fs::path& target, int attempt) {
-    const std::string stem = target.filename().string().substr(0, 200);
-    return target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, getpid(), attempt);
-}
-
-} // namespace
-
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
     : path_(std::move(path)), may_remove_(std::move(may_remove)) {
     std::error_code error;
@@ -39,13 +30,9 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
         throw Error(ErrorKind::output, "cannot write a folder without a name");
     check_replaceable();
     const UnfinishedName::Creation creation;
-    for (int attempt = 0; working_.empty(); ++attempt) {
-        const fs::path candidate = beside(target_, attempt);
-        if (::mkdir(candidate.c_str(), 0777) == 0)
-            working_ = candidate;
-        else if (errno != EEXIST || attempt > 10'000)
-            throw output_error(target_.string(), errno);
-    }
+    working_ = take_free_name(target_, [](const char* name) { return ::mkdir(name, 0777) == 0; });
+    if (working_.empty())
+        throw output_error(target_.string(), errno);
     if (!unfinished_.announce(working_.string())) {
         ::rmdir(working_.c_str());
         throw Error(ErrorKind::cancelled, "cancelled");
@@ -102,15 +89,14 @@ void AtomicDirectory::commit() {
     }
     // Not every file system can do that. The old folder steps aside; should the new one fail to take its
     // place, it steps back.
-    fs::path aside;
-    for (int attempt = 0; aside.empty(); ++attempt) {
-        const fs::path candidate = beside(target_, attempt);
-        if (fs::exists(fs::symlink_status(candidate)))
-            continue;
-        if (std::rename(target_.c_str(), candidate.c_str()) != 0)
-            throw output_error(target_.string(), errno);
-        aside = candidate;
-    }
+    const fs::path aside = take_free_name(target_, [this](const char* name) {
+        if (!fs::exists(fs::symlink_status(name)))
+            return std::rename(target_.c_str(), name) == 0;
+        errno = EEXIST;
+        return false;
+    });
+    if (aside.empty())
+        throw output_error(target_.string(), errno);
     if (std::rename(working_.c_str(), target_.c_str()) != 0) {
         const int system_error = errno;
         if (std::rename(aside.c_str(), target_.c_str()) != 0)

@@ -67,30 +67,6 @@ std::string follow_links(const std::string& path) {
     throw ELOOP;
 }
 
-// A name for what is not finished: hidden, beside the target, of one process.
-std::string temporary_name(const fs::path& target, int attempt) {
-    // Room for the rest of the name: most file systems end at 255 bytes.
-    const std::string stem = target.filename().string().substr(0, 200);
-    return (target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, getpid(), attempt)).string();
-}
-
-// The first name that `take` makes its own; "" and errno where it fails for another reason than that the name
-// is in use.
-template <class Take>
-std::string take_free_name(const fs::path& target, const Take& take) {
-    constexpr int most_attempts = 10'000;
-    for (int attempt = 0; attempt < most_attempts;) {
-        std::string name = temporary_name(target, attempt);
-        if (take(name.c_str()))
-            return name;
-        if (errno == EEXIST)
-            ++attempt;
-        else if (errno != EINTR)
-            break;
-    }
-    return {};
-}
-
 } // namespace
 
 Error output_error(const std::string& path, int system_error) {

@@ -26,6 +26,13 @@ int open_nameless(const std::string& folder, mode_t permissions) {
     return descriptor;
 }
 
+// A name for what is not finished: hidden, beside the target, of one process.
+std::string temporary_name(const std::filesystem::path& target, int attempt) {
+    // Room for the rest of the name: most file systems end at 255 bytes.
+    const std::string stem = target.filename().string().substr(0, 200);
+    return (target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, getpid(), attempt)).string();
+}
+
 } // namespace
 
 int create_nameless(const std::string& folder, mode_t permissions) {
@@ -35,6 +42,21 @@ int create_nameless(const std::string& folder, mode_t permissions) {
     ::close(descriptor); // there is no /proc
     errno = EOPNOTSUPP;
     return -1;
+}
+
+std::string take_free_name(const std::filesystem::path& target,
+                           const std::function<bool(const char* name)>& take) {
+    constexpr int most_attempts = 10'000;
+    for (int attempt = 0; attempt < most_attempts;) {
+        std::string name = temporary_name(target, attempt);
+        if (take(name.c_str()))
+            return name;
+        if (errno == EEXIST)
+            ++attempt;
+        else if (errno != EINTR)
+            break;
+    }
+    return {};
 }
 
 bool name_file(int descriptor, const char* name) {

@@ -1,9 +1,11 @@
 #pragma once
 
-// Files without a name: nothing of them is left however the process ends.
+// Files without a name: nothing of them is left however the process ends. And names for what is not finished.
 
 #include <sys/types.h>
 
+#include <filesystem>
+#include <functional>
 #include <string>
 
 namespace lamella {
@@ -12,6 +14,11 @@ namespace lamella {
 /// descriptor, which the caller closes; -1 and errno otherwise: EOPNOTSUPP where there are no such files or
 /// where they cannot be named.
 [[nodiscard]] int create_nameless(const std::string& folder, mode_t permissions);
+
+/// The first hidden name beside `target` that `take` makes its own: false and EEXIST say that it is in use.
+/// "" and errno where it fails for another reason.
+[[nodiscard]] std::string take_free_name(const std::filesystem::path& target,
+                                         const std::function<bool(const char* name)>& take);
 
 /// Gives a file of `create_nameless` its name, once. False and errno otherwise: EEXIST where the name is in
 /// use.
