@@ -6,13 +6,10 @@
 
 namespace lamella {
 
-namespace {
-
-std::uint32_t less(std::uint32_t from, std::uint32_t by) noexcept {
-    return from - std::min(from, by);
+PlaneRange widened(PlaneRange planes, std::uint32_t below, std::uint32_t above, PlaneRange all) noexcept {
+    return {planes.begin - std::min(below, planes.begin - all.begin),
+            planes.end + std::min(above, all.end - planes.end)};
 }
-
-} // namespace
 
 LayerWindow::LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t below, std::uint32_t above,
                          Work work)
@@ -22,15 +19,14 @@ LayerWindow::LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t bel
 
 /// Itself included.
 PlaneRange LayerWindow::neighbours(std::uint32_t plane) const noexcept {
-    return {std::max(coming_.begin, less(plane, below_)),
-            plane + std::min(above_, coming_.end - 1 - plane) + 1};
+    return widened({plane, plane + 1}, below_, above_, coming_);
 }
 
 /// Whose neighbour it is.
 PlaneRange LayerWindow::users(std::uint32_t plane) const noexcept {
-    const std::uint32_t begin = std::max(wanted_.begin, less(plane, above_));
-    const std::uint32_t last = plane + std::min(below_, coming_.end - 1 - plane);
-    return {begin, std::max(begin, std::min(wanted_.end, last + 1))};
+    const PlaneRange all = widened({plane, plane + 1}, above_, below_, coming_);
+    const std::uint32_t begin = std::max(wanted_.begin, all.begin);
+    return {begin, std::max(begin, std::min(wanted_.end, all.end))};
 }
 
 std::function<void()> LayerWindow::operator()(std::uint32_t plane, std::span<const Layer> parts) {

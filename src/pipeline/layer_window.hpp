@@ -19,6 +19,10 @@
 
 namespace lamella {
 
+/// Planes with so many below and above them, as far as there are any among `all`.
+[[nodiscard]] PlaneRange widened(PlaneRange planes, std::uint32_t below, std::uint32_t above,
+                                 PlaneRange all) noexcept;
+
 /// Hands planes on together with the planes beneath and on top. Each comes once, in two halves as those of a
 /// PlateSink: in the parallel half its layers are stored, and whichever planes have all of their neighbours
 /// by it are worked on there; in the ordered half of plane i those become ready of which i is the last

@@ -146,8 +146,7 @@ PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t pl
         return {last, last};
     if (!job.scan)
         return planes;
-    return {planes.begin - std::min(planes.begin, job.scan->downskin.layers),
-            planes.end + std::min(job.scan->upskin.layers, last - planes.end)};
+    return widened(planes, job.scan->downskin.layers, job.scan->upskin.layers, {0, last});
 }
 
 /// What the head of the slice file says.
