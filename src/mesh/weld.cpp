@@ -23,33 +23,27 @@
 #include <bit>
 #include <compare>
 #include <optional>
+#include <type_traits>
 
 namespace lamella {
 
 namespace {
 
 /// Bits of coordinates that are not -0: equal bits, equal point.
-struct SingleKey {
-    std::uint32_t x;
-    std::uint32_t y;
-    std::uint32_t z;
+template <class Bits>
+struct CornerKey {
+    Bits x;
+    Bits y;
+    Bits z;
 
-    friend bool operator==(const SingleKey& a, const SingleKey& b) noexcept {
+    friend bool operator==(const CornerKey& a, const CornerKey& b) noexcept {
         return ((a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z)) == 0; // one branch, not three
     }
-    friend auto operator<=>(const SingleKey&, const SingleKey&) noexcept = default;
+    friend auto operator<=>(const CornerKey&, const CornerKey&) noexcept = default;
 };
 
-struct DoubleKey {
-    std::uint64_t x;
-    std::uint64_t y;
-    std::uint64_t z;
-
-    friend bool operator==(const DoubleKey& a, const DoubleKey& b) noexcept {
-        return ((a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z)) == 0;
-    }
-    friend auto operator<=>(const DoubleKey&, const DoubleKey&) noexcept = default;
-};
+using SingleKey = CornerKey<std::uint32_t>; // of a soup without placement
+using DoubleKey = CornerKey<std::uint64_t>;
 
 std::uint64_t hash(const SingleKey& key) noexcept {
     return mix(key.x | std::uint64_t{key.y} << 32, key.z);
@@ -67,20 +61,14 @@ Point3 point(const DoubleKey& key) noexcept {
     return {std::bit_cast<double>(key.x), std::bit_cast<double>(key.y), std::bit_cast<double>(key.z)};
 }
 
-/// Corners in single precision, for a soup without placement.
-struct StoredCorners {
-    using Key = SingleKey;
-    static std::array<Key, 3> of(const TriangleSoup& soup, std::size_t i) noexcept {
+/// The corners of triangle i.
+template <class Key>
+std::array<Key, 3> keys_of(const TriangleSoup& soup, std::size_t i) noexcept {
+    if constexpr (std::is_same_v<Key, SingleKey>)
         return std::bit_cast<std::array<Key, 3>>(soup.stored(i));
-    }
-};
-
-struct PlacedCorners {
-    using Key = DoubleKey;
-    static std::array<Key, 3> of(const TriangleSoup& soup, std::size_t i) noexcept {
+    else
         return std::bit_cast<std::array<Key, 3>>(soup.placed(i));
-    }
-};
+}
 
 /// One worker's range of triangles and the local vertices that it found there.
 template <class Key>
@@ -95,11 +83,9 @@ struct Range {
 /// Triangles between two looks at the clock.
 constexpr std::size_t block = std::size_t{1} << 15;
 
-template <class Corners>
-void gather(const TriangleSoup& soup, Range<typename Corners::Key>& range,
-            std::vector<std::array<std::uint32_t, 3>>& triangles, const Executor& executor,
-            ProgressMeter& progress) {
-    using Key = typename Corners::Key;
+template <class Key>
+void gather(const TriangleSoup& soup, Range<Key>& range, std::vector<std::array<std::uint32_t, 3>>& triangles,
+            const Executor& executor, ProgressMeter& progress) {
     struct Recent {
         Key key;
         std::uint32_t local; // + 1
@@ -111,7 +97,7 @@ void gather(const TriangleSoup& soup, Range<typename Corners::Key>& range,
     for (std::size_t from = range.begin; from < range.end && !executor.stopping(); from += block) {
         const std::size_t to = std::min(range.end, from + block);
         for (std::size_t i = from; i < to; ++i) {
-            const std::array<Key, 3> corners = Corners::of(soup, i);
+            const std::array<Key, 3> corners = keys_of<Key>(soup, i);
             for (int k = 0; k < 3; ++k) {
                 Recent& seen = recent[hash(corners[k]) % slots];
                 if (seen.local == 0 || seen.key != corners[k]) {
@@ -149,9 +135,8 @@ std::uint32_t number_firsts(Executor& executor, std::span<const std::uint32_t> f
     return total;
 }
 
-template <class Corners>
+template <class Key>
 IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
-    using Key = typename Corners::Key;
     IndexedMesh mesh;
     ProgressMeter progress(execution, Stage::weld, soup.size());
     Executor executor(execution);
@@ -165,7 +150,7 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
         ranges[r].end = soup.size() * (r + 1) / ranges.size();
     }
     executor.for_chunks(ranges.size(), 1, [&](std::size_t r, std::size_t, unsigned) {
-        gather<Corners>(soup, ranges[r], mesh.triangles, executor, progress);
+        gather(soup, ranges[r], mesh.triangles, executor, progress);
     });
     executor.check_cancelled();
 
@@ -282,8 +267,8 @@ IndexedMesh weld(const TriangleSoup& soup, const Execution& execution) {
     if (soup.size() > 0xffffffff)
         throw Error(ErrorKind::limit, fmt::format("cannot weld {} triangles: at most {} can be indexed",
                                                   soup.size(), 0xffffffffU));
-    return soup.has_placement() ? weld_corners<PlacedCorners>(soup, execution)
-                                : weld_corners<StoredCorners>(soup, execution);
+    return soup.has_placement() ? weld_corners<DoubleKey>(soup, execution)
+                                : weld_corners<SingleKey>(soup, execution);
 }
 
 } // namespace lamella
