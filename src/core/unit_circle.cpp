@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace lamella {
 
@@ -22,24 +23,13 @@ CosSin first_octant(double angle) noexcept {
 /// Turns the values within an octant (of the angle, or of what it lacks to the next in odd octants) to the
 /// octant where they belong.
 CosSin in_octant(unsigned octant, CosSin v) noexcept {
-    switch (octant) {
-    case 0:
-        return {v.cos, v.sin};
-    case 1:
-        return {v.sin, v.cos};
-    case 2:
-        return {0.0 - v.sin, v.cos};
-    case 3:
-        return {0.0 - v.cos, v.sin};
-    case 4:
-        return {0.0 - v.cos, 0.0 - v.sin};
-    case 5:
-        return {0.0 - v.sin, 0.0 - v.cos};
-    case 6:
-        return {v.sin, 0.0 - v.cos};
-    default:
-        return {v.cos, 0.0 - v.sin};
-    }
+    if (octant % 4 == 1 || octant % 4 == 2)
+        std::swap(v.cos, v.sin);
+    if (octant >= 2 && octant < 6)
+        v.cos = 0.0 - v.cos;
+    if (octant >= 4)
+        v.sin = 0.0 - v.sin;
+    return v;
 }
 
 } // namespace
