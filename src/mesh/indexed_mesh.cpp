@@ -49,10 +49,7 @@ Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution) {
 
 double volume(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
-    return fold_volume(executor, mesh.triangles.size(), [&](std::size_t i) -> Triangle3 {
-        const auto& t = mesh.triangles[i];
-        return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-    });
+    return fold_volume(executor, mesh.triangles.size(), [&](std::size_t i) { return corners(mesh, i); });
 }
 
 IndexedMesh transformed(IndexedMesh mesh, const Transform& map) {

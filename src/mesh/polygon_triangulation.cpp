@@ -296,12 +296,9 @@ bool PolygonTriangulator::enters(std::uint32_t corner, const Triangle2& ear, Ear
         return orientation(ear[from], ear[to], neighbours[0]) > 0 ||
                orientation(ear[from], ear[to], neighbours[1]) > 0;
     };
-    if (p == ear[0])
-        return goes_between(0, 1, 2);
-    if (p == ear[1])
-        return goes_between(1, 2, 0);
-    if (p == ear[2])
-        return goes_between(2, 0, 1);
+    for (int k = 0; k < 3; ++k)
+        if (p == ear[k])
+            return goes_between(k, (k + 1) % 3, (k + 2) % 3);
     const int first = orientation(ear[0], ear[1], p);
     const int second = orientation(ear[1], ear[2], p);
     const int base = orientation(ear[2], ear[0], p);

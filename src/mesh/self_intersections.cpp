@@ -67,8 +67,7 @@ struct Found {
 };
 
 NamedTriangle named(const IndexedMesh& mesh, std::uint32_t i) {
-    const auto& t = mesh.triangles[i];
-    return {{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}, t};
+    return {corners(mesh, i), mesh.triangles[i]};
 }
 
 Meeting described(const IndexedMesh& mesh, const Pair& pair) {
