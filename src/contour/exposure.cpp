@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <cstddef>
 
@@ -10,6 +11,7 @@ namespace lamella {
 
 std::string_view scan_region_name(ScanRegion region) noexcept {
     constexpr std::array names{"core", "upskin", "downskin", "support"};
+    assert(static_cast<std::size_t>(region) < names.size());
     return names[static_cast<std::size_t>(region)];
 }
 

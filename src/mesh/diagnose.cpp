@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -187,6 +188,7 @@ std::vector<Shell> tell_shells(const Survey& all, const IndexedMesh& mesh) {
 
 std::string_view shell_kind_name(ShellKind kind) noexcept {
     constexpr std::array names{"body", "cavity", "inverted", "open"};
+    assert(static_cast<std::size_t>(kind) < names.size());
     return names[static_cast<std::size_t>(kind)];
 }
 

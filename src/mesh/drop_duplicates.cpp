@@ -13,13 +13,13 @@ DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& exec
     Executor executor(execution);
     std::vector<bool> dropped(mesh.triangles.size(), false);
     DroppedDuplicates result;
-    for (const std::vector<OverLowest>& group : find_same_vertices(executor, mesh)) {
+    for (const std::vector<TriangleOverEdge>& group : find_same_vertices(executor, mesh)) {
         // The most frequent way round has one survivor, where there is one.
         const auto up = static_cast<std::size_t>(
-            std::count_if(group.begin(), group.end(), [](const OverLowest& t) { return t.upwards; }));
+            std::count_if(group.begin(), group.end(), [](const TriangleOverEdge& t) { return t.upwards; }));
         const std::size_t down = group.size() - up;
         bool kept = up == down;
-        for (const OverLowest& t : group) {
+        for (const TriangleOverEdge& t : group) {
             if (!kept && t.upwards == (up > down))
                 kept = true;
             else

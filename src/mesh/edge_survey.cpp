@@ -3,7 +3,6 @@
 #include "mesh/edge_uses.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <iterator>
 #include <span>
@@ -17,14 +16,14 @@ struct Worker {
     Inspection counts;
     std::uint64_t opposite_pairs = 0;
     EdgePlaces places;
-    std::vector<OverLowest> triangles;
+    std::vector<TriangleOverEdge> triangles;
 };
 
 /// visit(group) for the triangles with the same three vertices among those whose two lowest vertices these
 /// sides join: two or more of them, in ascending order. `work`: memory to work in.
 template <class Visit>
-void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses, std::vector<OverLowest>& work,
-                   const Visit& visit) {
+void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses,
+                   std::vector<TriangleOverEdge>& work, const Visit& visit) {
     work.clear();
     for (const EdgeUse& use : uses)
         if (use.lowest_side()) {
@@ -39,7 +38,7 @@ void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses, std::
         while (end < work.size() && work[end].highest == work[begin].highest)
             ++end;
         if (end - begin > 1)
-            visit(std::span<const OverLowest>(work).subspan(begin, end - begin));
+            visit(std::span<const TriangleOverEdge>(work).subspan(begin, end - begin));
         begin = end;
     }
 }
@@ -66,13 +65,13 @@ EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_p
         worker.counts.boundary_edges += boundary ? 1 : 0;
         worker.counts.nonmanifold_edges += nonmanifold ? 1 : 0;
         worker.counts.orientation_conflicts += conflict ? 1 : 0;
-        for_each_same(mesh, uses, worker.triangles, [&](std::span<const OverLowest> group) {
-            const auto same_way = static_cast<std::uint64_t>(
-                std::count_if(group.begin(), group.end(), [](const OverLowest& t) { return t.upwards; }));
+        for_each_same(mesh, uses, worker.triangles, [&](std::span<const TriangleOverEdge> group) {
+            const auto same_way = static_cast<std::uint64_t>(std::count_if(
+                group.begin(), group.end(), [](const TriangleOverEdge& t) { return t.upwards; }));
             worker.counts.duplicate_triangles += group.size() - 1;
             worker.opposite_pairs += std::min(same_way, group.size() - same_way);
             if (with_places)
-                for (const OverLowest& t : group.subspan(1))
+                for (const TriangleOverEdge& t : group.subspan(1))
                     worker.places.duplicates.push_back(t.triangle);
         });
         if (!with_places || !(boundary || nonmanifold || conflict))
@@ -102,18 +101,18 @@ EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_p
     return survey;
 }
 
-std::vector<std::vector<OverLowest>> find_same_vertices(Executor& executor, const IndexedMesh& mesh) {
+std::vector<std::vector<TriangleOverEdge>> find_same_vertices(Executor& executor, const IndexedMesh& mesh) {
     struct Found {
-        std::vector<OverLowest> work;
-        std::vector<std::vector<OverLowest>> groups;
+        std::vector<TriangleOverEdge> work;
+        std::vector<std::vector<TriangleOverEdge>> groups;
     };
     std::vector<Found> found(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
-        for_each_same(mesh, uses, found[worker].work, [&](std::span<const OverLowest> group) {
+        for_each_same(mesh, uses, found[worker].work, [&](std::span<const TriangleOverEdge> group) {
             found[worker].groups.emplace_back(group.begin(), group.end());
         });
     });
-    std::vector<std::vector<OverLowest>> all;
+    std::vector<std::vector<TriangleOverEdge>> all;
     for (Found& part : found)
         std::move(part.groups.begin(), part.groups.end(), std::back_inserter(all));
     return all;

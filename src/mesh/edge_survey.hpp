@@ -42,17 +42,17 @@ void add(Inspection& sum, const Inspection& other) noexcept;
 [[nodiscard]] EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places);
 
 /// A triangle by its highest vertex, among those whose two lowest vertices one edge joins.
-struct OverLowest {
+struct TriangleOverEdge {
     std::uint32_t highest;
     std::uint32_t triangle;
     bool upwards; ///< which way round, compared with the others
 
-    friend auto operator<=>(const OverLowest&, const OverLowest&) noexcept = default;
+    friend auto operator<=>(const TriangleOverEdge&, const TriangleOverEdge&) noexcept = default;
 };
 
 /// All groups of two or more triangles with the same three vertices, each in ascending order; their own order
 /// is any.
-[[nodiscard]] std::vector<std::vector<OverLowest>> find_same_vertices(Executor& executor,
-                                                                      const IndexedMesh& mesh);
+[[nodiscard]] std::vector<std::vector<TriangleOverEdge>> find_same_vertices(Executor& executor,
+                                                                            const IndexedMesh& mesh);
 
 } // namespace lamella

@@ -8,7 +8,6 @@
 #include "mesh/triangle_contact.hpp"
 
 #include <algorithm>
-#include <compare>
 #include <map>
 #include <utility>
 

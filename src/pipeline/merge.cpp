@@ -14,10 +14,8 @@
 #include <cstddef>
 #include <cstring>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string_view>
-#include <utility>
 
 namespace lamella {
 namespace {

@@ -62,7 +62,7 @@ enum class SideEnd : std::uint8_t {
 };
 
 /// Where two moved sides meet, and how far that is from where they begin, as they were.
-struct Met {
+struct SideMeeting {
     Point2 at;
     double before;
     double after;
@@ -306,7 +306,7 @@ class RingMover {
         for (std::size_t k = 1; k < count; ++k) {
             side = after(side);
             while (true) {
-                const std::optional<Met> met = meet(row_.back().side, side);
+                const std::optional<SideMeeting> met = meet(row_.back().side, side);
                 if (!met)
                     return;
                 if (met->before >= row_.back().start) {
@@ -330,7 +330,7 @@ class RingMover {
     }
 
     /// Where two moved sides of a row meet.
-    [[nodiscard]] std::optional<Met> meet(std::size_t i, std::size_t j) const noexcept {
+    [[nodiscard]] std::optional<SideMeeting> meet(std::size_t i, std::size_t j) const noexcept {
         const MovedSide& a = sides_[i];
         const MovedSide& b = sides_[j];
         const Point2 n = distance_ * right_of(a.direction);
@@ -339,7 +339,7 @@ class RingMover {
             const Turn& turn = sides_.turn(i);
             if (!(1 + turn.cosine > 1e-6))
                 return std::nullopt;
-            return Met{b.from + turn.mitre * (n + m), a.length - cuts_[i], cuts_[i]};
+            return SideMeeting{b.from + turn.mitre * (n + m), a.length - cuts_[i], cuts_[i]};
         }
         const double sine = a.direction.x * b.direction.y - a.direction.y * b.direction.x;
         if (!((distance_ > 0 ? sine : -sine) < -1e-6))
@@ -350,7 +350,7 @@ class RingMover {
         const double along_b = (way.x * a.direction.y - way.y * a.direction.x) / sine;
         if (!(along_a <= 0 && along_b >= 0))
             return std::nullopt;
-        return Met{b.from + m + along_b * b.direction, a.length + along_a, along_b};
+        return SideMeeting{b.from + m + along_b * b.direction, a.length + along_a, along_b};
     }
 
     /// Whether the sides of the row that are not left lie below where those around them meet.

@@ -11,10 +11,7 @@
 #include "polygon/surroundings.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <functional>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -69,11 +66,13 @@ class NestingSearch {
         return contacts_.group[ring] != Contacts::none || ends_[ring].flat; // as one point may be
     }
 
-    /// Of a ring that is in contact with none it is enough to know that one, if no ring in contact has it.
+    /// Of a ring in contact with none, the next edge below its left end is enough to know, unless a ring in
+    /// contact may have it.
     [[nodiscard]] EdgeBelow edge_below_end(std::uint32_t ring, const ChainGrid& grid) const {
         if (in_contact(ring))
             return {.sure = false};
         const Point2& left = ends_[ring].line.lo;
+        // Where rings cross, the parent is the one met first on the way down, also one whose box lies below.
         if (contacts_.groups == 0 && !grid.surrounded(left, ring))
             return {};
         return edge_below(left, ring, chains_, grid, contacts_);
@@ -128,7 +127,7 @@ class NestingSearch {
         });
         by_area_.resize(ends_.size());
         for (std::uint32_t i = 0; i < largest_first.size(); ++i)
-            by_area_[largest_first[i]] = i;
+            by_area_[largest_first[i]] = i + 1;
     }
 
     /// So that what lies below a left end comes before it.
@@ -151,8 +150,9 @@ class NestingSearch {
     const Contacts& contacts_;
     std::vector<LeftEnd> ends_;
     RingCopies copies_;
-    std::vector<std::uint32_t> order_;   ///< the representatives
-    std::vector<std::uint32_t> by_area_; ///< of those in contact: 0 for the largest
+    std::vector<std::uint32_t> order_; ///< the representatives
+    std::vector<std::uint32_t>
+        by_area_; ///< 0 for those in contact with none, 1 for the largest of the others
     std::vector<Windings> below_;
     RingPlacement placement_;
 };

@@ -4,7 +4,6 @@
 #include "lamella/polygon/nesting.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <numeric>
 #include <tuple>

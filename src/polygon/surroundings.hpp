@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace lamella {
 
@@ -25,9 +24,9 @@ struct Surroundings {
 /// of these are left out, chain by chain. Exact but for `below` where edges cross.
 class SurroundingsSearch {
   public:
-    /// `turns`: what each ring adds; `by_area`: of representatives in contact, how many of them are larger;
-    /// `asked`: those of all `representatives` whose surroundings will be asked for. All arguments are to
-    /// outlive the search. O(n log c) for n edges that reach over left ends of the c rings asked for.
+    /// `turns`: what each ring adds; `by_area`: of representatives in contact their places, the largest
+    /// first; `asked`: those of all `representatives` whose surroundings will be asked for. All arguments are
+    /// to outlive the search. O(n log c) for n edges that reach over left ends of the c rings asked for.
     SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends, const RingCopies& copies,
                        std::span<const Windings> turns, std::span<const std::uint32_t> representatives,
                        std::span<const std::uint32_t> by_area, std::span<const std::uint32_t> asked);

@@ -18,7 +18,6 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 namespace lamella {

@@ -68,7 +68,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name,
     LayerFile file{.path = name,
                    .format = header.binary ? "cli" : "cli-ascii",
                    .units_mm = header.units_mm,
-                   .rounding = {.step_mm = header.units_mm, .single_precision = header.binary}};
+                   .rounding = {.single_precision = header.binary}};
     CommonLayerGeometry geometry(header, name, limits);
     if (header.binary)
         read_binary_geometry(bytes, name, header, execution, geometry);
@@ -82,6 +82,9 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name,
     if (header.layers && *header.layers != found)
         file.warnings.push_back(
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
+    // Decimals of single precision come from that.
+    if (const double step = geometry.step_mm(); !header.binary || step == header.units_mm)
+        file.rounding.step_mm = step;
     geometry.say(file.warnings);
     geometry.number_parts(header, file);
     for (LayerPart& part : file.parts)

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,28 @@ namespace lamella {
 /// What is expected, for the error about such a number.
 inline constexpr const char* common_layer_directions =
     "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)";
+
+/// How many decimals numbers have at most.
+class Decimals {
+  public:
+    void note(double number) noexcept {
+        while (places_ < steps.size() - 1 && !is_whole(number / steps[places_]))
+            ++places_;
+    }
+    /// 1, 0.1 and so on; 0 where there are more than rounding explains.
+    [[nodiscard]] double step() const noexcept { return steps[places_]; }
+
+  private:
+    static constexpr std::array steps{1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5, 0.0};
+
+    /// But for what decimals lose in binary. Of numbers beyond 2^51 it may say no.
+    static bool is_whole(double number) noexcept {
+        constexpr double no_fractions = 0x1.8p52;
+        return std::abs(number - ((number + no_fractions) - no_fractions)) <= 1e-5;
+    }
+
+    std::size_t places_ = 0;
+};
 
 /// Collects what the geometry section says, however it is coded.
 class CommonLayerGeometry {
@@ -65,10 +88,14 @@ class CommonLayerGeometry {
     }
     void add_point(double x, double y) {
         RawLayer& layer = layers_.back();
+        decimals_.note(x);
+        decimals_.note(y);
         layer.points.push_back({in_mm(x, layer.place) + 0.0, in_mm(y, layer.place) + 0.0});
     }
     void add_hatch_point(double x, double y) {
         RawLayer& layer = layers_.back();
+        decimals_.note(x);
+        decimals_.note(y);
         layer.hatches.push_back({in_mm(x, layer.place), in_mm(y, layer.place)});
     }
     template <class Place>
@@ -113,6 +140,9 @@ class CommonLayerGeometry {
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
 
+    /// To what coordinates are rounded, all that there are: not every file keeps to whole units.
+    [[nodiscard]] double step_mm() const { return units_ * decimals_.step(); }
+
     void say(std::vector<std::string>& warnings) const {
         unclosed_.say(warnings);
         turned_.say(warnings);
@@ -145,6 +175,7 @@ class CommonLayerGeometry {
     const std::string& name_;
     ReadLimits& limits_;
     std::vector<RawLayer> layers_;
+    Decimals decimals_;
     PartNumbers<std::int64_t> parts_;
     Oddity unclosed_{"closed contours did not return to their first point; they were closed"};
     Oddity turned_{"contours ran against their stated direction; they were turned round"};

@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -203,6 +202,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                     fmt::format("{}: found parameters of no file; there must be one at least", list.name));
     result.units_mm = files.front().units_mm;
     result.rounding = files.front().rounding;
+    for (const LayerFile& file : files)
+        result.rounding.step_mm = std::min(result.rounding.step_mm, file.rounding.step_mm);
     const LayerStack planes = planes_of(files, limits);
     for (LayerFile& file : files)
         for (LayerPart& part : file.parts) {

@@ -8,8 +8,6 @@
 #include "read/remarks.hpp"
 #include "read/text_pieces.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <utility>

@@ -6,9 +6,6 @@
 #include "read/remarks.hpp"
 #include "read/text_pieces.hpp"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <optional>
 #include <string>
 

@@ -20,9 +20,7 @@
 #include <compare>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace lamella {

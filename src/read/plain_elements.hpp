@@ -21,7 +21,7 @@ class PlainTags {
 
     [[nodiscard]] const char* end() const noexcept { return end_; }
 
-    /// Takes a tag, or the begin of one, when it is next.
+    /// Takes a tag, or the beginning of one, when it is next.
     bool take(std::string_view tag) {
         const char* const at = next();
         return static_cast<std::size_t>(end_ - at) >= tag.size() &&

@@ -45,11 +45,12 @@ class Remarks {
         texts_.push_back(std::move(text));
     }
 
-    /// What strict callers take, too; it is said behind what they do not.
+    /// What does not stop strict callers; it is told after the remarks.
     void note(std::string text) { notes_.push_back(std::move(text)); }
 
     [[nodiscard]] std::vector<std::string> take() {
-        texts_.insert(texts_.end(), notes_.begin(), notes_.end());
+        for (std::string& note : std::exchange(notes_, {}))
+            texts_.push_back(std::move(note));
         return std::exchange(texts_, {});
     }
 

@@ -14,13 +14,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace lamella {

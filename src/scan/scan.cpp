@@ -99,7 +99,7 @@ std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const Sc
 
 } // namespace
 
-// Of three points that are rounded, the middle one may be off by as much as the other two together.
+// A point may have moved by so much, and the way between its neighbours by as much to the other side.
 ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding)
     : layer_(without_straight_points(
           layer, std::max(ClippingGrid(layer.points.span()).unit(), 2 * moved_point(layer, rounding)))) {}

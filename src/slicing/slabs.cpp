@@ -116,8 +116,8 @@ PlaneCounts count_planes(const Mesh& mesh, const Plan& plan, const Execution& ex
 SlabSurvey::SlabSurvey(const PlaneCounts& counts) : before_(counts.planes() + 1) {
     before_[0].ended = counts.ends(0);
     for (std::size_t p = 0; p < counts.planes(); ++p) {
-        const Before& here = before_[p];
-        Before& next = before_[p + 1];
+        const SumsBefore& here = before_[p];
+        SumsBefore& next = before_[p + 1];
         next.begun = here.begun + counts.begins(p);
         next.ended = here.ended + counts.ends(p + 1);
         next.turned = here.turned + counts.turns(p);

@@ -122,14 +122,14 @@ class SlabSurvey {
 
   private:
     /// Sums over the planes before one.
-    struct Before {
+    struct SumsBefore {
         std::uint64_t begun = 0;
         std::uint64_t ended = 0; ///< those that have left the plane itself, too
         std::uint64_t turned = 0;
         std::uint64_t points = 0;
     };
 
-    std::vector<Before> before_; ///< by plane, and one more
+    std::vector<SumsBefore> before_; ///< by plane, and one more
 };
 
 /// How a slab is sliced, as far as its memory depends on it.

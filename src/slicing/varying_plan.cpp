@@ -13,7 +13,6 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 namespace lamella {
 

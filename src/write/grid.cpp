@@ -32,7 +32,6 @@ void check_units(double units) {
 
 double round_step(double least) noexcept {
     const double decade = std::pow(10, std::floor(std::log10(least)));
-    // The last one is for a logarithm that was rounded up.
     for (const double digit : {1.0, 2.0, 5.0})
         if (digit * decade >= least)
             return digit * decade;

@@ -8,6 +8,7 @@
 #include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -36,7 +37,7 @@ constexpr std::array formats{
                 .open = open_common_layer_binary,
                 .pieces = true,
                 .joins = true,
-                .rounding = Rounding{.step_mm = LayerWriteOptions::usual_units_mm, .single_precision = true},
+                .rounding = Rounding{.single_precision = true},
                 .units = true,
                 .short_form = true},
     LayerFormat{.name = "cli-ascii",
@@ -92,7 +93,7 @@ constexpr std::array formats{
                 .summary =
                     "scan vectors in binary Common Layer Interface files, with their parameters, zipped",
                 .open = open_ilt,
-                .rounding = Rounding{.step_mm = LayerWriteOptions::usual_units_mm, .single_precision = true},
+                .rounding = Rounding{.single_precision = true},
                 .units = true,
                 .short_form = true},
     LayerFormat{.name = "ovf",

@@ -1,4 +1,3 @@
-
 #include "container/zip_writer.hpp"
 #include "core/atomic_directory.hpp"
 #include "core/atomic_file.hpp"

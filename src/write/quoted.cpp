@@ -12,16 +12,16 @@ namespace {
 
 constexpr std::size_t longest_quote = std::size_t{1} << 16;
 
-struct Instead {
-    char of;
+struct Escape {
+    char character;
     std::string_view text;
 };
 
-std::string escaped(std::string_view text, std::initializer_list<Instead> escapes) {
+std::string escaped(std::string_view text, std::initializer_list<Escape> escapes) {
     std::string result;
     for (const char c : printable(text, longest_quote)) {
-        const Instead* const found = std::find_if(escapes.begin(), escapes.end(),
-                                                  [&](const Instead& escape) { return escape.of == c; });
+        const Escape* const found = std::find_if(escapes.begin(), escapes.end(),
+                                                 [&](const Escape& escape) { return escape.character == c; });
         if (found == escapes.end())
             result += c;
         else

@@ -484,6 +484,18 @@ TEST(Nesting, IsThatOfTheirCellsForRandomRingsThatTouch) {
     EXPECT_GT(rings, 20000U); // there was something to nest
 }
 
+TEST(Nesting, OfAPointOnACornerDoesNotDependOnRingsElsewhere) {
+    const std::vector<Contour> point_on_corner{rectangle(0, 0, 4, 4), {{0, 0}}};
+    std::vector<Contour> others = point_on_corner;
+    others.insert(others.end(), {rectangle(10, 0, 11, 1), rectangle(11, 0, 12, 1)});
+    const Nesting alone = nesting(layer_of(point_on_corner));
+    const Nesting among = nesting(layer_of(others));
+    EXPECT_EQ(alone.order, (Numbers{0, 1}));
+    EXPECT_EQ(Numbers(among.order.begin(), among.order.begin() + 2), alone.order);
+    for (std::size_t ring = 0; ring < 2; ++ring)
+        EXPECT_EQ(among.parent[ring], alone.parent[ring]);
+}
+
 /// Nests of diamonds in the cells of a frame, of which some run through the walls of their cell. The frame
 /// has a loop at its left, where it runs the wrong way round.
 std::vector<Contour> nests_of_diamonds(Random& random) {

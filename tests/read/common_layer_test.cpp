@@ -100,6 +100,25 @@ TEST(ReadCommonLayer, BinaryLongAndShortFormsAgree) {
     EXPECT_TRUE(same_contours(by_long.parts.at(0).layers.front(), by_short.parts.at(0).layers.front()));
 }
 
+TEST(ReadCommonLayer, RoundingIsThatOfTheCoordinatesAndNotAlwaysAUnit) {
+    const auto step_of_ascii = [](const std::string& x) {
+        return read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,1,4,0,0," + x + ",0,0,9,0,0\n"))
+            .rounding.step_mm;
+    };
+    EXPECT_EQ(step_of_ascii("1000"), 0.01);
+    EXPECT_EQ(step_of_ascii("-1000.0"), 0.01);
+    EXPECT_DOUBLE_EQ(step_of_ascii("1000.5"), 0.001);
+    EXPECT_DOUBLE_EQ(step_of_ascii("12345.678"), 1e-5);
+    EXPECT_EQ(step_of_ascii("0.12345678"), 0);
+
+    const Rounding whole{.step_mm = 0.01, .single_precision = true};
+    EXPECT_EQ(read(binary(long_ring)).rounding, whole);
+    EXPECT_EQ(read(binary(short_ring)).rounding, whole);
+    const std::string bottom = u16(127) + bits(0.0F) + u16(127) + bits(50.0F);
+    for (const float to : {1000.5F, 1000.0001F})
+        EXPECT_EQ(read(binary(bottom + long_square(to))).rounding, Rounding{.single_precision = true});
+}
+
 TEST(ReadCommonLayer, IntegersLeadingZerosCommentsAndUnknownCommandsAreFine) {
     const LayerFile file = read(
         "// made by hand //\n$$HEADERSTART\r\n$$ASCII // text //\r\n$$UNITS/00000000.010000\r\n"

@@ -91,7 +91,7 @@ export function findings(page) {
       tone: 'warning',
       text:
         `To keep the page small, the hatches of ${counted(bare.length, 'layer')} of ${count(table.z.length)} are left out ` +
-        `(${count(sum(table.hatches_shown))} of ${count(sum(table.hatches))} lines are there). All figures are of all of them.`,
+        `(${count(sum(table.hatches_shown))} of ${count(sum(table.hatches))} lines are there). All figures count every line.`,
       layer: bare[0],
     });
   for (const text of untoldSpeeds(head)) found.push({ tone: 'plain', text });

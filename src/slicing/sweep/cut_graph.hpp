@@ -16,7 +16,6 @@
 #include "core/pages.hpp"
 #include "slicing/ranks.hpp"
 
-#include <array>
 #include <cstdint>
 
 namespace lamella {
