@@ -52,6 +52,7 @@ const narrow = 1000; // pixels: such a page begins with the layer alone
  *     nobody asks for is not begun: without a graphics card it takes the processor longer than all the rest.
  */
 export async function open(name, { width = 1400, height = 900, colorScheme = 'light', view = 'layer' } = {}) {
+  await page.goto('about:blank'); // so that none of the page before counts
   complaints = [];
   await page.emulateMedia({ colorScheme });
   await page.setViewportSize({ width: view ? narrow : width, height });
