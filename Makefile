@@ -103,6 +103,7 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/raster
 	build-bench/bench/layer_steps
 	build-bench/bench/scan
+	build-bench/bench/small_parts
 	build-bench/bench/hostile_layers
 	build-bench/bench/kernels
 

@@ -15,13 +15,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -35,6 +40,14 @@ using Clock = std::chrono::steady_clock;
 // Of a mesh file: below, a second thread costs more than it brings.
 constexpr std::uint64_t bytes_per_thread = 16'000'000;
 constexpr std::size_t most_warnings = 8;
+// Small files go to a worker together, since a message costs as much as slicing one of them; but not so many,
+// nor for so long, that anybody would wait for their results.
+constexpr std::uint64_t small_file = 100'000; // bytes
+constexpr std::size_t most_together = 32;
+constexpr double longest_together = 0.05; // seconds
+// A batch that is stopped waits so long for answers: well below the patience of Interrupt, which ends the
+// program before it could tell them.
+constexpr double longest_stop = 0.3; // seconds
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -65,9 +78,9 @@ Json record_of(const BatchItem& item, const BatchResult& result) {
     return record;
 }
 
-Json record_of(const BatchItem& item, const Failure& failure, double seconds) {
+Json record_of(const BatchItem& item, const Failure& failure, double seconds, bool written = false) {
     return {{"path", item.input},
-            {"output", Json()},
+            {"output", written ? name_or_null(item.output) : Json()},
             {"ok", false},
             {"error", {{"kind", failure.kind}, {"text", failure.text}, {"exit_code", failure.exit_code}}},
             {"seconds", seconds}};
@@ -75,27 +88,56 @@ Json record_of(const BatchItem& item, const Failure& failure, double seconds) {
 
 Json sliced(const BatchItem& item, const SliceItem& slice, const Execution& execution) {
     const Clock::time_point start = Clock::now();
+    bool written = false;
     try {
-        return record_of(item, slice(item, execution));
+        const BatchResult result = slice(item, execution);
+        written = true;
+        if (!item.stats.empty())
+            write_text_file(item.stats, result.stats);
+        return record_of(item, result);
     } catch (...) {
         Failure failure = failure_of(std::current_exception());
         // Where there is one file only, its name need not be said.
         if (failure.text.find(item.input) == std::string::npos)
             failure.text = fmt::format("{}: {}", item.input, failure.text);
-        return record_of(item, failure, seconds_since(start));
+        return record_of(item, failure, seconds_since(start), written);
     }
 }
 
 /// As a worker sends it.
-std::string as_text(const Json& record) {
-    return record.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string as_line(const Json& record) {
+    return record.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-/// How many threads a file is worth, of those that there are.
-unsigned threads_for(const std::string& path, unsigned all) {
-    std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(path, error);
-    return error ? 1U : static_cast<unsigned>(std::clamp<std::uintmax_t>(bytes / bytes_per_thread, 1, all));
+/// In a message, whatever names and texts there are: these take up to six bytes for one.
+std::string short_line(Json record) {
+    constexpr std::size_t most_text = 1000;
+    std::string line = as_line(record);
+    if (line.size() <= WorkerTeam::longest_answer)
+        return line;
+    if (record.contains("warnings"))
+        record["warnings"] = {"there are warnings, too long to be told here"};
+    if (record.contains("error"))
+        record["error"]["text"] = record["error"]["text"].get<std::string>().substr(0, most_text) + "...";
+    return as_line(record);
+}
+
+/// A line for each of a task's files, or only for the first ones: who asked shall not wait long.
+std::string lines_of(const WorkerTask& task, const std::vector<BatchItem>& items, const SliceItem& slice,
+                     const CancelFlag& cancel) {
+    const Clock::time_point start = Clock::now();
+    std::string lines;
+    for (std::size_t i = task.first; i < task.first + task.count; ++i) {
+        if (!lines.empty() && (cancel.requested() || seconds_since(start) > longest_together))
+            break;
+        const std::string line =
+            short_line(sliced(items[i], slice, {.threads = task.threads, .cancel = &cancel}));
+        if (!lines.empty() && lines.size() + line.size() > WorkerTeam::longest_answer)
+            break; // it is done again
+        lines += line;
+    }
+    assert(lines.size() <= WorkerTeam::longest_answer);
+    return lines;
 }
 
 void make_folders(const std::vector<BatchItem>& items) {
@@ -118,21 +160,30 @@ class Batch {
     Batch(const std::vector<BatchItem>& items, unsigned threads, const SliceItem& slice,
           const Execution& execution, Messages& messages)
         : items_(items), most_(execution.threads == 0 ? threads : std::min(threads, execution.threads)),
-          free_(threads), messages_(messages), progress_(execution.progress), starts_(items.size()),
-          worth_(items.size()),
-          team_(std::min<std::size_t>(threads, items.size()), [&items, &slice](const WorkerTask& task,
-                                                                               const CancelFlag& cancel) {
-              return as_text(sliced(items[task.index], slice, {.threads = task.threads, .cancel = &cancel}));
-          }) {}
+          threads_(threads), free_(threads), messages_(messages), progress_(execution.progress),
+          starts_(items.size()), team_(std::min<std::size_t>(threads, items.size()),
+                                       [&items, &slice](const WorkerTask& task, const CancelFlag& cancel) {
+                                           return lines_of(task, items, slice, cancel);
+                                       }) {}
 
     /// Returns whether it came to the end.
     bool run(const Execution& execution) {
         while (told_ < items_.size() && !execution.cancelled()) {
-            start_some();
-            for (WorkerAnswer& answer : team_.wait())
+            start_some(execution);
+            for (const WorkerAnswer& answer : team_.wait())
                 take(answer);
             tell();
         }
+        if (told_ == items_.size())
+            return true;
+        // What is done is told. Workers that are stuck are ended with the team.
+        stopping_ = true;
+        team_.stop();
+        const Clock::time_point stop = Clock::now();
+        while (team_.is_busy() && seconds_since(stop) < longest_stop)
+            for (const WorkerAnswer& answer : team_.wait())
+                take(answer);
+        tell();
         return told_ == items_.size();
     }
 
@@ -163,34 +214,86 @@ class Batch {
     }
 
   private:
-    /// The next file waits until the threads that it is worth are free; so large files cannot starve.
-    void start_some() {
-        while (next_ < items_.size()) {
-            if (worth_[next_] == 0)
-                worth_[next_] = threads_for(items_[next_].input, most_);
-            if (worth_[next_] > free_)
+    /// A task waits until the threads that it is worth are free; so large files cannot starve.
+    void start_some(const Execution& execution) {
+        while (!execution.cancelled()) {
+            if (tasks_.empty() && next_ < items_.size())
+                tasks_.push_back(take_next());
+            if (tasks_.empty() || tasks_.front().threads > free_)
                 return;
-            free_ -= worth_[next_];
-            starts_[next_] = Clock::now();
-            team_.start({next_, worth_[next_]});
-            ++next_;
+            const WorkerTask task = tasks_.front();
+            starts_[task.first] = Clock::now();
+            try {
+                team_.start(task);
+            } catch (const Error& error) {
+                if (error.kind() != ErrorKind::limit || !team_.is_busy())
+                    throw;
+                return; // one of those at work takes it later
+            }
+            tasks_.pop_front();
+            free_ -= task.threads;
         }
     }
 
-    void take(WorkerAnswer& answer) {
-        const BatchItem& item = items_[answer.index];
-        free_ += worth_[answer.index];
-        if (!answer.text)
-            answer.text = as_text(record_of(item, failure_of_process(answer.status, item.input),
-                                            seconds_since(starts_[answer.index])));
-        waiting_.emplace(answer.index, std::move(*answer.text));
+    /// A file, or several small ones: the fewer, the less is left to be shared out.
+    WorkerTask take_next() {
+        const auto bytes_of = [this](std::size_t i) {
+            std::error_code error; // of a pipe, say, which may take as long as it likes
+            const std::uintmax_t bytes = fs::file_size(items_[i].input, error);
+            return error ? std::nullopt : std::optional(bytes);
+        };
+        const auto is_small = [](std::optional<std::uintmax_t> bytes) {
+            return bytes && *bytes < small_file;
+        };
+        const std::optional<std::uintmax_t> bytes = bytes_of(next_);
+        const std::uintmax_t threads = bytes.value_or(0) / bytes_per_thread;
+        WorkerTask task{next_, 1, static_cast<unsigned>(std::clamp<std::uintmax_t>(threads, 1, most_))};
+        const std::size_t share = (items_.size() - next_) / (std::size_t{4} * threads_);
+        if (is_small(bytes))
+            while (task.count < std::min(share, most_together) && is_small(bytes_of(next_ + task.count)))
+                ++task.count;
+        next_ += task.count;
+        return task;
     }
 
-    /// Prints the results of which all before have been printed.
+    void take(const WorkerAnswer& answer) {
+        const WorkerTask& task = answer.task;
+        free_ += task.threads;
+        if (!answer.begun) {
+            tasks_.push_front(task);
+            return;
+        }
+        const auto start_alone = [&](std::size_t first) {
+            for (std::size_t i = task.first + task.count; i-- > first;)
+                tasks_.push_front({i, 1, task.threads});
+        };
+        if (answer.text) {
+            std::size_t done = task.first;
+            for (std::string_view rest = *answer.text; !rest.empty(); ++done) {
+                const std::size_t line = std::min(rest.find('\n'), rest.size() - 1) + 1; // one may be cut off
+                waiting_.emplace(done, rest.substr(0, line));
+                rest.remove_prefix(line);
+            }
+            start_alone(done); // the rest takes long
+        } else if (task.count > 1) {
+            start_alone(task.first); // it is not known which of them ended the process
+        } else if (!stopping_) {
+            const BatchItem& item = items_[task.first];
+            waiting_.emplace(task.first,
+                             short_line(record_of(item, failure_of_process(answer.status, item.input),
+                                                  seconds_since(starts_[task.first]))));
+        }
+    }
+
+    /// Prints the results of which all before have been printed; once no more are to come, all that there
+    /// are.
     void tell() {
-        for (; !waiting_.empty() && waiting_.begin()->first == told_; ++told_) {
+        for (; !waiting_.empty() && (stopping_ || waiting_.begin()->first == due_); ++due_) {
             const std::string line = std::move(waiting_.extract(waiting_.begin()).mapped());
             const Json record = Json::parse(line);
+            if (stopping_ && !record["ok"] && record["error"]["kind"] == "cancelled")
+                continue;
+            ++told_;
             if (record["ok"]) {
                 ++succeeded_;
             } else {
@@ -198,7 +301,7 @@ class Batch {
                 ++failures_[error["kind"]];
                 messages_.error(error["text"], error["exit_code"]);
             }
-            messages_.result(line + "\n");
+            messages_.result(line);
         }
         finish_printing();
         if (progress_)
@@ -207,16 +310,19 @@ class Batch {
 
     const std::vector<BatchItem>& items_;
     unsigned most_; ///< threads for one file
+    unsigned threads_;
     unsigned free_;
     Messages& messages_;
     const std::function<void(const Progress&)>& progress_;
-    std::vector<Clock::time_point> starts_;
-    std::vector<unsigned> worth_; ///< threads; 0 where not yet asked for
+    std::vector<Clock::time_point> starts_; ///< of tasks, by their first file
+    std::deque<WorkerTask> tasks_;          ///< that wait for threads
     std::map<std::size_t, std::string> waiting_;
     std::map<std::string, std::size_t> failures_; ///< by kind
-    std::size_t next_ = 0;                        ///< to be started
-    std::size_t told_ = 0;
+    std::size_t next_ = 0;                        ///< not yet in any task
+    std::size_t due_ = 0;                         ///< whose result is the next to be printed
+    std::size_t told_ = 0;                        ///< how many have been printed
     std::size_t succeeded_ = 0;
+    bool stopping_ = false;
     WorkerTeam team_; ///< last: its end needs nothing of the rest
 };
 
@@ -239,9 +345,14 @@ OptionGroup batch_options(BatchArguments& target) {
 }
 
 std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::string& output,
-                                   std::string_view extension, const std::string& stats) {
+                                   std::string_view extension, const std::string& stats,
+                                   std::span<const NamedFile> read) {
     const std::string results = has_placeholder(output) ? std::string() : output;
     const std::vector<std::string> inputs = batch_inputs(arguments.source, results);
+    std::vector<std::string> kept = inputs;
+    for (const NamedFile& file : read)
+        if (file.path != "-")
+            kept.push_back(file.path);
     OutputNames names;
     std::vector<BatchItem> items(inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i)
@@ -250,7 +361,7 @@ std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::s
         if (pattern.empty())
             return;
         std::vector<std::string> given = names.give(inputs, pattern, ending);
-        check_distinct(inputs, given);
+        check_distinct(kept, given);
         for (std::size_t i = 0; i < items.size(); ++i)
             items[i].*into = std::move(given[i]);
     };

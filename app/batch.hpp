@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,12 +34,15 @@ struct BatchItem {
 struct BatchResult {
     FileResult file;
     std::vector<std::string> warnings;
+    std::string stats; ///< what goes to BatchItem::stats
 };
 
 /// All of a batch, in order. `output` and `stats` are patterns as OutputNames takes them, or "";
-/// `extension` is that of outputs. Throws what batch_inputs, OutputNames and check_distinct throw.
+/// `extension` is that of outputs; `read` are files that the command reads besides, and no result may
+/// replace. Throws what batch_inputs, OutputNames and check_distinct throw.
 [[nodiscard]] std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::string& output,
-                                                 std::string_view extension, const std::string& stats);
+                                                 std::string_view extension, const std::string& stats,
+                                                 std::span<const NamedFile> read);
 
 /// Slices one file; runs in worker processes. May throw whatever it will.
 using SliceItem = std::function<BatchResult(const BatchItem&, const Execution&)>;

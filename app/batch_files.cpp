@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/mesh_file.hpp"
 
+#include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
 #include "text_file.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -24,16 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower_case(std::string text) {
-    for (char& c : text)
-        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return text;
-}
-
 /// Without the extension, nor that of gzip.
 fs::path stem_of(const fs::path& path) {
     const fs::path name = path.filename();
-    return lower_case(name.extension().string()) == ".gz" ? name.stem().stem() : name.stem();
+    return extension_of(name) == ".gz" ? name.stem().stem() : name.stem();
 }
 
 [[noreturn]] void refuse(const std::string& source, const std::string& what) {
@@ -92,17 +88,20 @@ std::vector<std::string> files_in(const std::string& folder, const std::string& 
     return found;
 }
 
-std::vector<std::string> lines_of(std::string_view text) {
+std::vector<std::string> lines_of(const std::string& list, std::string_view text) {
     const char separator = text.find('\0') == std::string_view::npos ? '\n' : '\0';
     std::vector<std::string> lines;
-    while (!text.empty()) {
+    for (std::size_t number = 1; !text.empty(); ++number) {
         const std::size_t end = text.find(separator);
         std::string_view line = text.substr(0, end);
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
         if (separator == '\n' && line.ends_with('\r'))
             line.remove_suffix(1);
-        if (!line.empty() && (separator == '\0' || !line.starts_with('#')))
-            lines.emplace_back(line);
+        if (line.empty() || (separator == '\n' && line.starts_with('#')))
+            continue;
+        if (line.size() >= PATH_MAX)
+            refuse(list, fmt::format("line {} is longer than any path; expected one path a line", number));
+        lines.emplace_back(line);
     }
     return lines;
 }
@@ -114,7 +113,7 @@ std::vector<std::string> files_listed(const std::string& list) {
             fmt::format("{}: has the name of a mesh; expected a folder, or a file that lists paths, one "
                         "a line",
                         list));
-    std::vector<std::string> lines = lines_of(read_text_file(list));
+    std::vector<std::string> lines = lines_of(input_name(list), read_text_file(list));
     if (lines.empty())
         refuse(input_name(list), "the list names no file; expected one path a line");
     if (std::find(lines.begin(), lines.end(), "-") != lines.end())
@@ -152,10 +151,12 @@ std::string filled(std::string_view pattern, const std::array<std::string, 3>& v
         const auto found =
             std::find_if(placeholders.begin(), placeholders.end(),
                          [&](std::string_view placeholder) { return rest.starts_with(placeholder); });
-        if (found == placeholders.end())
+        if (found == placeholders.end()) {
+            const std::size_t end = rest.find('}');
             throw Error(ErrorKind::usage,
                         fmt::format("{}: \"{}\" is none of {{name}}, {{folder}} and {{index}}", pattern,
-                                    rest.substr(0, rest.find('}') + 1)));
+                                    rest.substr(0, end == std::string_view::npos ? end : end + 1)));
+        }
         text += values.at(static_cast<std::size_t>(found - placeholders.begin()));
         rest.remove_prefix(found->size());
     }

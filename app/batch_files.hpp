@@ -16,8 +16,9 @@ namespace lamella::app {
 /// a NUL is taken apart at those instead, as `find -print0` writes it. Empty lines and lines that begin with
 /// # do not count; paths in a list are relative to the working folder.
 ///
-/// Of a folder, hidden files, pipes, devices and what lies in `results` (where that is another folder) are
-/// left out. A folder within it that cannot be listed stands among the files, to fail as one of them.
+/// Of a folder, hidden files and folders, links to folders, pipes, devices and what lies in `results` (where
+/// that is another folder) are left out. A folder within it that cannot be listed stands among the files, to
+/// fail as one of them.
 ///
 /// Throws Error{input} where the source cannot be read or names nothing, and Error{usage} for a list with the
 /// name of a mesh.

@@ -1,5 +1,6 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/compare_files.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/compare.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -11,6 +12,7 @@
 #include "options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,18 +36,22 @@ struct CompareArguments {
     RunOptions run;
 };
 
+/// A plane that does not agree, and what its layers have besides contours.
+struct Differing {
+    const ComparedPlane* plane;
+    const PlaneDetails* details;
+};
+
 /// Orders differences by size: a layer that one file does not have is the largest.
-double size_of(const ComparedPlane& plane) {
-    return plane.first && plane.second ? plane.difference.distance_mm
-                                       : std::numeric_limits<double>::infinity();
+double size_of(const Differing& one) {
+    if (!one.plane->first || !one.plane->second)
+        return std::numeric_limits<double>::infinity();
+    return std::max(
+        {one.plane->difference.distance_mm, one.details->hatch_distance_mm, one.details->height_distance_mm});
 }
 
-std::string difference_text(const ComparedPlane& plane, const CompareArguments& arguments) {
-    if (!plane.first || !plane.second)
-        return fmt::format("z = {} mm: only {} has contours there", brief(plane.z),
-                           one_line(arguments.inputs[plane.first ? 0 : 1]));
-    const LayerDifference& found = plane.difference;
-    std::string text = fmt::format("z = {} mm: ", brief(plane.z));
+std::string contours_text(const LayerDifference& found) {
+    std::string text;
     if (std::isinf(found.distance_mm))
         text += fmt::format("{} contours against {}", grouped(found.first.contours),
                             grouped(found.second.contours));
@@ -62,7 +68,41 @@ std::string difference_text(const ComparedPlane& plane, const CompareArguments& 
            fmt::format(", area {} against {} mm2", brief(found.first.area_mm2), brief(found.second.area_mm2));
 }
 
-Json plane_json(const ComparedPlane& plane) {
+std::string difference_text(const Differing& one, const CompareArguments& arguments) {
+    const ComparedPlane& plane = *one.plane;
+    const PlaneDetails& details = *one.details;
+    if (!plane.first || !plane.second)
+        return fmt::format("z = {} mm: only {} has {} there", brief(plane.z),
+                           one_line(arguments.inputs[plane.first ? 0 : 1]),
+                           details.first_hatches + details.second_hatches == 0 ? "contours" : "vectors");
+    std::vector<std::string> texts;
+    if (!plane.difference.same)
+        texts.push_back(contours_text(plane.difference));
+    if (details.first_hatches != details.second_hatches)
+        texts.push_back(fmt::format("{} hatch lines against {}", grouped(details.first_hatches),
+                                    grouped(details.second_hatches)));
+    else if (std::isinf(details.hatch_distance_mm))
+        texts.emplace_back("hatch lines shared out otherwise among the parts");
+    else if (details.hatch_distance_mm > 0)
+        texts.push_back(fmt::format("ends of hatch lines {} mm apart at ({}, {})",
+                                    brief(details.hatch_distance_mm), brief(details.hatch_where.x),
+                                    brief(details.hatch_where.y)));
+    if (!details.heights_agree)
+        texts.push_back(fmt::format("bottom or top {} mm apart", brief(details.height_distance_mm)));
+    return fmt::format("z = {} mm: {}", brief(plane.z), fmt::join(texts, ", "));
+}
+
+std::string parameters_text(const std::vector<ParameterDifference>& parameters) {
+    std::string text;
+    for (const ParameterDifference& one : parameters)
+        text += fmt::format("  {}: {} {} against {}\n", one_line(one.label), one.parameter, brief(one.first),
+                            brief(one.second));
+    return text;
+}
+
+Json plane_json(const Differing& one) {
+    const ComparedPlane& plane = *one.plane;
+    const PlaneDetails& details = *one.details;
     const bool both = plane.first && plane.second;
     const LayerDifference& found = plane.difference;
     const bool measured = both && std::isfinite(found.distance_mm);
@@ -74,7 +114,21 @@ Json plane_json(const ComparedPlane& plane) {
             {"at", measured ? Json{found.where.x, found.where.y} : Json()},
             {"contours", {found.first.contours, found.second.contours}},
             {"open_chains", {found.first.open_chains, found.second.open_chains}},
-            {"area_mm2", {found.first.area_mm2, found.second.area_mm2}}};
+            {"area_mm2", {found.first.area_mm2, found.second.area_mm2}},
+            {"hatches", {details.first_hatches, details.second_hatches}},
+            {"hatch_distance_mm",
+             both && std::isfinite(details.hatch_distance_mm) ? Json(details.hatch_distance_mm) : Json()},
+            {"height_distance_mm", both ? Json(details.height_distance_mm) : Json()}};
+}
+
+Json parameters_json(const std::vector<ParameterDifference>& parameters) {
+    Json list = Json::array();
+    for (const ParameterDifference& one : parameters)
+        list.push_back({{"part", one.label},
+                        {"parameter", one.parameter},
+                        {"first", one.first},
+                        {"second", one.second}});
+    return list;
 }
 
 /// What one of two layers at a plane has and the other has not.
@@ -134,41 +188,41 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
         for (const std::string& warning : file->warnings)
             context.messages.warn(warning);
 
-    const LayerStack stacks[2] = {first.merged(), second.merged()};
-    const StackComparison found =
-        compare(RoundedLayers{stacks[0], first.rounding}, {stacks[1], second.rounding}, arguments.tolerance);
+    const FileComparison files = compare_files(first, second, arguments.tolerance);
+    const StackComparison& found = files.layers;
     if (found.cut_apart)
         context.messages.warn(cut_apart_text(first, second));
     const double tolerance = found.tolerance_mm;
-    std::vector<const ComparedPlane*> differing;
+    std::vector<Differing> differing;
     std::uint64_t same = 0;
-    for (const ComparedPlane& plane : found.planes) {
-        same += plane.difference.same ? 1 : 0;
-        if (!plane.agree)
-            differing.push_back(&plane);
+    for (std::size_t i = 0; i < found.planes.size(); ++i) {
+        same += files.details[i].same ? 1 : 0;
+        if (!found.planes[i].agree)
+            differing.push_back({&found.planes[i], &files.details[i]});
     }
-    const auto largest = std::max_element(
-        differing.begin(), differing.end(),
-        [](const ComparedPlane* a, const ComparedPlane* b) { return size_of(*a) < size_of(*b); });
+    const auto largest =
+        std::max_element(differing.begin(), differing.end(),
+                         [](const Differing& a, const Differing& b) { return size_of(a) < size_of(b); });
 
     std::vector<AreaDifference> areas;
     if (arguments.area_difference)
-        areas = area_differences(found, stacks[0], stacks[1]);
+        areas = area_differences(found, first.merged(), second.merged());
 
     if (arguments.json) {
         Json layers = Json::array();
-        for (const ComparedPlane* plane : differing)
-            layers.push_back(plane_json(*plane));
+        for (const Differing& plane : differing)
+            layers.push_back(plane_json(plane));
         Json report{{"first", arguments.inputs[0]},
                     {"second", arguments.inputs[1]},
-                    {"agree", differing.empty()},
+                    {"agree", files.agree()},
                     {"tolerance_mm", tolerance},
                     {"layers", found.planes.size()},
                     {"same", same},
                     {"differing", differing.size()},
-                    {"first_difference", differing.empty() ? Json() : plane_json(*differing.front())},
-                    {"largest_difference", differing.empty() ? Json() : plane_json(**largest)},
-                    {"differences", std::move(layers)}};
+                    {"first_difference", differing.empty() ? Json() : plane_json(differing.front())},
+                    {"largest_difference", differing.empty() ? Json() : plane_json(*largest)},
+                    {"differences", std::move(layers)},
+                    {"parameters", parameters_json(files.parameters)}};
         if (arguments.area_difference) {
             report["area_difference_mm2"] = sum_of(areas);
             report["area_differences"] = Json::array();
@@ -181,7 +235,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
             "{} and {}: {}\n  {} compared, {} of them the same to the last bit\n",
             one_line(arguments.inputs[0]), one_line(arguments.inputs[1]),
             differing.empty()
-                ? fmt::format("agree within {} mm", brief(tolerance))
+                ? fmt::format("{} within {} mm", files.agree() ? "agree" : "layers agree", brief(tolerance))
                 : fmt::format("{} within {} mm",
                               differing.size() == 1 ? "1 layer does not agree"
                                                     : grouped(differing.size()) + " layers do not agree",
@@ -189,14 +243,16 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
             counted(found.planes.size(), "layer"), grouped(same));
         if (!differing.empty()) {
             text +=
-                fmt::format("  the first difference:   {}\n", difference_text(*differing.front(), arguments));
-            text += fmt::format("  the largest difference: {}\n", difference_text(**largest, arguments));
+                fmt::format("  the first difference:   {}\n", difference_text(differing.front(), arguments));
+            text += fmt::format("  the largest difference: {}\n", difference_text(*largest, arguments));
         }
+        if (!files.parameters.empty())
+            text += "  parts are exposed otherwise:\n" + parameters_text(files.parameters);
         if (arguments.area_difference)
             text += area_text(areas);
         context.messages.result(text);
     }
-    if (!differing.empty())
+    if (!files.agree())
         throw Error(ErrorKind::defect,
                     fmt::format("{} and {} differ", arguments.inputs[0], arguments.inputs[1]));
     return 0;
@@ -216,12 +272,15 @@ Command compare_command() {
         .summary = "tell how far two slice files are from each other",
         .description =
             "Compares the layers of two slice files, of any formats, plane by plane: how far the corners of "
-            "one are from the contours of the other, areas, and open chains. Tells the first and the largest "
-            "difference. Exit code 4 says that they do not agree within the tolerance.",
+            "one are from the contours of the other, areas, open chains, hatch lines one by one, heights, "
+            "and by "
+            "which parameters parts are exposed. Tells the first and the largest difference. Exit code 4 "
+            "says that they do not agree within the tolerance.",
         .operands = {operand("FIRST", "a slice file; - is standard input"), operand("SECOND", "another one")},
         .groups = {{"What is compared",
                     {row("tolerance", ValueKind::number, "MM",
-                         "how far contours may be apart; what the rounding of both formats explains unless "
+                         "how far contours and ends of hatch lines may be apart; what the rounding of both "
+                         "formats explains unless "
                          "given",
                          [arguments](const std::string& text) {
                              arguments->tolerance = parse_number(text);

@@ -51,6 +51,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     options.page.title = title_of(arguments.input);
     for (const std::string& warning : file.warnings)
         context.messages.warn(warning);
+    check_steps(file, arguments.making.steps());
     LayerChanges changes;
     for (LayerPart& part : file.parts) {
         LayerChanges of_part;

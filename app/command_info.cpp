@@ -1,3 +1,4 @@
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
@@ -13,19 +14,22 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
+#include "scan_figures.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -67,6 +71,50 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     return 0;
 }
 
+bool holds_vectors(const LayerFile& file) {
+    return std::any_of(file.parts.begin(), file.parts.end(),
+                       [](const LayerPart& part) { return part.exposure.has_value(); });
+}
+
+/// Each exposure of the file with its figures: the beam goes through the parts of a layer one after the
+/// other.
+std::vector<ExposureResult> exposures_of(const LayerFile& file) {
+    std::vector<ExposureResult> exposures;
+    for (const LayerPart& part : file.parts)
+        if (part.exposure)
+            exposures.push_back({*part.exposure, {}});
+    for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
+        std::optional<Point2> beam;
+        auto exposure = exposures.begin();
+        for (const LayerPart& part : file.parts)
+            if (part.exposure) {
+                exposure->figures += measure_vectors(part.layers[i], part.exposure->parameters, beam);
+                ++exposure;
+            }
+    }
+    return exposures;
+}
+
+/// Times and energies are told where the file says speeds and powers; jumps at a speed that it does not say
+/// take no time.
+Figures vector_figures(const LayerFile& file) {
+    const std::vector<ExposureResult> exposures = exposures_of(file);
+    const auto all_have = [&](double ParameterSet::*number) {
+        return std::all_of(exposures.begin(), exposures.end(), [&](const ExposureResult& one) {
+            return one.figures.vectors == 0 || one.exposure.parameters.*number > 0;
+        });
+    };
+    const bool timed = all_have(&ParameterSet::speed_mm_s);
+    const bool powered = all_have(&ParameterSet::power_w);
+    Figures figures = scan_figures(exposures);
+    for (Figure& figure : figures)
+        if ((figure.key == "build_seconds" && !timed) || (figure.key == "energy_j" && !(timed && powered))) {
+            figure.value = nullptr;
+            figure.text = "not known: the file does not say speed or power";
+        }
+    return figures;
+}
+
 Figures figures_of(const LayerFile& file) {
     LayerMeasure all;
     double volume_mm3 = 0;
@@ -86,6 +134,12 @@ Figures figures_of(const LayerFile& file) {
         range.text = fmt::format("z = {} to {} mm", brief(bottom), brief(top));
     }
     figures.insert(figures.begin() + 1, std::move(range));
+    if (holds_vectors(file)) {
+        // Contours of an exposure lie within those of others: they bound no volume together.
+        std::erase_if(figures, [](const Figure& figure) { return figure.key == "volume_mm3"; });
+        for (Figure& figure : vector_figures(file))
+            figures.push_back(std::move(figure));
+    }
     return figures;
 }
 
@@ -161,7 +215,7 @@ Command info_command() {
         .description = fmt::format(
             "Tells what a file holds. Of a mesh (.{}): size, volume, area, shells, and every kind of "
             "defect with what it means for slicing and where it is. Of a slice file: layers, "
-            "contours, points and volume. Nothing is repaired or written.",
+            "contours, points and volume, of scan vectors lengths and times. Nothing is repaired or written.",
             fmt::join(mesh_extensions(), ", .")),
         .operands = {{.placeholder = "FILE",
                       .help = "a mesh or a slice file; - is standard input",

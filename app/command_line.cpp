@@ -3,6 +3,9 @@
 #include "lamella/core/error.hpp"
 
 #include "config_file.hpp"
+#include "deadline.hpp"
+#include "numbers.hpp"
+#include "standard_streams.hpp"
 #include "suggest.hpp"
 
 #include <fmt/format.h>
@@ -19,6 +22,7 @@ namespace {
 constexpr std::string_view config = "config";
 constexpr std::string_view dump_config = "dump-config";
 constexpr std::string_view help = "help";
+constexpr std::string_view timeout = "timeout"; // of commands that have it
 
 [[noreturn]] void refuse(const std::string& text) {
     throw Error(ErrorKind::usage, text);
@@ -242,6 +246,22 @@ void check_standard_input(const Command& command) {
                            inputs[0].name, inputs[1].name));
 }
 
+Configuration config_in_time(const std::string& path, const Words& words, Command& command,
+                             const Messages& messages) {
+    const Words::Word* const limit = words.last(timeout);
+    if (limit == nullptr)
+        return read_config(path, command);
+    double seconds = 0;
+    try {
+        seconds = parse_positive(limit->text);
+    } catch (const Error& error) {
+        throw Error(error.kind(), fmt::format("{}: {}", limit->as_typed, error.what()));
+    }
+    const Execution execution;
+    const Deadline deadline(seconds, one_line(input_name(path)), messages, execution);
+    return read_config(path, command);
+}
+
 } // namespace
 
 OptionGroup common_options(bool configurable) {
@@ -299,13 +319,13 @@ std::string option_suggestion(const Command& command, std::string_view name, std
     return fmt::format("; did you mean {}{}?", hyphens, meant);
 }
 
-Wish parse(Command& command, std::span<const std::string> words) {
+Wish parse(Command& command, std::span<const std::string> words, const Messages& messages) {
     const Words split = Splitter(command, words).split();
     if (split.last(help) != nullptr)
         return Wish::help;
     Configuration configured;
     if (const Words::Word* file = split.last(config); file != nullptr && !file->text.empty())
-        configured = read_config(file->text, command);
+        configured = config_in_time(file->text, split, command, messages);
     Assignment assignment(command);
     const auto set = [&](const ConfigEntry& entry) {
         assignment.set(*entry.option, fmt::format("{}: {}", entry.place, entry.option->name), entry.text);

@@ -16,7 +16,9 @@ enum class Wish { run, help, dump_config };
 /// the command line says. Files of the configuration file only count where the command line names none.
 /// Throws Error{usage} with a suggestion where there is one, also for options without the one that they go
 /// with, and where two files are to be read from standard input.
-[[nodiscard]] Wish parse(Command& command, std::span<const std::string> words);
+///
+/// A --timeout of the command line holds for reading the configuration file, too, which may be a pipe.
+[[nodiscard]] Wish parse(Command& command, std::span<const std::string> words, const Messages& messages);
 
 /// The options that every command has.
 [[nodiscard]] OptionGroup common_options(bool configurable);

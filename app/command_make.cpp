@@ -18,7 +18,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -60,7 +59,8 @@ double single_size(const MakeArguments& arguments, double otherwise) {
     if (!arguments.size)
         return otherwise;
     if (arguments.size->size() != 1)
-        throw Error(ErrorKind::usage, fmt::format("--size: a {} takes one length", arguments.body));
+        throw Error(ErrorKind::usage, fmt::format("--size: a {} takes one length{}", arguments.body,
+                                                  arguments.body == "box" ? ", or three" : ""));
     return arguments.size->front();
 }
 
@@ -183,19 +183,17 @@ OptionGroup shape_options(MakeArguments& target) {
 
 /// Meshes of these formats are read, but not written.
 void check_extension(const std::string& output) {
-    const std::string extension = std::filesystem::path(output).extension().string();
+    const std::string extension = extension_of(output);
     for (const std::string_view written : {".stl", ".ply", ".obj"})
         if (extension == written)
             return;
-    for (const std::string_view read : mesh_extensions())
-        if (extension == fmt::format(".{}", read))
-            throw Error(ErrorKind::usage,
-                        fmt::format("{}: bodies are written as .stl, .ply or .obj", output));
+    if (extension == ".gz" || is_mesh_name(output))
+        throw Error(ErrorKind::usage, fmt::format("{}: bodies are written as .stl, .ply or .obj", output));
 }
 
 /// In the format of the extension: STL unless it is that of another one.
 void write_mesh(const std::string& output, const TriangleSoup& soup, const MakeArguments& arguments) {
-    const std::string extension = std::filesystem::path(output).extension().string();
+    const std::string extension = extension_of(output);
     if (arguments.ascii && extension == ".ply")
         throw Error(ErrorKind::usage,
                     "--ascii: PLY files are written as binary; STL and OBJ have a text form");
@@ -241,7 +239,7 @@ Made make_whole(const std::string& output, const MakeArguments& arguments, const
 
 /// Whether the body goes to a binary STL file as it is made.
 bool can_stream(const std::string& output, const MakeArguments& arguments) {
-    const std::string extension = std::filesystem::path(output).extension().string();
+    const std::string extension = extension_of(output);
     return arguments.body == "lattice" && !arguments.shuffle && !arguments.ascii && extension != ".ply" &&
            extension != ".obj";
 }

@@ -52,7 +52,9 @@ Command merge_command() {
             "Makes one slice file of several whose layers lie on one another, such as the shards of a job "
             "(lamella slice --shard); they may be named in any order. Files with gaps between them, that "
             "overlap "
-            "or are not of one job are refused. Files in the formats cli and cli-ascii become the file "
+            "or are not of one job are refused; but exposures of scan vectors may be missing in some, and in "
+            "ilt, ovf and 3mf-toolpath other parts, too. Files "
+            "in the formats cli and cli-ascii become the file "
             "of a single run, byte for byte; layers of other formats are read and written anew.",
         .operands = {{.placeholder = "OUT",
                       .help = "the slice file to write; its extension says the format; - is standard output",

@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/version.hpp"
+#include "lamella/core/whole_file.hpp"
 #include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -68,11 +69,22 @@ void check_layers(const LayerFile& file) {
 std::vector<std::string> losses(const LayerFile& file) {
     std::uint64_t hatches = 0;
     std::uint64_t chains = 0;
-    for (const LayerPart& part : file.parts)
-        for (const Layer& layer : part.layers) {
+    const LayerStack& planes = file.parts.front().layers;
+    std::uint64_t inside_out = 0;
+    double first_z = 0;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        bool any = false;
+        for (const LayerPart& part : file.parts) {
+            const Layer& layer = part.layers[i];
             hatches += layer.hatches.size() / 2;
             chains += layer.open_chains();
+            // In normal form the first ring has the smallest point of all rings, so nothing lies around it
+            // but an open chain.
+            any = any || (layer.rings > 0 && layer.open_chains() == 0 && ring_area(layer.contour(0)) < 0);
         }
+        if (any && inside_out++ == 0)
+            first_z = planes[i].z;
+    }
     std::vector<std::string> lost;
     if (hatches > 0)
         lost.push_back(fmt::format("{}: {} left out: layers are hatched anew", file.path,
@@ -80,6 +92,11 @@ std::vector<std::string> losses(const LayerFile& file) {
     if (chains > 0)
         lost.push_back(fmt::format("{}: {} left out: only closed contours bound material", file.path,
                                    counted(chains, "open contour")));
+    if (inside_out > 0)
+        lost.push_back(fmt::format(
+            "{}: inside out in {} of {}, first at z = {} mm: outer contours run clockwise, as around holes, "
+            "and bound no material; lamella convert --fill nonzero turns them round",
+            file.path, grouped(inside_out), counted(planes.size(), "layer"), brief(first_z)));
     return lost;
 }
 
@@ -100,12 +117,13 @@ Json stats_of(const Command& command, const LayerFile& file, const ScanStrategy&
                           {"area_mm2", measured.area_mm2},
                           {"scan", with_density(scan_json(result.exposures, result.layers[i]), layer_mm3)}});
     }
-    Json stats = {{"lamella", version()},
-                  {"options", options_in_effect(command)},
-                  {"input", {{"path", file.path}, {"format", file.format}, {"parts", file.parts.size()}}},
-                  {"seconds", {{"scan", result.scan_seconds}}},
-                  {"volume_mm3", volume_mm3},
-                  {"scan", with_density(scan_json(result.exposures), volume_mm3)}};
+    Json stats = {
+        {"lamella", version()},
+        {"options", options_in_effect(command)},
+        {"input", {{"path", file.path}, {"format", file.format}, {"parts", file.parts.size()}}},
+        {"seconds", {{"scan", result.scan_seconds}}},
+        {"volume_mm3", volume_mm3},
+        {"scan", with_thin_rings(with_density(scan_json(result.exposures), volume_mm3), result.thin)}};
     stats["scan"]["strategy"] = strategy_json(strategy);
     stats["layers"] = std::move(layers);
     return stats;
@@ -121,6 +139,8 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     options.page.title = title_of(arguments.input);
     const ScanStrategy strategy = arguments.scanning.strategy();
     const Execution execution = arguments.run.execution(context);
+    if (!arguments.stats.empty())
+        check_writable(arguments.stats);
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
     for (const std::string& warning : file.warnings)
@@ -136,6 +156,8 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         stacks.push_back(part.layers);
     const ScanResult result =
         scan_layers(arguments.output, format, stacks, file.rounding, info, strategy, options, execution);
+    if (result.thin.rings > 0)
+        context.messages.warn(fmt::format("{}: {}", file.path, result.thin.text()));
     for (const std::string& warning : result.warnings)
         context.messages.warn(fmt::format("{}: {}", one_line(arguments.output), warning));
     if (!arguments.stats.empty()) {

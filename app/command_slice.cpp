@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/core/whole_file.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -78,19 +79,28 @@ struct SliceArguments {
     Communicator* team = nullptr; ///< see slice_command
 };
 
+/// Options of how the slice file is written say nothing without one.
+std::vector<Option> with_output(std::vector<Option> options) {
+    for (Option& option : options)
+        option.goes_with = "output";
+    return options;
+}
+
 OptionGroup output_options(SliceArguments& target) {
     OptionGroup group{"What is written", {}};
     Option output = output_file(
         "output", "the slice file; its extension says the format; - is standard output", target.output);
     output.letter = 'o';
     group.options.push_back(std::move(output));
-    for (Option& option : layer_output_options(target.writing))
+    for (Option& option : with_output(layer_output_options(target.writing)))
         group.options.push_back(std::move(option));
     group.options.push_back(
         output_file("report", "write a page to look at the layers and the figures of the run (HTML), too",
                     target.report));
-    group.options.push_back(output_file(
-        "stats", "write figures of the run and of every layer as JSON; - is standard output", target.stats));
+    group.options.push_back(output_file("stats",
+                                        "write figures of the run and of every layer as JSON, not in a "
+                                        "folder that -o makes; - is standard output",
+                                        target.stats));
     return group;
 }
 
@@ -147,9 +157,10 @@ OptionGroup input_options(SliceArguments& target) {
 }
 
 OptionGroup shard_options(SliceArguments& target) {
-    Option resume =
-        flag("resume", "do nothing where this shard is finished, as the stamp beside its file shows",
-             target.resume);
+    Option resume = flag("resume",
+                         "do nothing where this shard is finished, with the statistics and the report asked "
+                         "for, as the stamp beside its file shows",
+                         target.resume);
     resume.goes_with = "shard";
     return {"How it is shared out",
             {row("shard", ValueKind::text, "I/N",
@@ -166,7 +177,9 @@ OptionGroup checking_options(SliceArguments& target) {
         {std::move(engine),
          flag("inspect", "count the defects of the mesh first, for --stats and the summary (takes a while)",
               target.inspect),
-         flag("strict", "make an error of any defect of the file or its mesh, and write nothing",
+         flag("strict",
+              "make an error of any defect of the file or its mesh, of what the slice file would lose, of "
+              "rings too thin for scan vectors and of steps that leave nothing, and write nothing",
               target.strict)}};
 }
 
@@ -204,6 +217,8 @@ void check_shard(const SliceArguments& arguments) {
                                [](const PlateInput& input) { return input.path == "-"; }),
                    true, "- and --shard", "every shard has to read the whole mesh, from a file");
     check_conflict(arguments.output == "-", true, "--output - and --shard", "a shard is a file of its own");
+    if (arguments.resume && arguments.output.empty())
+        throw Error(ErrorKind::usage, "--resume goes with --output: a shard that is finished is a file");
     check_conflict(arguments.resume, arguments.stats == "-", "--resume and --stats -",
                    "a shard that is finished has no figures");
     if (!arguments.output.empty() && layer_format(arguments.writing.format, arguments.output).directory)
@@ -247,10 +262,15 @@ FileJob make_job(const SliceArguments& arguments) {
     return job;
 }
 
+/// Where to look for more: not where the mesh came from standard input, which cannot be read again.
+std::string ask_info(const std::string& path) {
+    return path == "-" ? "" : fmt::format("; see lamella info {}", path);
+}
+
 std::string summary(const FileJob& job, const FileResult& result) {
     const std::size_t parts = result.parts.size();
     std::string text = fmt::format(
-        "read     {}{}: {}, {}\n", one_line(job.inputs.front().path),
+        "read     {}{}: {}, {}\n", one_line(input_name(job.inputs.front().path)),
         job.inputs.size() == 1 ? "" : fmt::format(" and {} more", counted(job.inputs.size() - 1, "file")),
         counted(result.triangles, "triangle"), size_text(result.box));
     if (parts > 1)
@@ -263,10 +283,10 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += fmt::format("shard    {} of {}: layers {} to {} of {}\n", job.shard->number, job.shard->count,
                             result.shard.begin, result.shard.end - 1, result.planned_layers);
     if (result.inspection)
-        text += fmt::format("mesh     {}\n", result.inspection->sound()
-                                                 ? "closed, consistently oriented, no defects"
-                                                 : fmt::format("has defects; lamella info {} lists them",
-                                                               one_line(job.inputs.front().path)));
+        text +=
+            fmt::format("mesh     {}\n", result.inspection->sound()
+                                             ? "closed, consistently oriented, no defects"
+                                             : "has defects" + ask_info(one_line(job.inputs.front().path)));
     for (const FileResult::MeshRepair& repair : result.repairs)
         text += repairs_text(repair.repairs);
     if (job.repair.close_gaps_mm)
@@ -296,18 +316,33 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
         return fmt::format("in {} of {}, first at z = {} mm", grouped(affected.layers),
                            counted(result.report.layers, "layer"), brief(affected.first_z));
     };
-    const std::string& name = job.inputs.front().path;
+    const std::string name = input_name(job.inputs.front().path);
+    const std::string hint = ask_info(job.inputs.front().path);
     std::vector<std::string> warnings;
     if (result.report.open_chains > 0)
         warnings.push_back(fmt::format("{}: {} {}: contours do not close where the mesh has holes or flipped "
-                                       "triangles, the longest gap is {} mm; see lamella info {}",
+                                       "triangles, the longest gap is {} mm{}",
                                        name, counted(result.report.open_chains, "open chain"),
-                                       where(result.open), brief(result.open_gaps.longest_mm), name));
-    if (result.inside_out.layers > 0)
+                                       where(result.open), brief(result.open_gaps.longest_mm), hint));
+    // A ring that goes first is an outer one only where all contours are closed: of a mesh with holes it may
+    // be that of a hollow, and what lies around it an open chain.
+    if (result.inside_out.layers > 0 && result.report.open_chains > 0)
+        warnings.push_back(
+            fmt::format("{}: closed contours with none around them run clockwise {}, as around "
+                        "holes: those around them stay open, or triangles face inwards{}",
+                        name, where(result.inside_out), hint));
+    else if (result.inside_out.layers > 0)
         warnings.push_back(
             fmt::format("{}: inside out {}: outer contours run clockwise, as around holes, because "
-                        "triangles face inwards; see lamella info {}",
-                        name, where(result.inside_out), name));
+                        "triangles face inwards{}",
+                        name, where(result.inside_out), hint));
+    if (!job.shard && result.changes && result.changes->changed_layers > 0 && result.report.contours == 0)
+        warnings.push_back(fmt::format("{}: no contour is left in any of {}: --offset, --min-area and other "
+                                       "options of what is made of the layers took those of {}",
+                                       name, counted(result.report.layers, "layer"),
+                                       grouped(result.changes->changed_layers)));
+    if (result.thin.rings > 0)
+        warnings.push_back(fmt::format("{}: {}", name, result.thin.text()));
     for (const std::string& warning : result.warnings)
         warnings.push_back(fmt::format("{}: {}", one_line(job.output), warning));
     for (const std::string& warning : result.report_warnings)
@@ -315,13 +350,15 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
     return warnings;
 }
 
-FileResult slice_in_time(const SliceArguments& arguments, const FileJob& job, const Execution& execution) {
-    Communicator& processes = arguments.team != nullptr ? *arguments.team : alone();
+/// What `work(execution)` returns, unless --timeout ends it: then an error that begins with the name.
+template <class Work>
+auto in_time(const SliceArguments& arguments, const std::string& name, const Messages& messages,
+             const Execution& execution, const Work& work) {
     if (!arguments.timeout)
-        return slice_file(job, execution, processes);
-    Deadline deadline(*arguments.timeout, one_line(job.inputs.front().path), execution);
+        return work(execution);
+    Deadline deadline(*arguments.timeout, one_line(input_name(name)), messages, execution);
     try {
-        return slice_file(job, deadline.execution(), processes);
+        return work(deadline.execution());
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled)
             deadline.check();
@@ -333,7 +370,8 @@ FileResult slice_in_time(const SliceArguments& arguments, const FileJob& job, co
 std::vector<std::string> all_warnings(const FileJob& job, const FileResult& result) {
     std::vector<std::string> warnings;
     for (const PlateFile& file : result.files)
-        warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+        for (const std::string& warning : file.warnings)
+            warnings.push_back(fmt::format("{}: {}", input_name(file.path), warning));
     for (std::string& warning : layer_warnings(job, result))
         warnings.push_back(std::move(warning));
     return warnings;
@@ -358,26 +396,50 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     check_conflict(true, to_stdout, "--batch and -", "standard output is where the results of the files go");
     check_conflict(true, !arguments.report.empty(), "--batch and --report", "a page shows one part");
     const std::vector<BatchItem> items =
-        batch_items(arguments.batch, arguments.output, batch_extension(arguments), arguments.stats);
+        batch_items(arguments.batch, arguments.output, batch_extension(arguments), arguments.stats,
+                    files_of(context.command, ValueKind::input));
     // All files have the options of the first one.
     add_input(arguments, items.front().input);
     finish_input(arguments);
     arguments.output = items.front().output;
     arguments.stats = items.front().stats;
-    FileJob model = make_job(arguments);
+    // Lists and strategies may come from pipes.
+    FileJob model =
+        in_time(arguments, arguments.batch.source, context.messages, arguments.run.execution(context),
+                [&](const Execution&) { return make_job(arguments); });
     check_conflict(model.shard.has_value(), true, "--batch and --shard", "share out the list instead");
     model.layer_statistics = true; // for the hashes
+    Messages unheard;              // what becomes of a file is told by its record
+    unheard.set_style(ProgressStyle::silent);
     const SliceItem slice = [&](const BatchItem& item, const Execution& execution) {
         FileJob job = model;
         job.inputs.front().path = item.input;
         job.output = item.output;
-        BatchResult result{slice_in_time(arguments, job, execution), {}};
+        BatchResult result{in_time(arguments, item.input, unheard, execution,
+                                   [&](const Execution& run) { return slice_file(job, run); }),
+                           {},
+                           {}};
         result.warnings = all_warnings(job, result.file);
         if (!item.stats.empty())
-            write_text_file(item.stats, json_text(stats_json(context.command, job, result.file)));
+            result.stats = json_text(stats_json(context.command, job, result.file));
         return result;
     };
     return run_batch(items, arguments.batch, slice, arguments.run.execution(context), context.messages);
+}
+
+/// They are written when all else is done, so nobody shall slice for hours what cannot be told then. All
+/// processes fail together.
+void check_place_of_stats(const SliceArguments& arguments, Communicator& processes) {
+    std::string refusal;
+    if (!arguments.stats.empty() && processes.process() == 0) {
+        try {
+            check_writable(arguments.stats);
+        } catch (const Error& error) {
+            refusal = error.what();
+        }
+    }
+    if (const std::vector<std::string> all = processes.gather(refusal); !all.front().empty())
+        throw Error(ErrorKind::output, all.front());
 }
 
 int run_slice(SliceArguments& arguments, const Context& context) {
@@ -388,25 +450,32 @@ int run_slice(SliceArguments& arguments, const Context& context) {
                                       "lamella slice --help");
     check_outputs(context.command);
     finish_input(arguments);
-    const FileJob job = make_job(arguments);
-    if (job.shard && arguments.team != nullptr)
-        throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
+    Communicator& processes = arguments.team != nullptr ? *arguments.team : alone();
     const Execution execution = arguments.run.execution(context);
-    const bool stamped = job.shard && !job.output.empty();
-    Json origin;
-    if (stamped) {
-        origin = shard_origin(context.command, job, execution);
-        if (arguments.resume && is_finished_shard(job, origin, execution)) {
-            context.messages.written(fmt::format("{}: shard {}/{} is finished\n", one_line(job.output),
-                                                 job.shard->number, job.shard->count),
-                                     job.output);
-            return 0;
+    FileJob job;
+    Json origin; // of a shard that is stamped
+    const auto slice = [&](const Execution& run) -> std::optional<FileResult> {
+        job = make_job(arguments);
+        if (job.shard && arguments.team != nullptr)
+            throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
+        if (job.shard && !job.output.empty()) {
+            origin = shard_origin(context.command, job, run);
+            if (arguments.resume && is_finished_shard(job, arguments.stats, origin, run))
+                return std::nullopt;
         }
+        check_place_of_stats(arguments, processes);
+        return slice_file(job, run, processes);
+    };
+    const std::optional<FileResult> outcome =
+        in_time(arguments, arguments.inputs.front().path, context.messages, execution, slice);
+    if (!outcome) {
+        context.messages.written(fmt::format("{}: shard {}/{} is finished\n", one_line(job.output),
+                                             job.shard->number, job.shard->count),
+                                 job.output);
+        return 0;
     }
-    const FileResult result = slice_in_time(arguments, job, execution);
-    if (stamped)
-        stamp_shard(job, result, origin, execution);
-    if (arguments.team != nullptr && arguments.team->process() != 0)
+    const FileResult& result = *outcome;
+    if (processes.process() != 0)
         return 0;
     for (const std::string& warning : all_warnings(job, result))
         context.messages.warn(warning);
@@ -420,6 +489,9 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         else
             write_text_file(arguments.stats, text);
     }
+    // Last: what is stamped is finished, with all that was asked for.
+    if (!origin.is_null())
+        stamp_shard(job, arguments.stats, result, origin, execution);
     const bool to_output = arguments.output == "-" || arguments.stats == "-" || arguments.report == "-";
     context.messages.written(summary(job, result), to_output ? "-" : arguments.output);
     return 0;
@@ -430,6 +502,8 @@ int run_slice(SliceArguments& arguments, const Context& context) {
 Command slice_command(Communicator* team) {
     const auto arguments = std::make_shared<SliceArguments>();
     arguments->team = team;
+    OptionGroup pictures = picture_options(arguments->writing.picture);
+    pictures.options = with_output(std::move(pictures.options));
     return {
         .name = "slice",
         .summary = "cut a mesh into layers and write a slice file",
@@ -451,9 +525,9 @@ Command slice_command(Communicator* team) {
                           [arguments](const std::string& text) {
                               add_input(*arguments, text);
                           }}},
-        .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
-                   layering_options(arguments->layering), shard_options(*arguments),
-                   repair_options(arguments->repair), layer_step_options(arguments->making),
+        .groups = {output_options(*arguments), std::move(pictures), layering_options(arguments->layering),
+                   shard_options(*arguments), repair_options(arguments->repair),
+                   layer_step_options(arguments->making),
                    scan_options(
                        arguments->scanning,
                        {flag("scan", "write scan vectors in the place of contours", arguments->scan)}),

@@ -12,7 +12,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -40,11 +43,36 @@ void place_cuts(LayerStack& layers, SliceAt at) {
                                         : layer.bottom + (layer.top - layer.bottom) / 2;
 }
 
+Json heights_json(const std::optional<CoveredHeights>& heights) {
+    if (!heights)
+        return {};
+    return {{"layers", {heights->bottom, heights->top}},
+            {"mesh", {heights->mesh_bottom, heights->mesh_top}},
+            {"gaps", heights->gaps},
+            {"gaps_mm", heights->gaps_mm}};
+}
+
+std::string heights_text(const std::optional<CoveredHeights>& heights) {
+    if (!heights)
+        return {};
+    const double height = heights->mesh_top - heights->mesh_bottom;
+    const double covered = std::min(heights->top, heights->mesh_top) -
+                           std::max(heights->bottom, heights->mesh_bottom) - heights->gaps_mm;
+    return fmt::format("  layers from z = {} to {} mm, of a mesh from {} to {} mm: {:.4g} % of its height\n",
+                       brief(heights->bottom), brief(heights->top), brief(heights->mesh_bottom),
+                       brief(heights->mesh_top), height > 0 ? 100 * std::max(0.0, covered) / height : 0);
+}
+
 Json verification_json(const Verification& found) {
-    Json object{{"layers", found.layers},           {"contours", found.contours},
-                {"open_chains", found.open_chains}, {"crossings", found.crossings},
-                {"misoriented", found.misoriented}, {"overlapping", found.overlapping},
-                {"volume_mm3", found.volume_mm3},   {"max_area_error_mm2", nullptr}};
+    Json object{{"layers", found.layers},
+                {"contours", found.contours},
+                {"open_chains", found.open_chains},
+                {"crossings", found.crossings},
+                {"misoriented", found.misoriented},
+                {"overlapping", found.overlapping},
+                {"volume_mm3", found.volume_mm3},
+                {"max_area_error_mm2", nullptr},
+                {"heights", heights_json(found.heights)}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
@@ -68,6 +96,7 @@ std::string verification_text(const std::string& mesh, const Verification& found
         text +=
             fmt::format("  areas differ from the sections of {} by at most {} mm2{}\n", one_line(mesh),
                         brief(*found.max_area_error_mm2), found.areas_agree ? ", as rounding allows" : "");
+    text += heights_text(found.heights);
     if (found.ok())
         text += fmt::format(
             "  every contour is closed, none cross, holes and outer contours run the right way{}\n",
@@ -85,8 +114,10 @@ Json vectors_json(const VectorVerification& found) {
             {"outside", found.outside},
             {"too_short", found.too_short},
             {"miscovered", found.miscovered},
+            {"wrong_contours", found.wrong_contours},
             {"unbounded", found.unbounded},
-            {"cover", found.cover ? Json(*found.cover) : Json()}};
+            {"cover", found.cover ? Json(*found.cover) : Json()},
+            {"heights", heights_json(found.heights)}};
 }
 
 std::string vectors_text(const std::string& mesh, bool strategy, const VectorVerification& found) {
@@ -98,12 +129,16 @@ std::string vectors_text(const std::string& mesh, bool strategy, const VectorVer
     if (found.cover)
         text += fmt::format("  lines times their distance cover {:.2f} % of what they are to fill\n",
                             100 * *found.cover);
-    if (found.ok())
-        text += fmt::format("  all vectors lie within {}{}\n",
+    text += heights_text(found.heights);
+    const std::uint64_t all = found.contour_vectors + found.hatch_vectors;
+    if (found.ok() && found.unbounded < all)
+        text += fmt::format("  all {}vectors lie within {}{}\n", found.unbounded > 0 ? "other " : "",
                             mesh.empty() ? "the outermost contours of their part" : one_line(mesh),
                             strategy ? ", as far from its edges as the strategy says"
                                      : "; --scan or --strategy FILE would check their distance from its "
                                        "edges and what they cover, too");
+    else if (found.ok() && all > 0)
+        text += "  whether they lie within the material was not checked; --mesh part.stl would do so\n";
     return text;
 }
 
@@ -192,8 +227,9 @@ Command verify_command() {
             "compared with the section of that mesh, computed straight from its triangles. Of scan vectors, "
             "contours are checked so, and all have to lie within the mesh, or without one within the "
             "outermost contour of their part; with the strategy by which they were made, as far from its "
-            "edges as that says, none shorter than the shortest, and enough of them to fill it. Exit code 4 "
-            "says that the check failed.",
+            "edges as that says, each contour there, no line shorter than the shortest, and enough of them "
+            "to "
+            "fill it. Exit code 4 says that the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =

@@ -32,7 +32,7 @@ struct ViewArguments {
     std::string input;
     std::string output;
     std::optional<double> layer_height;
-    std::string slice_at = "middle";
+    std::string slice_at; ///< "" where nothing is given
     PlacementOptions placement;
     LayerStepOptions making;
     ReadLimits limits;
@@ -85,11 +85,12 @@ Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::stri
 
 Written view_layers(const ViewArguments& arguments, LayerFile file, const std::string& output,
                     const Execution& execution) {
-    if (arguments.placement.given() || arguments.layer_height)
+    if (arguments.placement.given() || arguments.layer_height || !arguments.slice_at.empty())
         throw Error(ErrorKind::usage,
                     fmt::format("{}: holds layers, and these stay where they are; options of "
                                 "where a part stands and how it is cut are for meshes",
                                 file.path));
+    check_steps(file, arguments.making.steps());
     PageNotes notes = file_notes(file);
     for (LayerPart& part : file.parts) {
         std::vector<LayerChanges> changes;
@@ -143,9 +144,10 @@ int run_view(const ViewArguments& arguments, const Context& context) {
 OptionGroup cutting_options(ViewArguments& target) {
     Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
     layer_height.preset = exact(UniformLayers{}.layer_height);
-    return {"How a mesh is cut",
-            {std::move(layer_height), choice("slice-at", "WHERE", "where in its thickness a layer is cut",
-                                             slice_at_names(), target.slice_at)}};
+    Option slice_at = choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
+                             target.slice_at);
+    slice_at.preset = "middle";
+    return {"How a mesh is cut", {std::move(layer_height), std::move(slice_at)}};
 }
 
 } // namespace

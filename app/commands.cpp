@@ -18,11 +18,13 @@ std::span<const ExitCode> exit_codes() noexcept {
     static constexpr std::array<ExitCode, 9> codes{
         {{0, "all went well"},
          {1, "a fault of Lamella itself: please report it"},
-         {2, "the command line or a configuration file asks for what cannot be done"},
+         {2,
+          "the command line, a configuration file, a scan strategy or a list of heights asks for what cannot "
+          "be done"},
          {3, "an input cannot be read or holds nothing to work on"},
          {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify, compare)"},
          {5, "a limit was hit, such as memory or --timeout"},
-         {6, "the output cannot be written; nothing was left at its path"},
+         {6, "an output cannot be written; nothing was left at its path, though others may be there already"},
          {7, "of the files of a batch some failed; the results say which, and why"},
          {130, "cancelled, by Ctrl-C, the terminate signal or the end of the terminal"}}};
     return codes;

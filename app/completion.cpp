@@ -43,6 +43,18 @@ std::string bash_pattern(const Option& option) {
     return option.letter != 0 ? fmt::format("-{}|--{}", option.letter, option.name) : "--" + option.name;
 }
 
+/// Choices are offered for the first operand only, until one of them is there.
+std::string bash_operands(const Command& command) {
+    const std::string files = "compopt -o default; return";
+    if (command.operands.empty() || command.operands.front().choices.empty())
+        return files;
+    const std::vector<std::string>& choices = command.operands.front().choices;
+    return fmt::format(
+        "case \" ${{COMP_WORDS[*]:2:COMP_CWORD-2}} \" in *\" {} \"*) {} ;; *) words=\"{}\" ;; esac",
+        fmt::join(choices, " \"*|*\" "), command.operands.size() > 1 ? files : "return",
+        fmt::join(choices, " "));
+}
+
 /// The case of one command: values after options that take one, option names, operands.
 std::string bash_case(const Command& command) {
     std::string text = fmt::format("    {})\n        case \"$previous\" in\n", command.name);
@@ -57,13 +69,9 @@ std::string bash_case(const Command& command) {
                                                            : "return";
         text += fmt::format("        {}) {} ;;\n", bash_pattern(*option), action);
     }
-    std::string operands = "compopt -o default; return";
-    for (const Operand& operand : command.operands)
-        if (!operand.choices.empty())
-            operands = fmt::format("words=\"{}\"", fmt::join(operand.choices, " "));
     text += fmt::format("        *) if [[ \"$current\" == -* ]]; then words=\"{}\"; else {}; fi ;;\n"
                         "        esac ;;\n",
-                        fmt::join(names, " "), operands);
+                        fmt::join(names, " "), bash_operands(command));
     return text;
 }
 
@@ -112,6 +120,25 @@ std::string fish_option(const Command& command, const Option& option) {
     if (!option.choices.empty())
         text += fmt::format(" -a '{}'", fmt::join(option.choices, " "));
     return text + fmt::format(" -d '{}'\n", with_prefixes(option.help, "'\\", "\\"));
+}
+
+/// Choices are offered until one of them is there, files after it; without choices, files.
+std::string fish_operands(const Command& command) {
+    const std::string here =
+        fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}", command.name);
+    std::string choices;
+    std::string text;
+    for (const Operand& operand : command.operands) {
+        if (operand.choices.empty()) {
+            text += fmt::format("{}{}' -F\n", here, choices.empty() ? "" : "; and " + choices);
+        } else {
+            std::vector<std::string> others = operand.choices; // than the command, such as help
+            std::erase(others, command.name);
+            choices = fmt::format("__fish_seen_subcommand_from {}", fmt::join(others, " "));
+            text += fmt::format("{}; and not {}' -a '{}'\n", here, choices, fmt::join(operand.choices, " "));
+        }
+    }
+    return text;
 }
 
 } // namespace
@@ -181,11 +208,7 @@ std::string fish_completion(std::span<const Command> commands) {
     for (const Command& command : commands) {
         text += fmt::format("complete -c lamella -n __fish_use_subcommand -a {} -d '{}'\n", command.name,
                             with_prefixes(command.summary, "'\\", "\\"));
-        for (const Operand& operand : command.operands)
-            text += fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}' {}\n", command.name,
-                                operand.choices.empty()
-                                    ? std::string("-F")
-                                    : fmt::format("-a '{}'", fmt::join(operand.choices, " ")));
+        text += fish_operands(command);
         for (const Option* option : options_of(command))
             text += fish_option(command, *option);
     }

@@ -1,32 +1,49 @@
 #include "crash.hpp"
 
-#include "lamella/core/unfinished.hpp"
+#include "lamella/core/whole_file.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <string_view>
 
 namespace lamella::app {
 namespace {
 
-constexpr std::string_view lost_input =
-    "\nlamella: error: a file became shorter while it was read, or its disk failed\n";
+// A handler of signals can be given nothing, and may ask for no memory.
+std::atomic<ProgressStyle> told_as = ProgressStyle::none;
 
-// A handler of signals can be given nothing.
-volatile std::sig_atomic_t silent = 0;
+std::string_view lost_input() noexcept {
+    switch (told_as) {
+    case ProgressStyle::silent:
+        return {};
+    case ProgressStyle::json:
+        return "\n{\"error\":\"a file became shorter while it was read, or its disk "
+               "failed\",\"exit_code\":3}\n";
+    default:
+        return "\nlamella: error: a file became shorter while it was read, or its disk failed\n";
+    }
+}
 
 extern "C" void at_crash(int number) {
+    if (number == SIGBUS)
+        leave_at_once(lost_input(), lost_input_exit_code);
     remove_unfinished();
-    if (number == SIGBUS) {
-        if (silent == 0)
-            static_cast<void>(!write(STDERR_FILENO, lost_input.data(), lost_input.size()));
-        _exit(lost_input_exit_code);
-    }
     raise(number); // with its default action again, once this handler is left
 }
 
 } // namespace
+
+void leave_at_once(std::string_view last_words, int exit_code) noexcept {
+    remove_unfinished();
+    // What is stuck may be a write to standard error: nobody reads it, or not soon enough.
+    pollfd error_output{STDERR_FILENO, POLLOUT, 0};
+    if (poll(&error_output, 1, 0) > 0)
+        static_cast<void>(!write(STDERR_FILENO, last_words.data(), last_words.size()));
+    _exit(exit_code);
+}
 
 void prepare_for_crashes() noexcept {
     // A reader that went away and a file that grew too large are errors of writing, not ends of the program.
@@ -44,8 +61,8 @@ void prepare_for_crashes() noexcept {
     }
 }
 
-void be_silent_at_crashes() noexcept {
-    silent = 1;
+void tell_crashes(ProgressStyle style) noexcept {
+    told_as = style;
 }
 
 } // namespace lamella::app

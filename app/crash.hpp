@@ -1,8 +1,16 @@
 #pragma once
 
-// What is left to do when the program is about to be ended by a signal of its own making.
+// What is left to do when the program ends at once: stuck, or by a signal of its own making.
+
+#include "messages.hpp"
+
+#include <string_view>
 
 namespace lamella::app {
+
+/// For when destructors cannot be waited for: removes the temporary files of outputs, writes the text to
+/// standard error where that takes it, and ends the program. Async-signal-safe.
+[[noreturn]] void leave_at_once(std::string_view last_words, int exit_code) noexcept;
 
 /// From now on, a crash removes the temporary files of outputs before it ends the program as it would have;
 /// and a page of an input that is gone, because somebody shortened the file while it was read or its disk
@@ -11,8 +19,8 @@ namespace lamella::app {
 /// handles already (such as a sanitizer) are left alone.
 void prepare_for_crashes() noexcept;
 
-/// The same without a word: for a process whose end another one tells.
-void be_silent_at_crashes() noexcept;
+/// How a lost page is told from now on; until then, it is told to people.
+void tell_crashes(ProgressStyle style) noexcept;
 
 /// The exit code of a program that lost a page of its input.
 constexpr int lost_input_exit_code = 3;

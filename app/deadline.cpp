@@ -1,12 +1,11 @@
 #include "deadline.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/core/unfinished.hpp"
 
+#include "crash.hpp"
 #include "numbers.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -24,9 +23,9 @@ constexpr double longest_seconds = 1e9; // some thirty years: clocks can count f
 
 } // namespace
 
-Deadline::Deadline(double seconds, std::string what, const Execution& execution)
-    : seconds_(seconds), what_(std::move(what)), given_(execution), stop_(execution.cancel),
-      watcher_([this] { watch(); }) {}
+Deadline::Deadline(double seconds, std::string what, const Messages& messages, const Execution& execution)
+    : seconds_(seconds), what_(std::move(what)), messages_(messages), given_(execution),
+      stop_(execution.cancel), watcher_([this] { watch(); }) {}
 
 Deadline::~Deadline() {
     {
@@ -71,12 +70,8 @@ void Deadline::watch() {
     stop_.request();
     lock.lock();
     const bool reading = !started_ || (last_.stage == Stage::read && last_.done < last_.total);
-    if (!done_.wait_for(lock, reading ? patience_reading : patience, is_ending)) {
-        const std::string text = "\nlamella: error: " + message() + "\n";
-        remove_unfinished();
-        static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
-        _exit(limit_exit_code);
-    }
+    if (!done_.wait_for(lock, reading ? patience_reading : patience, is_ending))
+        leave_at_once(messages_.last_words(message(), limit_exit_code), limit_exit_code);
 }
 
 std::string Deadline::message() const {

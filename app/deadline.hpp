@@ -4,6 +4,8 @@
 
 #include "lamella/core/execution.hpp"
 
+#include "messages.hpp"
+
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -16,7 +18,7 @@ namespace lamella::app {
 class Deadline {
   public:
     /// `what` stands at the begin of the message: the file that is worked on.
-    Deadline(double seconds, std::string what, const Execution& execution);
+    Deadline(double seconds, std::string what, const Messages& messages, const Execution& execution);
     ~Deadline();
     Deadline(const Deadline&) = delete;
     Deadline& operator=(const Deadline&) = delete;
@@ -33,6 +35,7 @@ class Deadline {
 
     double seconds_;
     std::string what_;
+    const Messages& messages_;
     const Execution& given_;
     CancelFlag stop_;
     mutable std::mutex mutex_;

@@ -344,7 +344,8 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
         stats["changes"] = std::move(changes);
     }
     if (job.scan) {
-        stats["scan"] = with_density(scan_json(result.exposures), result.volume_mm3);
+        stats["scan"] =
+            with_thin_rings(with_density(scan_json(result.exposures), result.volume_mm3), result.thin);
         stats["scan"]["strategy"] = strategy_json(*job.scan);
     }
     if (result.report.matching)

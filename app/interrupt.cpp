@@ -1,6 +1,6 @@
 #include "interrupt.hpp"
 
-#include "lamella/core/unfinished.hpp"
+#include "crash.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -11,8 +11,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <new>
 #include <span>
-#include <string_view>
+#include <string>
 #include <system_error>
 
 namespace lamella::app {
@@ -34,15 +35,6 @@ bool is_ignored(int number) {
            action.sa_handler == SIG_IGN;
 }
 
-sigset_t interrupts() {
-    sigset_t set;
-    sigemptyset(&set);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP})
-        if (!is_ignored(number))
-            sigaddset(&set, number);
-    return set;
-}
-
 /// Waits for any of them; how many there are, 0 after the time is up.
 int wait_for(std::span<pollfd> awaited, int milliseconds) {
     int ready = 0;
@@ -52,28 +44,26 @@ int wait_for(std::span<pollfd> awaited, int milliseconds) {
     return ready;
 }
 
-/// For when destructors cannot be waited for.
-[[noreturn]] void leave_at_once(std::string_view last_words) {
-    remove_unfinished();
-    // What is stuck may be a write to standard error: nobody reads it, or not soon enough.
-    std::array<pollfd, 1> error_output{pollfd{STDERR_FILENO, POLLOUT, 0}};
-    if (wait_for(error_output, 0) > 0)
-        static_cast<void>(!write(STDERR_FILENO, last_words.data(), last_words.size()));
-    _exit(cancelled_exit_code);
-}
-
 } // namespace
+
+sigset_t interrupts() noexcept {
+    sigset_t set;
+    sigemptyset(&set);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP})
+        if (!is_ignored(number))
+            sigaddset(&set, number);
+    return set;
+}
 
 void block_interrupts() {
     const sigset_t set = interrupts();
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
-Interrupt::Interrupt(const Messages& messages) : messages_(messages) {
-    const sigset_t set = interrupts();
+Interrupt::Interrupt(const Messages& messages, const sigset_t& signals) : messages_(messages) {
     // Threads started later inherit the mask: the signals reach nobody but the descriptor.
-    pthread_sigmask(SIG_BLOCK, &set, nullptr);
-    signals_ = checked(signalfd(-1, &set, SFD_CLOEXEC));
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    signals_ = checked(signalfd(-1, &signals, SFD_CLOEXEC));
     ending_ = checked(eventfd(0, EFD_CLOEXEC));
     watcher_ = std::thread([this] { watch(); });
     // A thread that is only starting may hold locks of the allocator; a copy of the process by fork would
@@ -96,11 +86,16 @@ void Interrupt::watch() {
     if (awaited[1].revents != 0)
         return;
     flag_.request();
+    std::string words;
+    try {
+        words = messages_.last_words("cancelled", cancelled_exit_code);
+    } catch (const std::bad_alloc&) { // then it ends without
+    }
     signalfd_siginfo first{};
     static_cast<void>(!read(signals_, &first, sizeof first)); // so that a second one shows
     wait_for(awaited, patience_ms);
     if (awaited[1].revents == 0)
-        leave_at_once(messages_.last_words());
+        leave_at_once(words, cancelled_exit_code);
 }
 
 } // namespace lamella::app

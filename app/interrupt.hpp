@@ -6,26 +6,29 @@
 
 #include "messages.hpp"
 
+#include <csignal>
 #include <latch>
 #include <thread>
 
 namespace lamella::app {
 
-/// Keeps SIGINT, SIGTERM and SIGHUP from all threads that are started from now on, but for those signals that
-/// the program was started to ignore: for programs that have other threads before Interrupt.
+/// SIGINT, SIGTERM and SIGHUP, but for those that the program was started to ignore.
+[[nodiscard]] sigset_t interrupts() noexcept;
+
+/// Keeps these from all threads that are started from now on: for programs that have other threads before
+/// Interrupt.
 void block_interrupts();
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP request cancelling instead of ending the program, so that
-/// temporary files are removed; but for those that the program was started to ignore. To be made before any
-/// other thread. Should the program be stuck (such as waiting for standard input) a short while after the
-/// signal, or should another signal come, its temporary files are removed for it and it is ended at once with
-/// exit code 130.
+/// While it lives, these signals request cancelling instead of ending the program, so that temporary files
+/// are removed. To be made before any other thread. Should the program be stuck (such as waiting for standard
+/// input) a short while after the signal, or should another signal come, its temporary files are removed for
+/// it and it is ended at once with exit code 130.
 ///
 /// Its thread does nothing but wait, from the end of the constructor until a signal: the process may be
 /// forked.
 class Interrupt {
   public:
-    explicit Interrupt(const Messages& messages);
+    explicit Interrupt(const Messages& messages, const sigset_t& signals = interrupts());
     ~Interrupt();
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;

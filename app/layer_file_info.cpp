@@ -43,4 +43,14 @@ LayerFileInfo info_of(const LayerFile& file) {
     return info;
 }
 
+void check_steps(const LayerFile& file, const LayerSteps& steps) {
+    for (const LayerPart& part : file.parts)
+        if (part.exposure && steps.any())
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: holds scan vectors ({}), and --fill, --offset, --largest-only, "
+                                    "--min-area and --simplify are for contours: take these steps before "
+                                    "lamella scan",
+                                    file.path, one_line(part.label)));
+}
+
 } // namespace lamella::app

@@ -1,7 +1,8 @@
 #pragma once
 
-// What the head of a slice file says, for layers that were read from another one.
+// Layers that were read from a slice file: what is said and asked of them before they are written again.
 
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -10,5 +11,9 @@ namespace lamella::app {
 /// Parts without a label are called as PartInfo calls them. The box reaches from the bottom of the first
 /// layer to the top of the last. Throws Error{input} for a file without layers.
 [[nodiscard]] LayerFileInfo info_of(const LayerFile& file);
+
+/// Throws Error{usage} for steps on scan vectors: hatches are other parts than their contours, which would be
+/// moved alone.
+void check_steps(const LayerFile& file, const LayerSteps& steps);
 
 } // namespace lamella::app

@@ -99,9 +99,11 @@ OptionGroup layering_options(LayeringOptions& target) {
                 target.first_layer_height),
          choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
                 target.slice_at),
-         row("z-range", ValueKind::text, "A:B", "only layers cut from z = A to z = B (millimetres)",
+         row("z-range", ValueKind::text, "A:B",
+             "only layers cut from z = A to z = B (millimetres); an end may be left out",
              [&target](const std::string& text) { target.only.z_range = parse_range(text); }),
-         row("layers", ValueKind::text, "A:B", "only layers A to B - 1 of all, counted from 0",
+         row("layers", ValueKind::text, "A:B",
+             "only layers A to B - 1 of all, counted from 0; an end may be left out",
              [&target](const std::string& text) { target.only.index_range = parse_index_range(text); }),
          input_file(
              "z-list",

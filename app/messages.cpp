@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -22,9 +21,13 @@ void put(const std::string& text) {
     static_cast<void>(std::fflush(stderr));
 }
 
-void put_json(const Json& object) {
+std::string json_line(const Json& object) {
     // Names of files need not be UTF-8.
-    put(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void put_json(const Json& object) {
+    put(json_line(object));
 }
 
 } // namespace
@@ -57,7 +60,7 @@ void Messages::progress(const Progress& progress) {
                   {"done", progress.done},
                   {"total", progress.total},
                   {"seconds", seconds.count()}});
-    } else if (isatty(STDERR_FILENO) != 0) {
+    } else if (on_terminal_) {
         draw_bar(progress, seconds.count());
     }
 }
@@ -83,10 +86,7 @@ void Messages::error(const std::string& text, int exit_code) {
     if (is_silent())
         return;
     clear_bar();
-    if (style_ == ProgressStyle::json)
-        put_json({{"error", text}, {"exit_code", exit_code}});
-    else
-        put("lamella: error: " + one_line(text) + "\n");
+    put(error_line(text, exit_code));
 }
 
 void Messages::note(const std::string& text) {
@@ -107,11 +107,14 @@ void Messages::sum_up(const std::string& text, const std::string& json) {
     put(style_ == ProgressStyle::json ? json + "\n" : text);
 }
 
-std::string_view Messages::last_words() const noexcept {
-    if (is_silent())
-        return {};
-    return style_ == ProgressStyle::json ? "\n{\"error\":\"cancelled\",\"exit_code\":130}\n"
-                                         : "\nlamella: error: cancelled\n";
+std::string Messages::last_words(const std::string& text, int exit_code) const {
+    // A bar may stand on the line, or half of another object.
+    return is_silent() ? std::string() : '\n' + error_line(text, exit_code);
+}
+
+std::string Messages::error_line(const std::string& text, int exit_code) const {
+    return style_ == ProgressStyle::json ? json_line({{"error", text}, {"exit_code", exit_code}})
+                                         : "lamella: error: " + one_line(text) + "\n";
 }
 
 void Messages::draw_bar(const Progress& progress, double seconds) {

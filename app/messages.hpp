@@ -6,6 +6,7 @@
 #include "lamella/core/execution.hpp"
 
 #include <nlohmann/json_fwd.hpp>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -59,16 +60,19 @@ class Messages {
     void written(const std::string& text, std::string_view output);
     /// How a run of many files went: for people, or as a JSON object for programs.
     void sum_up(const std::string& text, const std::string& json);
-    /// The error of a run that is ended at once, in whatever state it is; whoever writes it may hold no lock.
-    [[nodiscard]] std::string_view last_words() const noexcept;
+    /// The line of an error, for a run that is ended at once, in whatever state it is: whoever writes it may
+    /// hold no lock. "" where nothing is to be said.
+    [[nodiscard]] std::string last_words(const std::string& text, int exit_code) const;
 
   private:
     [[nodiscard]] bool is_silent() const { return style_ == ProgressStyle::silent; }
+    [[nodiscard]] std::string error_line(const std::string& text, int exit_code) const;
     void draw_bar(const Progress& progress, double seconds);
     void clear_bar();
 
     std::atomic<ProgressStyle> style_ = ProgressStyle::none;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    const bool on_terminal_ = isatty(STDERR_FILENO) != 0;
     bool bar_drawn_ = false;
 };
 

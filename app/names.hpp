@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -14,6 +15,14 @@ template <class Range>
     for (const auto& thing : things)
         names.emplace_back(thing.name);
     return names;
+}
+
+/// Of a file's name, with its dot, in lower case: what tells the format.
+[[nodiscard]] inline std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension;
 }
 
 } // namespace lamella::app

@@ -2,12 +2,14 @@
 
 #include "lamella/core/error.hpp"
 
+#include "crash.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
 #include "viewer_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -37,6 +39,15 @@ Option scale_option(std::optional<std::vector<double>>& target) {
                        throw Error(ErrorKind::usage, "a factor of 0 leaves nothing to slice");
                    target = std::move(factors);
                });
+}
+
+/// Whether both are one file, which need not exist: names can be written in several ways.
+bool are_same(const std::string& first, const std::string& second) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    return fs::weakly_canonical(fs::absolute(first, ignored), ignored) ==
+               fs::weakly_canonical(fs::absolute(second, ignored), ignored) ||
+           fs::equivalent(first, second, ignored);
 }
 
 } // namespace
@@ -211,9 +222,11 @@ Execution RunOptions::execution(const Context& context) const {
     if (threads.value_or(0) > most)
         throw Error(ErrorKind::usage,
                     fmt::format("--threads: {} are too many, {} is the most", *threads, most));
-    context.messages.set_style(progress == "bar"    ? ProgressStyle::bar
-                               : progress == "json" ? ProgressStyle::json
-                                                    : ProgressStyle::none);
+    const ProgressStyle style = progress == "bar"    ? ProgressStyle::bar
+                                : progress == "json" ? ProgressStyle::json
+                                                     : ProgressStyle::none;
+    context.messages.set_style(style);
+    tell_crashes(style);
     return {.threads = static_cast<unsigned>(threads.value_or(0)),
             .progress = [&messages = context.messages](const Progress& p) { messages.progress(p); },
             .cancel = context.cancel};
@@ -248,6 +261,20 @@ Option max_memory_option(ReadLimits& target, std::string_view what) {
                       target.max_memory);
 }
 
+std::string formats_with(bool LayerFormat::*takes) {
+    std::vector<std::string_view> names;
+    for (const LayerFormat& format : layer_formats())
+        if (format.*takes)
+            names.push_back(format.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void check_format(const LayerFormat& chosen, bool given, std::string_view option, bool LayerFormat::*takes) {
+    if (given && !(chosen.*takes))
+        throw Error(ErrorKind::usage, fmt::format("--{} goes with the formats {}, not with {}", option,
+                                                  formats_with(takes), chosen.name));
+}
+
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
     // Options of some formats have no preset: a configuration file that lists all presets must suit any
     // format.
@@ -255,10 +282,13 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
         choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
                names_of(layer_formats()), target.format),
         length("units-mm",
-               "cli and cli-ascii: millimetres per unit of the file, to which coordinates are rounded; "
-               "0.001 unless given",
+               fmt::format("{}: millimetres per unit of the file, to which coordinates are rounded; 0.001 "
+                           "unless given",
+                           formats_with(&LayerFormat::units)),
                target.units_mm),
-        flag("short", "cli: 16-bit coordinates, half the size", target.short_form),
+        flag("short",
+             fmt::format("{}: 16-bit coordinates, half the size", formats_with(&LayerFormat::short_form)),
+             target.short_form),
         byte_limit(
             "max-output",
             "stop when the layers take more than this in the slice file, such as 500M or 2G (exit code 5)",
@@ -266,13 +296,8 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
 }
 
 LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& chosen) const {
-    if (units_mm && !chosen.units)
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("--units-mm goes with the formats cli and cli-ascii, not with {}", chosen.name));
-    if (short_form && !chosen.short_form)
-        throw Error(ErrorKind::usage,
-                    fmt::format("--short goes with the format cli, not with {}", chosen.name));
+    check_format(chosen, units_mm.has_value(), "units-mm", &LayerFormat::units);
+    check_format(chosen, short_form, "short", &LayerFormat::short_form);
     LayerWriteOptions options;
     options.units_mm = units_mm.value_or(options.units_mm);
     options.short_form = short_form;
@@ -351,7 +376,8 @@ void check_outputs(const Command& command) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const NamedFile& output = outputs[i];
         for (std::size_t k = 0; k < i; ++k)
-            if (outputs[k].path == output.path)
+            if (outputs[k].path == output.path ||
+                (outputs[k].path != "-" && output.path != "-" && are_same(outputs[k].path, output.path)))
                 throw Error(ErrorKind::usage,
                             fmt::format("{} and {} contradict each other: both would go to {}",
                                         outputs[k].name, output.name,
@@ -366,8 +392,7 @@ void check_outputs(const Command& command) {
 void check_distinct(const std::string& input, const std::string& output) {
     if (input == "-" || output == "-")
         return;
-    std::error_code ignored;
-    if (input == output || std::filesystem::equivalent(input, output, ignored))
+    if (are_same(input, output))
         throw Error(ErrorKind::usage,
                     fmt::format("{}: the output would overwrite the input; choose another name", output));
 }

@@ -105,6 +105,11 @@ struct LayerOutputOptions {
 /// To be appended to a group.
 [[nodiscard]] std::vector<Option> layer_output_options(LayerOutputOptions& target);
 
+/// The names of the formats that take an option, for its help.
+[[nodiscard]] std::string formats_with(bool LayerFormat::*takes);
+/// Throws Error{usage} that lists these, where the option is given and the format is none of them.
+void check_format(const LayerFormat& chosen, bool given, std::string_view option, bool LayerFormat::*takes);
+
 /// What is made of the layers before they are written.
 struct LayerStepOptions {
     std::string fill = "none";

@@ -116,14 +116,7 @@ OptionGroup picture_options(PictureArguments& target) {
 
 void PictureArguments::apply(const LayerFormat& format, LayerWriteOptions& options) const {
     const auto check = [&format](bool given, std::string_view option, bool LayerFormat::*takes) {
-        if (!given || format.*takes)
-            return;
-        std::vector<std::string_view> others;
-        for (const LayerFormat& other : layer_formats())
-            if (other.*takes)
-                others.push_back(other.name);
-        throw Error(ErrorKind::usage, fmt::format("--{} goes with the formats {}, not with {}", option,
-                                                  fmt::join(others, ", "), format.name));
+        check_format(format, given, option, takes);
     };
     check(pixel_mm.has_value(), "pixel-size", &LayerFormat::picture);
     check(pixels.has_value(), "resolution", &LayerFormat::picture);

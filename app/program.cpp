@@ -53,7 +53,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
                                       [&](const Command& one) { return one.name == words[0]; });
     if (command == commands.end())
         refuse_command(words[0], commands);
-    switch (parse(*command, std::span(words).subspan(1))) {
+    switch (parse(*command, std::span(words).subspan(1), messages)) {
     case Wish::help:
         messages.result(command_help(*command));
         return 0;

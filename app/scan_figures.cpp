@@ -96,6 +96,12 @@ Json with_density(Json scan, double volume_mm3) {
     return scan;
 }
 
+Json with_thin_rings(Json scan, const ThinRings& thin) {
+    scan["thin_rings"] = thin.rings;
+    scan["thin_layers"] = thin.layers;
+    return scan;
+}
+
 std::string scan_text(std::span<const ExposureResult> exposures) {
     const Sums sums = sums_of(exposures);
     return fmt::format("{} vectors, {} marked, {} jumped, {}, {}",

@@ -23,6 +23,9 @@ namespace lamella::app {
 /// With `energy_j_mm3`: how much of the energy each cubic millimetre gets; null without volume.
 [[nodiscard]] Json with_density(Json scan, double volume_mm3);
 
+/// With `thin_rings` and `thin_layers`.
+[[nodiscard]] Json with_thin_rings(Json scan, const ThinRings& thin);
+
 /// "1,234,567 vectors, 12.3 m marked, 1.2 m jumped, 1 h 02 min, 45.0 kJ"
 [[nodiscard]] std::string scan_text(std::span<const ExposureResult> exposures);
 

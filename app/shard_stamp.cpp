@@ -26,9 +26,9 @@ std::string hash_text(const std::string& path, const Execution& execution) {
 }
 
 /// Options that leave the bytes of the slice file alone, or that the origin has in another form.
-constexpr std::array<std::string_view, 10> not_of_the_origin{
-    "shard",    "resume", "output",     "stats",         "threads",
-    "progress", "config", "max-memory", "max-triangles", "timeout"};
+constexpr std::array<std::string_view, 13> not_of_the_origin{
+    "shard",    "resume", "output",     "report",        "stats",      "inspect", "threads",
+    "progress", "config", "max-memory", "max-triangles", "max-output", "timeout"};
 
 Json input_json(const PlateInput& input, const Execution& execution) {
     Json placement = Json::array();
@@ -55,6 +55,13 @@ Json read_stamp(const std::string& output) {
 
 Json output_json(const std::string& path, const Execution& execution) {
     return {{"bytes", std::filesystem::file_size(path)}, {"hash", hash_text(path, execution)}};
+}
+
+/// The same of a file beside it; null where none was asked for, and for pipes and devices, which keep
+/// nothing.
+Json file_json(const std::string& path, const Execution& execution) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored) ? output_json(path, execution) : Json();
 }
 
 /// A stamp with the file it belongs to.
@@ -105,24 +112,33 @@ Json shard_origin(const Command& command, const FileJob& job, const Execution& e
             {"options", std::move(options)}};
 }
 
-bool is_finished_shard(const FileJob& job, const Json& origin, const Execution& execution) {
+bool is_finished_shard(const FileJob& job, const std::string& stats, const Json& origin,
+                       const Execution& execution) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(job.output, ignored) ||
         !std::filesystem::exists(stamp_path(job.output), ignored))
         return false;
     const Json stamp = Json::parse(read_text_file(stamp_path(job.output)), nullptr, false);
+    const auto has = [&](const char* key, const std::string& path) {
+        if (path.empty())
+            return true;
+        const Json file = file_json(path, execution);
+        return !file.is_null() && stamp.value(key, Json()) == file;
+    };
     return stamp.is_object() && stamp.value("origin", Json()) == origin &&
-           stamp.value("shard", Json()) == Json(job.shard->number) &&
-           stamp.value("output", Json()) == output_json(job.output, execution);
+           stamp.value("shard", Json()) == Json(job.shard->number) && has("output", job.output) &&
+           has("stats", stats) && has("report", job.report.path);
 }
 
-void stamp_shard(const FileJob& job, const FileResult& result, const Json& origin,
+void stamp_shard(const FileJob& job, const std::string& stats, const FileResult& result, const Json& origin,
                  const Execution& execution) {
     const Json stamp{{"shard", job.shard->number},
                      {"layers", {result.shard.begin, result.shard.end}},
                      {"of", result.planned_layers},
                      {"origin", origin},
-                     {"output", output_json(job.output, execution)}};
+                     {"output", output_json(job.output, execution)},
+                     {"stats", file_json(stats, execution)},
+                     {"report", file_json(job.report.path, execution)}};
     write_text_file(stamp_path(job.output), stamp.dump(2) + "\n");
 }
 

@@ -24,11 +24,13 @@ namespace lamella::app {
 /// What decides the bytes of the shard: version, options, the content of all inputs. Reads the inputs once.
 [[nodiscard]] Json shard_origin(const Command& command, const FileJob& job, const Execution& execution);
 
-/// Whether the job's output is there, with a stamp that has this origin and the content that it had then.
-[[nodiscard]] bool is_finished_shard(const FileJob& job, const Json& origin, const Execution& execution);
+/// Whether the job's output is there, with a stamp that has this origin and the content that it had then, and
+/// so are the statistics and the report, where they are asked for.
+[[nodiscard]] bool is_finished_shard(const FileJob& job, const std::string& stats, const Json& origin,
+                                     const Execution& execution);
 
-/// Stamps the output that has just been written.
-void stamp_shard(const FileJob& job, const FileResult& result, const Json& origin,
+/// Stamps the output that has just been written, after the statistics and the report.
+void stamp_shard(const FileJob& job, const std::string& stats, const FileResult& result, const Json& origin,
                  const Execution& execution);
 
 /// Where all files have stamps: throws Error{input} unless they are all the shards of one job, each as it was

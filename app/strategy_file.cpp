@@ -89,7 +89,9 @@ void take_count(const TomlValue& value, const std::string& name, Count& into) {
     const auto* const whole = value.as<std::int64_t>();
     if (whole == nullptr || *whole < 0 ||
         static_cast<std::uint64_t>(*whole) > std::numeric_limits<Count>::max())
-        refuse_value(value, name, "a whole number, 0 or more");
+        refuse_value(value, name,
+                     fmt::format("a whole number, 0 or more{}",
+                                 value.as<double>() != nullptr ? ", written without a point" : ""));
     into = static_cast<Count>(*whole);
 }
 void take(const TomlValue& value, const std::string& name, std::uint32_t& into) {

@@ -1,6 +1,7 @@
 #include "text_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/whole_file.hpp"
 
 #include "standard_streams.hpp"
 
@@ -12,25 +13,18 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
-#include <memory>
 #include <span>
 #include <system_error>
 
 namespace lamella::app {
 namespace {
 
-struct CloseFile {
-    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-
 std::string reason(int error) {
     return error == EBADF ? "it is closed" : std::generic_category().message(error);
 }
 
-[[noreturn]] void fail(const std::string& path, int error) {
-    throw Error(ErrorKind::output, fmt::format("{}: cannot be written: {}", path, reason(error)));
+[[noreturn]] void fail_to_print(int error) {
+    throw Error(ErrorKind::output, fmt::format("standard output: cannot be written: {}", reason(error)));
 }
 
 struct Descriptor {
@@ -59,16 +53,6 @@ std::size_t read_some(int descriptor, std::span<char> room, const Refuse& refuse
     }
 }
 
-void write_in_place(const std::string& path, const std::string& shown, std::string_view text) {
-    File file(std::fopen(path.c_str(), "wb"));
-    if (file == nullptr)
-        fail(shown, errno);
-    // The last bytes meet the disk only when the file is closed.
-    if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
-        std::fclose(file.release()) != 0)
-        fail(shown, errno);
-}
-
 } // namespace
 
 std::string read_text_file(const std::string& path) {
@@ -84,39 +68,26 @@ std::string read_text_file(const std::string& path) {
     std::array<char, 1 << 16> block;
     while (const std::size_t n = read_some(file.number, block, refuse))
         text.append(block.data(), n);
+    if (constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF"; text.starts_with(byte_order_mark))
+        text.erase(0, byte_order_mark.size());
     return text;
 }
 
 void write_text_file(const std::string& path, std::string_view text) {
-    if (path == "-") {
-        print(text);
-        return;
-    }
-    std::error_code ignored;
-    const auto status = std::filesystem::status(path, ignored);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-        write_in_place(path, path, text);
-        return;
-    }
-    const std::string temporary = fmt::format("{}.{}.part", path, getpid());
-    try {
-        write_in_place(temporary, path, text);
-        if (std::rename(temporary.c_str(), path.c_str()) != 0)
-            fail(path, errno);
-    } catch (...) {
-        static_cast<void>(std::remove(temporary.c_str()));
-        throw;
-    }
+    if (path == "-")
+        print(text); // behind what was printed before
+    else
+        write_whole_file(path, text);
 }
 
 void print(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
-        fail("standard output", errno);
+        fail_to_print(errno);
 }
 
 void finish_printing() {
     if (std::fflush(stdout) != 0)
-        fail("standard output", errno);
+        fail_to_print(errno);
 }
 
 } // namespace lamella::app

@@ -7,11 +7,11 @@
 
 namespace lamella::app {
 
-/// The whole file; "-" is standard input. Throws Error{input}.
+/// The whole file, without a byte order mark, as some editors put it; "-" is standard input. Throws
+/// Error{input}.
 [[nodiscard]] std::string read_text_file(const std::string& path);
 
-/// Writes to a temporary name and renames, so that nobody sees half a file; special files are written in
-/// place. "-" is standard output. Throws Error{output}.
+/// As write_whole_file, but for "-", which is printed. Throws Error{output}.
 void write_text_file(const std::string& path, std::string_view text);
 
 /// Prints a result on standard output. Throws Error{output}.

@@ -27,8 +27,19 @@ namespace {
 
 // A packet keeps its bounds, and the end of the other side shows as one of no bytes.
 constexpr int packets = SOCK_SEQPACKET | SOCK_CLOEXEC;
-constexpr int moment_ms = 100;
-constexpr std::size_t longest_answer = std::size_t{1} << 16; // far below what a socket takes at once
+constexpr int moment_ms = 20;
+// Tells a worker to stop: no signal that comes from outside.
+constexpr int stop_signal = SIGUSR1;
+
+sigset_t stop_signals() {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, stop_signal);
+    return set;
+}
+
+// How a process ends that cannot be a worker.
+constexpr int cannot_work = 71;
 
 [[noreturn]] void fail(int system_error) {
     throw Error(ErrorKind::limit, fmt::format("no further process can be started: {}; choose fewer --jobs",
@@ -58,21 +69,33 @@ ssize_t receive_packet(int socket, void* data, std::size_t bytes) {
 WorkerTeam::WorkerTeam(std::size_t size, Work work) : work_(std::move(work)), workers_(size) {}
 
 WorkerTeam::~WorkerTeam() {
-    for (Worker& worker : workers_) {
-        if (worker.process < 0)
-            continue;
-        if (worker.task)
-            kill(worker.process, SIGTERM);
-        close(worker.socket);
-    }
+    stop();
+    for (const Worker& worker : workers_)
+        if (worker.process > 0)
+            close(worker.socket);
     for (const Worker& worker : workers_)
         while (worker.process > 0 && waitpid(worker.process, nullptr, 0) < 0 && errno == EINTR) {
         }
 }
 
+void WorkerTeam::stop() noexcept {
+    for (const Worker& worker : workers_)
+        if (worker.task)
+            kill(worker.process, stop_signal);
+}
+
+bool WorkerTeam::is_busy() const noexcept {
+    return std::any_of(workers_.begin(), workers_.end(),
+                       [](const Worker& worker) { return worker.task.has_value(); });
+}
+
 void WorkerTeam::start(const WorkerTask& task) {
-    const auto worker =
-        std::find_if(workers_.begin(), workers_.end(), [](const Worker& w) { return !w.task; });
+    const auto first_of = [this](auto&& chosen) {
+        return std::find_if(workers_.begin(), workers_.end(), chosen);
+    };
+    auto worker = first_of([](const Worker& w) { return !w.task && w.process > 0; });
+    if (worker == workers_.end())
+        worker = first_of([](const Worker& w) { return !w.task; });
     if (worker == workers_.end())
         throw Error(ErrorKind::internal, "all workers have a task");
     // A worker may have died since its last answer: then another one takes its place.
@@ -81,7 +104,7 @@ void WorkerTeam::start(const WorkerTask& task) {
             static_cast<void>(answer_of(*worker));
         launch(*worker);
     }
-    worker->task = task.index;
+    worker->task = task;
 }
 
 void WorkerTeam::launch(Worker& worker) {
@@ -90,15 +113,21 @@ void WorkerTeam::launch(Worker& worker) {
         fail(errno);
     static_cast<void>(std::fflush(nullptr)); // what is buffered is this process's to write
     const pid_t parent = getpid();
+    const sigset_t until_it_listens = stop_signals();
+    sigset_t before;
+    pthread_sigmask(SIG_BLOCK, &until_it_listens, &before);
     const pid_t process = fork();
+    const int system_error = errno;
+    if (process != 0)
+        pthread_sigmask(SIG_SETMASK, &before, nullptr);
     if (process < 0) {
-        const int system_error = errno;
         close(ends[0]);
         close(ends[1]);
         fail(system_error);
     }
     if (process == 0) {
-        prctl(PR_SET_PDEATHSIG, SIGTERM);
+        std::signal(stop_signal, SIG_DFL); // it may have been ignored
+        prctl(PR_SET_PDEATHSIG, stop_signal);
         if (getppid() != parent)
             _exit(0);
         close(ends[0]);
@@ -113,38 +142,47 @@ void WorkerTeam::launch(Worker& worker) {
 
 void WorkerTeam::serve(int socket) const {
     return_freed_memory();
-    {
-        Messages messages;
-        messages.set_style(ProgressStyle::silent);
-        be_silent_at_crashes();
-        const Interrupt interrupt(messages);
-        WorkerTask task;
-        while (!interrupt.flag().requested() && receive_packet(socket, &task, sizeof task) == sizeof task) {
-            const std::string text = work_(task, interrupt.flag());
-            if (!send_packet(socket, text.data(), std::min(text.size(), longest_answer)))
-                break;
-        }
+    Messages messages;
+    messages.set_style(ProgressStyle::silent);
+    tell_crashes(ProgressStyle::silent);
+    std::optional<Interrupt> interrupt;
+    try {
+        interrupt.emplace(messages, stop_signals());
+    } catch (const std::system_error&) { // it takes a thread
+        _exit(cannot_work);
+    }
+    const CancelFlag& stopped = interrupt->flag();
+    WorkerTask task;
+    while (!stopped.requested() && receive_packet(socket, &task, sizeof task) == sizeof task) {
+        const std::string text = work_(task, stopped);
+        if (!send_packet(socket, text.data(), std::min(text.size(), longest_answer)))
+            break;
     }
     _exit(0); // nothing of what belongs to the other process is to be undone here
 }
 
 std::vector<WorkerAnswer> WorkerTeam::wait() {
+    // Only those at work: poll takes no more than this process may have open.
     std::vector<pollfd> awaited;
-    for (const Worker& worker : workers_)
-        awaited.push_back({worker.task ? worker.socket : -1, POLLIN, 0});
+    std::vector<Worker*> at_work;
+    for (Worker& worker : workers_)
+        if (worker.task) {
+            awaited.push_back({worker.socket, POLLIN, 0});
+            at_work.push_back(&worker);
+        }
     while (poll(awaited.data(), awaited.size(), moment_ms) < 0)
         if (errno != EINTR)
             throw std::system_error(errno, std::generic_category(), "cannot wait for workers");
     std::vector<WorkerAnswer> answers;
-    for (std::size_t i = 0; i < workers_.size(); ++i)
+    for (std::size_t i = 0; i < awaited.size(); ++i)
         if (awaited[i].revents != 0)
-            answers.push_back(answer_of(workers_[i]));
+            answers.push_back(answer_of(*at_work[i]));
     return answers;
 }
 
 WorkerAnswer WorkerTeam::answer_of(Worker& worker) {
     WorkerAnswer answer;
-    answer.index = worker.task.value_or(0);
+    answer.task = worker.task.value_or(WorkerTask{});
     std::string text(longest_answer, '\0');
     const ssize_t got = receive_packet(worker.socket, text.data(), text.size());
     worker.task.reset();
@@ -157,6 +195,10 @@ WorkerAnswer WorkerTeam::answer_of(Worker& worker) {
     while (waitpid(worker.process, &answer.status, 0) < 0 && errno == EINTR) {
     }
     worker = {};
+    answer.begun = !(WIFEXITED(answer.status) && WEXITSTATUS(answer.status) == cannot_work);
+    if (!answer.begun &&
+        std::none_of(workers_.begin(), workers_.end(), [](const Worker& other) { return other.process > 0; }))
+        fail(EAGAIN);
     return answer;
 }
 

@@ -38,7 +38,7 @@ install(FILES ${PROJECT_BINARY_DIR}/lamella.pc DESTINATION ${pkgconfig_dir})
 
 file(RELATIVE_PATH bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
 foreach(program lamella_app lamella_mpi)
-    if(TARGET ${program})
+    if(BUILD_SHARED_LIBS AND TARGET ${program})
         set_target_properties(${program} PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib})
     endif()
 endforeach()

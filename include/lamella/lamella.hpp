@@ -39,7 +39,6 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/stack_hash.hpp"
-#include "lamella/polygon/compare.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
 
@@ -61,13 +60,15 @@
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
-// The whole way from files to a file, in bounded memory, by one process or many; and the check of what came
-// out.
+// The whole way from files to a file, in bounded memory, by one process or many; the check of what came out,
+// and how two files differ.
+#include "lamella/pipeline/compare_files.hpp"
 #include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"
 
-// Hashes of files, and what is to be removed when a program is stopped by a signal.
+// Hashes of files, small files beside the large ones, and what is to be removed when a program is stopped by
+// a signal.
 #include "lamella/container/file_hash.hpp"
-#include "lamella/core/unfinished.hpp"
+#include "lamella/core/whole_file.hpp"

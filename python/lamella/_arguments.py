@@ -48,10 +48,19 @@ def refuse_value(name: str, expected: str, value: object) -> NoReturn:
     raise UsageError(f"{name}: {described(value)} is not possible; expected {expected}")
 
 
+def has_masked_entries(value: Any) -> bool:
+    return bool(np.ma.is_masked(value))  # type: ignore[no-untyped-call]
+
+
+def is_array_of_one(value: Any) -> bool:
+    """Whether it is a number in the guise of an array, and not masked."""
+    return isinstance(value, np.ndarray) and value.ndim == 0 and not has_masked_entries(value)
+
+
 def number(
     name: str, value: Any, *, above: float = -math.inf, least: float = -math.inf, expected: str = "a finite number"
 ) -> float:
-    if isinstance(value, np.ndarray) and value.ndim == 0:
+    if is_array_of_one(value):
         value = value.item()
     if not isinstance(value, (numbers.Real, decimal.Decimal)) or isinstance(value, bool):
         refuse_type(name, expected, value)
@@ -165,6 +174,8 @@ def array(name: str, value: Any, expected: str, kinds: str = "fiu") -> npt.NDArr
     """An array of numbers: whole ones where kinds is "iu"."""
     if value is None or isinstance(value, (str, bytes, dict, set)):
         refuse_type(name, expected, value)
+    if has_masked_entries(value):
+        raise UsageError(f"{name}: expected {expected}, found one with masked entries")
     try:
         found = np.asarray(value)
     except (TypeError, ValueError, OverflowError):  # rows of different lengths, things without a number
@@ -184,6 +195,12 @@ def shaped(
     if found.ndim != len(shape) or any(want not in (None, has) for want, has in zip(shape, found.shape)):
         raise UsageError(f"{name}: expected {expected}, found {described(found)}")
     return np.ascontiguousarray(found, dtype=np.float64)
+
+
+def finite(name: str, numbers: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    if not np.isfinite(numbers).all():
+        raise UsageError(f"{name}: expected finite numbers, found nan or inf")
+    return numbers
 
 
 def thread_count(threads: Any) -> int:

@@ -25,7 +25,7 @@ from ._warning import warn
 class Verification:
     """What `verify` finds. Lengths are millimetres."""
 
-    ok: bool  #: no open chains, no crossings, no misoriented rings, and areas agree
+    ok: bool  #: no open chains, no crossings, no misoriented rings, no gaps, and areas agree
     layers: int
     contours: int
     points: int
@@ -36,6 +36,7 @@ class Verification:
     volume: float  #: mm^3, the sum of area times thickness
     max_area_error: Optional[float]  #: mm^2, the largest difference from the section of the mesh, if one was given
     areas_agree: bool  #: those differences are no larger than rounding explains
+    gaps: int  #: between layers, where the mesh has material; 0 without one
     findings: List[str]  #: one line for each kind of finding, with the first layer and place
 
 
@@ -51,7 +52,8 @@ def verify(
     progress: Optional[Progress] = None,
 ) -> Verification:
     """Checks layers: every contour closed, outer rings counter-clockwise and holes clockwise by their nesting, none
-    crossing another or itself; and, where a mesh is given, of the area of its section.
+    crossing another or itself; and, where a mesh is given, of the area of its section, without gaps
+    between layers.
 
     layers: a path or a Stack.
     mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
@@ -82,6 +84,8 @@ class VectorVerification:
     outside: int  #: vectors that leave the material, or are nearer to its edges than the strategy says
     too_short: int  #: hatch lines shorter than the shortest of the strategy
     miscovered: int  #: planes of a part whose lines cover more or less than they are to fill
+    wrong_contours: int  #: that are missing on a plane, or of another area than the material has at their depth
+    gaps: int  #: between layers, where the mesh has material; 0 without one
     cover: Optional[float]  #: what lines cover by what they are to fill, where a strategy is given
     unbounded: int  #: vectors of which nothing tells where the material is
     findings: List[str]  #: one line for each kind of finding, with the first layer and place
@@ -101,7 +105,7 @@ def verify_vectors(
 ) -> VectorVerification:
     """Checks a file of scan vectors: contours of each exposure closed, oriented and without crossings, and all vectors
     within the mesh, or without one within the outermost contours of their part; with the strategy by which they were
-    made, as far from its edges as that says, none shorter than the shortest, and enough of them to fill it.
+    made, as far from its edges as that says, each contour there, no line shorter than the shortest, and enough of them to fill it.
 
     path: of a file that `lamella slice --scan` or `lamella scan` wrote, or other programs, with scan vectors.
     mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
@@ -131,7 +135,7 @@ def _mesh_as_sliced(
     progress: Optional[Progress],
 ) -> Optional[Mesh]:
     if mesh is not None:
-        return placed(as_mesh("mesh", mesh, unit_mm=unit_mm, threads=threads, progress=progress), where)
+        return placed(as_mesh("mesh", mesh, unit_mm=unit_mm, threads=threads, progress=progress), where, threads)
     ways = {"direction": where[0] != UPWARDS, "transform": transformed, "unit_mm": unit_mm is not None}
     for name, given in ways.items():
         if given:
@@ -167,7 +171,8 @@ class Comparison:
 def compare(
     first: Union[PathLike, Stack], second: Union[PathLike, Stack], tolerance: Optional[float] = None
 ) -> Comparison:
-    """Compares layers plane by plane.
+    """Compares the contours of layers plane by plane. Hatch lines, heights and parameters of files are compared by the
+    program: `lamella compare`.
 
     first, second: paths or stacks.
     tolerance: how far contours may be apart, in millimetres; what the rounding of both formats explains unless

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import decimal
+import itertools
 import numbers
+import operator
 import os
 from typing import Any, Iterable, Iterator, List, Optional, Tuple, Union
 
@@ -12,8 +15,9 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._arguments import PathLike, Progress
-from ._errors import CancelledError, InputError, UsageError
-from ._lamella import Layer, LayerStream, Mesh, Stack
+from ._errors import CancelledError, DefectError, InputError, UsageError
+from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
+from ._scanning import ScanLayer, ScanStream
 from ._warning import warn
 
 MESH_EXTENSIONS = (".stl", ".ply", ".obj")
@@ -26,13 +30,22 @@ ASKED_OF_FORMATS = {
     "first_exposure_s": "exposure",
     "fade_layers": "exposure",
 }
+PAGES = "html"
 MOST_PIXELS = 65535
 MOST_ANTIALIAS = 64
 
 BATCH_LAYERS = 64
 BATCH_POINTS = 2**22  # 64 MB
 
-Layers = Union[Layer, Stack, LayerStream, Iterable[Layer], Iterable[Stack]]
+Layers = Union[Layer, Stack, LayerStream, ScanLayer, Iterable[Layer], Iterable[Stack], Iterable[ScanLayer]]
+
+# The label and the bounds of a part, what its vectors are where it has such, and whether it is a support.
+Part = Tuple[bytes, npt.NDArray[np.float64], Optional[Exposure], bool]
+# The parts, the layers plane by plane, how many planes, where the first one begins, and the rule of the plane.
+Planes = Tuple[List[Part], Iterator[List[Layer]], int, float, str]
+
+# What layers of all parts on a plane have in common.
+HEIGHTS = {"z": "cuts (z)", "bottom": "bottoms", "top": "tops", "index": "indices"}
 
 
 def read_layers(
@@ -63,10 +76,10 @@ def read(
 
     path: str or os.PathLike. Meshes: see `mesh_formats`. Layers: Common Layer Interface, layered SVG, SLC,
         3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be packed with gzip.
-    unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given.
+    unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given. Slice files say theirs.
     strict: makes a DefectError of what is otherwise a DefectWarning.
     supports: takes what 3MF and AMF files mark as support, too, as solids; without it a DefectWarning says that it was
-        left out.
+        left out. Of slice files supports are parts like others, see Stack.support.
     max_triangles: more of them are a LimitError; 0 is any number.
     max_memory: more bytes than this for what is read are a LimitError; 0 is three quarters of the memory there is.
     threads: 0 takes one for each processor.
@@ -76,12 +89,18 @@ def read(
     mapped: while its Mesh lives, the file may be replaced or deleted, but must not be written to or cut shorter.
 
     Raises InputError that names the file, the place in it, what was found, and what was
-    expected.
+    expected, and UsageError where `unit_mm` is given for a slice file.
     """
     read, warnings = _lamella.read_any(
         *check.reading(path, unit_mm, strict, supports, max_triangles, max_memory, threads, progress)
     )
-    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
+    texts = [f"{os.fsdecode(path)}: {warning}" for warning in warnings]
+    if isinstance(read, Stack):
+        if unit_mm is not None:
+            raise UsageError(f"unit_mm goes with meshes, and {os.fsdecode(path)} holds layers, which say their unit")
+        if strict and texts:
+            raise DefectError(texts[0])
+    warn(texts)
     return read
 
 
@@ -119,9 +138,9 @@ def write(
     """Writes layers or a mesh to a file, whose extension says the format. Nobody ever sees half a file.
 
     path: str or os.PathLike. Meshes: .stl, .ply, .obj. Layers: see `layer_formats`.
-    what: a Mesh; a Layer, a Stack, or any iterable of layers in ascending z; or several stacks on the same planes,
-        which are the parts of the file. What `iter_layers` gives is written while it is being made; layers of
-        any other iterable are collected first.
+    what: a Mesh; a Layer, a Stack, or any iterable of layers in ascending z; several stacks on the same planes,
+        which are the parts of the file; or scan vectors, as `scan` gives them. What `iter_layers` gives, and `scan` of
+        that or of a Stack, is written while it is being made; layers of any other iterable are collected first.
     format: name of the format of layers, where the extension does not say it.
     units_mm: Common Layer Interface: millimetres per unit, to which coordinates are rounded; 0.001 unless given.
     short_form: Common Layer Interface, binary: coordinates of 16 bits.
@@ -164,24 +183,28 @@ def write(
     given = {name: value for name, value in options.items() if value is not None}
     strict = check.flag("strict", strict)
     if isinstance(what, Mesh):
-        _write_mesh(target, what, [*(["format"] if format else []), *given])
+        _write_mesh(target, what, [*(["format"] if format else []), *given], strict)
         return
     parts, planes, total, bottom, rule = _planes(what)
     name = _format_for(target, format, given)
     writer = _lamella.open_writer(target, name, parts, total, bottom, rule, {**given, "strict": strict})
     done = 0
-    for batch in _batches(planes):
-        writer.write(batch, threads)
-        done += len(batch)
-        if progress is not None:
-            progress("write", done, total)
-    if done < total:
-        raise CancelledError(f"{os.fsdecode(path)}: the stream was closed while it was written")
-    warn(f"{os.fsdecode(path)}: {warning}" for warning in writer.finish())
+    try:
+        for batch in _batches(planes):
+            writer.write(batch, threads)
+            done += len(batch)
+            if progress is not None:
+                progress("write", done, total)
+        if done < total:
+            raise CancelledError(f"{os.fsdecode(path)}: the stream was closed while it was written")
+        warnings = writer.finish()
+    finally:
+        writer.close()  # now, not once an exception is forgotten that holds it
+    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
 
 
 def _lengths(name: str, value: Any) -> Tuple[float, float]:
-    if isinstance(value, numbers.Real):
+    if isinstance(value, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(value):
         return (check.positive(name, value),) * 2
     return check.pair(name, value, "one length, or two (x, y)", check.positive)
 
@@ -196,6 +219,8 @@ def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
 def _format_for(path: bytes, format: str, given: Iterable[str]) -> str:
     """The name of the format, with which all options that are given go."""
     name = _lamella.layer_format(format, path)
+    if name == PAGES:
+        raise UsageError(f"{os.fsdecode(path)}: pages are written by the program, with lamella view, not by Python")
     for option in given:
         formats = _lamella.formats_with(ASKED_OF_FORMATS.get(option, "picture"))
         if name not in formats:
@@ -210,7 +235,7 @@ def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
     points = 0
     for plane in planes:
         batch.append(plane)
-        points += sum(len(layer.points) for layer in plane)
+        points += sum(len(layer.points) + 2 * len(layer.hatches) for layer in plane)
         if len(batch) == BATCH_LAYERS or points >= BATCH_POINTS:
             yield batch
             batch, points = [], 0
@@ -218,7 +243,7 @@ def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
         yield batch
 
 
-def _write_mesh(path: bytes, mesh: Mesh, given: List[str]) -> None:
+def _write_mesh(path: bytes, mesh: Mesh, given: List[str], strict: bool) -> None:
     extension = os.path.splitext(os.fsdecode(path))[1].lower()
     if extension not in MESH_EXTENSIONS:
         raise UsageError(
@@ -226,35 +251,79 @@ def _write_mesh(path: bytes, mesh: Mesh, given: List[str]) -> None:
         )
     if given:
         raise UsageError(f"{given[0]} goes with layers, and what is written is a mesh")
-    _lamella.write_mesh(path, extension, mesh, check.label("name", mesh.name or "lamella"))
+    warnings = _lamella.write_mesh(path, extension, mesh, check.label("name", mesh.name or "lamella"), strict)
+    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
 
 
-def _planes(what: Any) -> Tuple[List[Tuple[bytes, npt.NDArray[np.float64]]], Iterator[List[Layer]], int, float, str]:
-    """The label and the bounds of each part, the layers plane by plane, how many planes, where the first one begins, and
-    the rule of the plane."""
+def _planes(what: Any) -> Planes:
     if isinstance(what, LayerStream):
         total = what.__length_hint__()
         if total == 0:
             raise UsageError("what: there are no layers to write: the stream is closed or at its end")
-        parts = [(check.label("label", what.label), what.bounds)]
+        parts: List[Part] = [(check.label("label", what.label), what.bounds, None, False)]
         return parts, ([layer] for layer in what), total, what._bottom, what.rule
-    stacks = what.parts if isinstance(what, Stack) else _parts_of(what)
+    if isinstance(what, ScanStream):
+        total = operator.length_hint(what)
+        return _planes_of_vectors(what, what.first(), total, itertools.repeat(what.bounds), what.rule)
+    things = _collected(what)
+    if isinstance(things[0], ScanLayer):
+        return _planes_of_scan_layers(things)
+    stacks = things if isinstance(things[0], Stack) else [Stack(things)]
+    return _planes_of_parts([part for stack in stacks for part in stack.parts])
+
+
+def _planes_of_parts(stacks: List[Stack]) -> Planes:
     if len(stacks[0]) == 0:
         raise UsageError("what: there are no layers to write")
-    if any(len(stack) != len(stacks[0]) or (stack.z != stacks[0].z).any() for stack in stacks):
-        raise UsageError("what: the parts of a file must have the same planes: slice them at the same z")
+    for name, words in HEIGHTS.items():
+        first = [getattr(layer, name) for layer in stacks[0]] if len(stacks) > 1 else []
+        if any([getattr(layer, name) for layer in stack] != first for stack in stacks[1:]):
+            raise UsageError(
+                f"what: the parts of a file must have the same planes, and their {words} differ: "
+                "slice them at the same z"
+            )
     if any(stack.rule != stacks[0].rule for stack in stacks):
         raise UsageError("what: the parts of a file must be cut by the same rule: slice them with the same `at`")
-    parts = [(check.label("label", stack.label or "part"), stack.bounds) for stack in stacks]
+    parts: List[Part] = [
+        # A part without contours makes the box of the file no larger, where there are others.
+        (check.label("label", stack.label or "part"), stack._box if len(stacks) > 1 else stack.bounds,
+         stack.exposure, stack.support)
+        for stack in stacks
+    ]  # fmt: skip
     planes = (list(plane) for plane in zip(*stacks))
     return parts, planes, len(stacks[0]), stacks[0][0].bottom, stacks[0].rule
 
 
-def _parts_of(what: Any) -> List[Stack]:
-    """Of layers, or of stacks."""
-    expected = "a lamella.Mesh, Layer or Stack, or an iterable of layers or of stacks"
-    if isinstance(what, Layer):
-        return [Stack([what])]
+def _planes_of_scan_layers(layers: List[ScanLayer]) -> Planes:
+    exposures = layers[0].exposures
+    if any(layer.exposures != exposures for layer in layers):
+        raise UsageError("what: the scan layers of a file must have the same exposures: scan them by one strategy")
+    stacks = [Stack([layer.layers[k] for layer in layers]) for k in range(len(exposures))]
+    return _planes_of_vectors(layers, layers[0], len(layers), [stack._box for stack in stacks], "section_above")
+
+
+def _planes_of_vectors(
+    layers: Iterable[ScanLayer],
+    first: Optional[ScanLayer],
+    total: int,
+    boxes: Iterable[npt.NDArray[np.float64]],
+    rule: str,
+) -> Planes:
+    if first is None:
+        raise UsageError("what: there are no layers to write")
+    parts: List[Part] = [
+        (check.label("label", f"{exposure.part} {exposure.name}"), box, exposure, exposure.region == "support")
+        for exposure, box in zip(first.exposures, boxes)
+    ]
+    planes = (list(layer.layers) for layer in layers)
+    return parts, planes, total, first.bottom, rule
+
+
+def _collected(what: Any) -> List[Any]:
+    """One or more, and all of one kind: layers, stacks or scan layers."""
+    expected = "a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers"
+    if isinstance(what, (Layer, Stack, ScanLayer)):
+        return [what]
     if isinstance(what, (str, bytes)):
         check.refuse_type("what", expected, what)
     try:
@@ -264,11 +333,11 @@ def _parts_of(what: Any) -> List[Stack]:
     found = list(things)
     if not found:
         raise UsageError("what: there are no layers to write")
-    kind = Stack if isinstance(found[0], Stack) else Layer
+    kind = next((kind for kind in (Stack, ScanLayer) if isinstance(found[0], kind)), Layer)
     for thing in found:
         if not isinstance(thing, kind):
             check.refuse_type("what", expected, thing)
-    return found if kind is Stack else [Stack(found)]
+    return found
 
 
 def convert(
@@ -327,4 +396,4 @@ def mesh_formats() -> List[str]:
 
 def layer_formats() -> List[Tuple[str, str, str]]:
     """The formats that layers are written in: (name, extension, one line about it) of each."""
-    return _lamella.layer_formats()
+    return [row for row in _lamella.layer_formats() if row[0] != PAGES]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._arguments import PathLike, Progress
-from ._errors import UsageError
+from ._errors import InputError, UsageError
 from ._lamella import Mesh
 from ._warning import warn
 
@@ -88,6 +88,11 @@ def arrays_of_mesh(vertices: Any, faces: Any) -> Tuple[npt.NDArray[np.float64], 
     if numbers.ndim != 2 or numbers.shape[1] != 3:
         cut = "; faces of more than three corners must be cut into triangles first" if numbers.ndim == 2 else ""
         raise UsageError(f"faces: expected {expected}, found {check.described(numbers)}{cut}")
+    if numbers.dtype == np.uint64 and (numbers > np.iinfo(np.int64).max).any():
+        row, corner = np.argwhere(numbers > np.iinfo(np.int64).max)[0]
+        raise InputError(
+            f"faces: row {row} names vertex {numbers[row, corner]}, and there are {len(positions)}, counted from 0"
+        )
     return positions, np.ascontiguousarray(numbers, dtype=np.int64)
 
 
@@ -98,7 +103,13 @@ def _mesh_of_triangles(name: str, corners: npt.NDArray[Any]) -> Mesh:
             f"{name}: triangles: expected an array of the shape (m, 3, 3), found {check.described(corners)}; "
             "vertices and faces are given as a pair of arrays"
         )
-    return Mesh(corners.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3))
+    if len(corners) == 0:
+        raise InputError(f"{name}: holds no triangle")
+    positions = check.shaped(name, corners, (None, 3, 3), "an array of numbers of the shape (m, 3, 3)")
+    unbounded = np.flatnonzero(~np.isfinite(positions).all(axis=(1, 2)))
+    if len(unbounded):
+        raise InputError(f"{name}: triangle {unbounded[0]} has a corner that is not finite")
+    return Mesh(positions.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3))
 
 
 def as_mesh(name: str, part: Any, unit_mm: Optional[float] = None, **reading: Any) -> Mesh:
@@ -128,18 +139,16 @@ Placing = Tuple[Tuple[float, ...], Optional[npt.NDArray[np.float64]]]
 def placing(direction: Sequence[float], transform: Optional[npt.ArrayLike]) -> Placing:
     rows = None
     if transform is not None:
-        rows = check.shaped("transform", transform, (4, 4), "a matrix of the shape (4, 4)")
-        if not np.isfinite(rows).all():
-            raise UsageError("transform: expected finite numbers, found nan or inf")
+        rows = check.finite("transform", check.shaped("transform", transform, (4, 4), "a matrix of the shape (4, 4)"))
     return check.several("direction", direction, 3, "three numbers (x, y, z)", check.number), rows
 
 
-def placed(mesh: Mesh, where: Placing) -> Mesh:
+def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
     """First the transform, then the direction turned upright."""
     direction, transform = where
     if transform is not None:
-        mesh = mesh._transformed(transform)
-    return mesh if direction == UPWARDS else mesh._turned(direction)
+        mesh = mesh._transformed(transform, threads)
+    return mesh if direction == UPWARDS else mesh._turned(direction, threads)
 
 
 def inspect(

@@ -3,7 +3,7 @@ in the package, and what is good goes on to the method of the extension with an 
 
 from __future__ import annotations
 
-from typing import Any, Callable, Iterable, List, Optional, Tuple, TypeVar
+from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from . import _lamella
 from ._errors import UsageError
 from ._meshes import arrays_of_mesh
 from ._shapely import multi_polygon
+from ._warning import warn
 
 T = TypeVar("T")
 
@@ -32,6 +33,7 @@ def _methods_of(cls: type) -> Callable[[T], T]:
 _make_mesh: Callable[..., None] = _lamella.Mesh.__init__
 _make_layer: Callable[..., None] = _lamella.Layer.__init__
 _make_stack: Callable[..., None] = _lamella.Stack.__init__
+_make_parameters: Callable[..., None] = _lamella.ParameterSet.__init__
 
 
 @_methods_of(_lamella.Mesh)
@@ -48,9 +50,17 @@ def _one_layer(name: str, thing: Any, expected: str = "layers") -> _lamella.Laye
 
 def _contours(name: str, contours: Any) -> Tuple[npt.NDArray[np.float64], ...]:
     def contour(name: str, points: Any) -> npt.NDArray[np.float64]:
-        return check.shaped(name, points, (None, 2), "contours, each an array of numbers of the shape (n, 2)")
+        expected = "contours, each an array of numbers of the shape (n, 2)"
+        return check.finite(name, check.shaped(name, points, (None, 2), expected))
 
     return check.several(name, contours, None, "contours, each an array of the shape (n, 2)", contour)
+
+
+def _made_of(made: _lamella.Layer, *layers: _lamella.Layer) -> _lamella.Layer:
+    lost = sum(len(layer.hatches) for layer in layers) - len(made.hatches)
+    if lost > 0:
+        warn([f"{lost} hatch line{'s' if lost > 1 else ''} left out: the contours that they fill were changed"])
+    return made
 
 
 @_methods_of(_lamella.Layer)
@@ -89,35 +99,35 @@ class Layer(_lamella.Layer):
         "evenodd" or "positive". Contours that do not overlap keep their points."""
         if check.text("rule", rule) not in ("nonzero", "evenodd", "positive"):
             raise UsageError(f'rule: "{rule}" is no fill rule; there are nonzero, evenodd and positive')
-        return self._filled(rule)
+        return _made_of(self._filled(rule), self)
 
     def offset(self, distance: float, corners: str = "mitre") -> _lamella.Layer:
         """The layer with its material grown by `distance` millimetres, or shrunk by a negative one. `corners` says what
         joins sides that part at a corner when they are moved: "mitre", "bevel" or "round"."""
         if check.text("corners", corners) not in ("mitre", "bevel", "round"):
             raise UsageError(f'corners: "{corners}" are no corners; there are mitre, bevel and round')
-        return self._offset(check.number("distance", distance), corners)
+        return _made_of(self._offset(check.number("distance", distance), corners), self)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:
         """The layer with material where it or `other` has: where contours wind counter-clockwise around. Contours
         that meet no others keep their points. Heights and open chains are those of this layer."""
-        return self._union(_one_layer("other", other, "a layer"))
+        return _made_of(self._union(_one_layer("other", other, "a layer")), self, other)
 
     def intersection(self, other: _lamella.Layer) -> _lamella.Layer:
         """The layer with material where it and `other` have; see `union`."""
-        return self._intersection(_one_layer("other", other, "a layer"))
+        return _made_of(self._intersection(_one_layer("other", other, "a layer")), self, other)
 
     def difference(self, other: _lamella.Layer) -> _lamella.Layer:
         """The layer without the material of `other`; see `union`."""
-        return self._difference(_one_layer("other", other, "a layer"))
+        return _made_of(self._difference(_one_layer("other", other, "a layer")), self, other)
 
     def symmetric_difference(self, other: _lamella.Layer) -> _lamella.Layer:
         """The layer with material where either it or `other` has, and not both; see `union`."""
-        return self._symmetric_difference(_one_layer("other", other, "a layer"))
+        return _made_of(self._symmetric_difference(_one_layer("other", other, "a layer")), self, other)
 
     def simplified(self, tolerance: float) -> _lamella.Layer:
         """The layer with points left out, so that no contour moves by more than `tolerance` millimetres."""
-        return self._simplified(check.distance("tolerance", tolerance))
+        return _made_of(self._simplified(check.distance("tolerance", tolerance)), self)
 
 
 @_methods_of(_lamella.Stack)
@@ -134,3 +144,61 @@ class LayerStream(_lamella.LayerStream):
     def close(self) -> None:
         """Stops slicing. To be called more than once does no harm."""
         self._close()
+
+
+@_methods_of(_lamella.ParameterSet)
+class ParameterSet(_lamella.ParameterSet):
+    def __init__(self, other: Optional[_lamella.ParameterSet] = None) -> None:
+        if other is None:
+            _make_parameters(self)
+            return
+        if not isinstance(other, _lamella.ParameterSet):
+            check.refuse_type("other", "a lamella.ParameterSet", other)
+        _make_parameters(self, other)
+
+
+def _attributes(base: type, rule: Any) -> Dict[str, Any]:
+    """Those that the class of ours has, whatever is derived from it."""
+    return {name: getattr(rule, name) for name in dir(base) if not name.startswith("_")}
+
+
+def _with_attributes(cls: Any, base: Any, attributes: Dict[str, Any]) -> Any:
+    made = cls.__new__(cls)
+    base.__init__(made)
+    for name, value in attributes.items():
+        setattr(made, name, value)
+    return made
+
+
+def _is_its_attributes(cls: type) -> None:
+    """Has what a strategy consists of compared, copied and pickled by attributes."""
+
+    def __eq__(self: Any, other: object) -> bool:
+        if not isinstance(other, cls):
+            return NotImplemented
+        return _attributes(cls, self) == _attributes(cls, other)
+
+    def __reduce_ex__(self: Any, protocol: int) -> Tuple[Any, ...]:
+        return _with_attributes, (type(self), cls, _attributes(cls, self))
+
+    for name, value in (("__eq__", __eq__), ("__hash__", None), ("__reduce_ex__", __reduce_ex__)):
+        setattr(cls, name, value)
+
+
+def _is_made_of_nothing(cls: type) -> None:
+    make: Callable[..., None] = getattr(cls, "__init__")
+
+    def __init__(self: Any) -> None:
+        make(self)
+
+    __init__.__qualname__ = f"{cls.__name__}.__init__"  # under which its errors speak
+    setattr(cls, "__init__", __init__)
+
+
+_rules: Tuple[type, ...] = (
+    _lamella.ContourRule, _lamella.HatchRule, _lamella.SkinRule, _lamella.SupportRule, _lamella.ScanStrategy,
+)  # fmt: skip
+for _rule in _rules:
+    _is_made_of_nothing(_rule)
+for _rule in (*_rules, _lamella.ParameterSet):
+    _is_its_attributes(_rule)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
+import operator
 import os
 from collections import deque
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, Deque, Dict, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
+from typing import Any, Deque, Dict, Generator, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +17,10 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._errors import InputError, UsageError
-from ._lamella import ContourRule, Exposure, HatchRule, Layer, ParameterSet, ScanFigures, ScanStrategy
+from ._lamella import (
+    ContourRule, Exposure, HatchRule, Layer, LayerStream, ParameterSet, ScanFigures, ScanStrategy, SkinRule, Stack,
+    SupportRule,
+)  # fmt: skip
 
 StrategyLike = Union[ScanStrategy, Mapping[str, Any], "os.PathLike[str]", str, None]
 
@@ -31,6 +36,8 @@ class ScanLayer:
     exposures: Tuple[Exposure, ...]
     #: Of each exposure: contours as rings, each from where the beam begins; hatches as `hatches`. Without copies.
     layers: Tuple[Layer, ...]
+    #: Rings of the layer that are thinner than the beam's offsets: they have no vectors.
+    thin_rings: int = 0
 
     def __iter__(self) -> Iterator[Tuple[Exposure, Layer]]:
         return zip(self.exposures, self.layers)
@@ -60,61 +67,109 @@ def _lines(layer: Layer) -> npt.NDArray[np.float64]:
     return np.concatenate([*lines, layer.hatches])
 
 
+class ScanStream(Iterator[ScanLayer]):
+    """What `scan` makes of layers of which a file's head is known before they are there."""
+
+    def __init__(self, scanned: Generator[ScanLayer, None, None], source: Union[Stack, LayerStream]) -> None:
+        self._scanned = scanned
+        self._first: Optional[ScanLayer] = None
+        self._left = operator.length_hint(source)
+        self.bounds = source.bounds
+        self.rule = source.rule
+
+    def first(self) -> Optional[ScanLayer]:
+        """The next one, which stays the next one; None at the end."""
+        if self._first is None:
+            self._first = next(self._scanned, None)
+        return self._first
+
+    def __next__(self) -> ScanLayer:
+        scanned = next(self._scanned) if self._first is None else self._first
+        self._first = None
+        self._left -= 1
+        return scanned
+
+    def close(self) -> None:
+        self._first = None
+        self._scanned.close()
+
+    def __length_hint__(self) -> int:
+        return self._left
+
+
 def scan(
     layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part", *, support: bool = False
 ) -> Iterator[ScanLayer]:
     """Makes scan vectors of layers in ascending z, such as a Stack or what `iter_layers` gives; one by one, while no
-    more layers are held than skins ask for.
+    more layers are held than skins ask for. Of a Stack that comes from a file, points are left out that the file's
+    rounding alone moved off a straight way.
 
-    strategy: a ScanStrategy; the path of a TOML file, as the program takes it (needs Python 3.11); the same as a dict,
-        such as {"hatch": {"distance": 0.08}}; None is what is there by default.
+    strategy: a ScanStrategy, as it is now; the path of a TOML file, as the program takes it (needs Python 3.11); the
+        same as a dict, such as {"hatch": {"distance": 0.08}}; None is what is there by default.
     part: what exposures call the part.
     support: it is a support: exposed by the strategy's rule for these, without skins.
 
-    Raises UsageError for a strategy that is not right, LimitError for layers that would have too many vectors.
+    `write` takes what this gives.
+
+    Raises UsageError for a strategy that is not right and for layers that do not ascend, LimitError for layers that
+    would have too many vectors.
     """
     try:
-        each = iter(layers)
+        each = _ascending(iter(layers))
     except TypeError:
         check.refuse_type("layers", "layers in ascending z", layers)
     known = as_strategy("strategy", strategy)
     label = check.label("part", part)
-    return _scan_support(each, known, label) if check.flag("support", support) else _scan(each, known, label)
+    stack = layers if isinstance(layers, Stack) else None
+    make = _scan_support if check.flag("support", support) else _scan
+    scanned = make(each, known, label, stack)
+    return ScanStream(scanned, layers) if isinstance(layers, (Stack, LayerStream)) else scanned
 
 
-def _scan_support(layers: Iterator[Layer], strategy: ScanStrategy, part: bytes) -> Iterator[ScanLayer]:
+def _ascending(layers: Iterator[Any]) -> Iterator[Layer]:
+    below = None
+    for layer in layers:
+        if not isinstance(layer, Layer):
+            check.refuse_type("layers", "layers", layer)
+        if below is not None and not below.z < layer.z:
+            raise UsageError(f"layers: must ascend in z: {layer.z:g} mm comes after {below.z:g} mm")
+        below = layer
+        yield layer
+
+
+def _scan_support(
+    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, stack: Optional[Stack]
+) -> Generator[ScanLayer, None, None]:
     exposures = tuple(_lamella.support_exposures(strategy, part))
     for layer in layers:
-        yield _scanned(layer, exposures, _lamella.scan_support(_checked(layer), strategy))
+        yield _scan_layer(layer, exposures, _lamella.scan_support(layer, strategy, stack))
 
 
-def _scan(layers: Iterator[Layer], strategy: ScanStrategy, part: bytes) -> Iterator[ScanLayer]:
+def _scan(
+    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, stack: Optional[Stack]
+) -> Generator[ScanLayer, None, None]:
     exposures = tuple(_lamella.exposures(strategy, part))
     below: Deque[Layer] = deque(maxlen=strategy.downskin.layers)
     coming: Deque[Layer] = deque(islice(layers, 1 + strategy.upskin.layers))
     while coming:
-        layer = _checked(coming.popleft())
-        vectors = _lamella.scan(layer, list(reversed(below)), list(coming), strategy)
-        yield _scanned(layer, exposures, vectors)
+        layer = coming.popleft()
+        scanned = _lamella.scan(layer, list(reversed(below)), list(coming), strategy, stack)
+        yield _scan_layer(layer, exposures, scanned)
         below.append(layer)
         coming.extend(islice(layers, 1))
 
 
-def _checked(layer: Any) -> Layer:
-    if not isinstance(layer, Layer):
-        check.refuse_type("layers", "layers", layer)
-    return layer
-
-
-def _scanned(layer: Layer, exposures: Tuple[Exposure, ...], vectors: List[Layer]) -> ScanLayer:
-    return ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors))
+def _scan_layer(layer: Layer, exposures: Tuple[Exposure, ...], scanned: Tuple[List[Layer], int]) -> ScanLayer:
+    vectors, thin_rings = scanned
+    return ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors), thin_rings)
 
 
 def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
+    """One of its own: what becomes of the given one afterwards does not count."""
     if strategy is None:
         return ScanStrategy()
     if isinstance(strategy, ScanStrategy):
-        found = strategy
+        found = copy.copy(strategy)
     elif isinstance(strategy, Mapping):
         found = _from_tables(name, strategy)
     elif isinstance(strategy, (str, os.PathLike)):
@@ -150,7 +205,7 @@ def _from_tables(name: str, tables: Mapping[str, Any]) -> ScanStrategy:
     sets = {rule.parameters.name: ParameterSet(rule.parameters) for rule in rules}
     parameters = tables.get("parameters", {})
     for label, table in _items(f"{name}: parameters", parameters):
-        chosen = sets.setdefault(label, _named(label))
+        chosen = sets.setdefault(check.text(f"{name}: parameters", label), _named(label))
         _assign(f"{name}: parameters.{label}", chosen, table)
     _assign(name, strategy, {key: value for key, value in tables.items() if key != "parameters"}, sets)
     used = [rule.parameters.name for rule in rules]
@@ -175,24 +230,26 @@ def _items(name: str, table: Any) -> Any:
 
 
 def _assign(name: str, rule: Any, table: Any, sets: Optional[Dict[str, ParameterSet]] = None) -> None:
-    known = [key for key in dir(type(rule)) if not key.startswith("_")]
+    # Parameter sets are named by the keys of their tables.
+    known = [key for key in dir(type(rule)) if not key.startswith("_") and key != "name"]
+    before = f"{name}: " if isinstance(rule, ScanStrategy) else f"{name}."
     for key, value in _items(name, table):
         if key not in known:
             near = difflib.get_close_matches(str(key), known, 1)
             hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
             raise UsageError(f"{name}: there is no {key}; {hint}")
-        place = f"{name}: {key}" if isinstance(rule, ScanStrategy) else f"{name}.{key}"
+        place = f"{before}{key}"
         if key == "parameters" and sets is not None:
-            if value not in sets:
+            if check.text(place, value) not in sets:
                 raise UsageError(f"{place}: there are no parameters {value}; there are {', '.join(sets)}")
             rule.parameters = sets[value]
-        elif isinstance(value, Mapping):
+        elif isinstance(getattr(rule, key), (ContourRule, HatchRule, SkinRule, SupportRule)):
             _assign(place, getattr(rule, key), value, sets)
         else:
             try:
                 setattr(rule, key, value)
-            except TypeError:
-                check.refuse_type(place, type(getattr(rule, key)).__name__, value)
+            except (TypeError, UsageError) as error:  # whose text begins with the key
+                raise type(error)(f"{before}{error}") from None
 
 
 @dataclass(frozen=True)

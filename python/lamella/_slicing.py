@@ -186,7 +186,7 @@ def _prepared(
         found = inspect(mesh, threads=threads, progress=progress)
         if not found.sound:
             raise DefectError(f"{mesh.path or 'the mesh'}: the mesh has defects: {found.defects}")
-    mesh = placed(mesh, where)
+    mesh = placed(mesh, where, threads)
     if above_bottom is not None:
         cuts = above_bottom + mesh.bounds[0][2]
     cut: Union[_lamella.UniformLayers, _lamella.ListedPlanes, _lamella.HeightRanges, _lamella.AdaptiveLayers]
@@ -194,7 +194,7 @@ def _prepared(
         cut = _lamella.ListedPlanes(cuts)
     elif varying is not None:
         cut = _lamella.AdaptiveLayers(*varying)
-    elif ranges:
+    elif ranges is not None:
         cut = _lamella.HeightRanges(ranges, height)
     else:
         cut = _lamella.UniformLayers(height, first_height)
@@ -205,7 +205,14 @@ def _heights(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     array = check.array(name, values, "a list of numbers")
     if array.ndim != 1:
         raise UsageError(f"{name}: expected a list of numbers, found an array of the shape {array.shape}")
-    return array.astype(np.float64)
+    if len(array) == 0:
+        raise UsageError(f"{name}: expected a list of numbers, found an empty one")
+    heights = check.finite(name, array.astype(np.float64))
+    fallen = np.flatnonzero(np.diff(heights) <= 0)
+    if len(fallen):
+        before, after = heights[fallen[0] : fallen[0] + 2]
+        raise UsageError(f"{name}: {after:g} is not above the one before it, {before:g}; the list must ascend")
+    return heights
 
 
 def _ranges(name: str, values: Any) -> Tuple[Tuple[float, ...], ...]:
@@ -214,7 +221,10 @@ def _ranges(name: str, values: Any) -> Tuple[Tuple[float, ...], ...]:
     def one(name: str, value: Any) -> Tuple[float, ...]:
         return check.several(name, value, 3, expected, check.number)
 
-    return check.several(name, values, None, expected, one)
+    found = check.several(name, values, None, expected, one)
+    if not found:
+        raise UsageError(f"{name}: expected {expected}, found none")
+    return found
 
 
 def _check_conflicts(

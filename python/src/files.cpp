@@ -13,12 +13,15 @@
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"
+#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +42,11 @@ bool holds_scan_vectors(const LayerFile& file) {
                        [](const LayerPart& part) { return part.exposure.has_value(); });
 }
 
+bool holds_scan_vectors(const Stack& stack) {
+    return stack.exposure || std::any_of(stack.parts.begin(), stack.parts.end(),
+                                         [](const StackPointer& part) { return holds_scan_vectors(*part); });
+}
+
 StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layers) {
     auto stack = std::make_shared<Stack>();
     stack->layers = shared(std::move(layers));
@@ -48,20 +56,23 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
     stack->format = file.format;
     stack->rounding = file.rounding;
     stack->rule = file.rule;
-    stack->scan_vectors = holds_scan_vectors(file);
     return stack;
 }
 
 /// With a stack of each part where there are several.
 StackPointer stack_of(LayerFile file) {
     const bool several = file.parts.size() > 1;
-    StackPointer stack = stack_of(file, several ? std::string() : file.parts.front().label, file.merged());
-    if (several)
-        for (LayerPart& part : file.parts) {
-            stack->parts.push_back(stack_of(file, part.label, std::move(part.layers)));
-            stack->parts.back()->scan_vectors = part.exposure.has_value();
-        }
-    return stack;
+    const StackPointer together = several ? stack_of(file, {}, file.merged()) : nullptr;
+    std::vector<StackPointer> parts;
+    for (LayerPart& part : file.parts) {
+        const StackPointer& stack = parts.emplace_back(stack_of(file, part.label, std::move(part.layers)));
+        stack->exposure = std::move(part.exposure);
+        stack->support = part.support;
+    }
+    if (!several)
+        return parts.front();
+    together->parts = std::move(parts);
+    return together;
 }
 
 /// The layers of the file, and its warnings.
@@ -97,7 +108,7 @@ read_either(const std::string& path, std::optional<double> unit_mm, bool strict,
     return {read, path_texts(warnings)};
 }
 
-/// A slice file under construction. Dropped before `finish`, it leaves nothing behind.
+/// A slice file under construction. Closed or dropped before `finish`, it leaves nothing behind.
 class StackWriter {
   public:
     StackWriter(const std::string& path, const std::string& format, const LayerFileInfo& info,
@@ -114,18 +125,29 @@ class StackWriter {
             return layers;
         };
         run(threads, py::none(),
-            [&](const Execution& execution) { write_planes(*writer_, planes.size(), parts_of, execution); });
+            [&](const Execution& execution) { write_planes(writer(), planes.size(), parts_of, execution); });
     }
 
     py::list finish() {
         {
-            const py::gil_scoped_release released;
-            writer_->finish();
+            const Unlocked released;
+            writer().finish();
         }
-        return path_texts(writer_->warnings());
+        return path_texts(writer().warnings());
+    }
+
+    void close() {
+        const Unlocked released;
+        writer_.reset();
     }
 
   private:
+    LayerWriter& writer() {
+        if (!writer_)
+            throw Error(ErrorKind::usage, "the file is closed");
+        return *writer_;
+    }
+
     std::unique_ptr<LayerWriter> writer_;
 };
 
@@ -178,39 +200,97 @@ std::vector<std::string> formats_with(const std::string& name) {
     return found;
 }
 
-using PartNames = std::vector<std::pair<std::string, Bounds>>;
+/// Of each part the label, the bounds, what its vectors are where it has such, and whether it is a support.
+using PartHeads = std::vector<std::tuple<std::string, Bounds, std::optional<Exposure>, bool>>;
 
 std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::string& format,
-                                         const PartNames& parts, std::uint64_t layers, double bottom,
+                                         const PartHeads& parts, std::uint64_t layers, double bottom,
                                          const std::string& rule, const py::dict& options) {
     LayerFileInfo info{.box = {}, .layers = layers, .bottom = bottom, .parts = {}, .rule = rule_named(rule)};
-    for (const auto& [label, bounds] : parts) {
-        info.parts.push_back({label, box_of(bounds)});
+    for (const auto& [label, bounds, exposure, support] : parts) {
+        info.parts.push_back({label, box_of(bounds), exposure, support});
         info.box.add(info.parts.back().box);
     }
+    if (info.box.empty())
+        info.box.add(Point3{0, 0, bottom});
     return std::make_unique<StackWriter>(path, format, info, write_options(options));
 }
 
-void write_mesh(const std::string& path, const std::string& extension, const MeshPointer& mesh,
-                const std::string& name) {
-    const py::gil_scoped_release released;
-    if (extension == ".ply")
-        return write_ply(path, mesh->welded({}));
-    if (extension == ".obj")
-        return write_obj(path, mesh->welded({}), name);
-    if (const TriangleSoup* soup = mesh->mesh().soup())
-        return write_stl(path, *soup);
-    const IndexedMesh& indexed = *mesh->mesh().indexed();
-    std::vector<Triangle3f> triangles;
-    triangles.reserve(indexed.triangles.size());
-    for (const auto& corners : indexed.triangles) {
-        Triangle3f& triangle = triangles.emplace_back();
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Point3& p = indexed.vertices[corners[k]];
-            triangle[k] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+Triangle3f rounded(const Triangle3& triangle) {
+    Triangle3f corners;
+    for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = {static_cast<float>(triangle[k].x), static_cast<float>(triangle[k].y),
+                      static_cast<float>(triangle[k].z)};
+    return corners;
+}
+
+Triangle3 widened(const Triangle3f& corners) {
+    Triangle3 triangle;
+    for (std::size_t k = 0; k < 3; ++k)
+        triangle[k] = {corners[k].x, corners[k].y, corners[k].z};
+    return triangle;
+}
+
+bool has_different_corners(const Triangle3& t) {
+    return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+}
+
+/// As far as doubles tell.
+bool has_area(const Triangle3& t) {
+    const Point3 a{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
+    const Point3 b{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
+    return a.y * b.z != a.z * b.y || a.z * b.x != a.x * b.z || a.x * b.y != a.y * b.x;
+}
+
+/// In single precision. Gives the warnings; throws Error{output} for what is beyond it.
+std::vector<std::string> write_rounded_stl(const std::string& path, const SourceMesh& mesh, bool strict) {
+    constexpr double most = std::numeric_limits<float>::max();
+    for (const Point3& p : {mesh.box().min, mesh.box().max})
+        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= most))
+            throw Error(ErrorKind::output, path +
+                                               ": the mesh has coordinates beyond 3.4e38 mm, the most that "
+                                               "STL holds; write it as .ply or .obj");
+    constexpr std::size_t at_a_time = std::size_t{1} << 16;
+    const std::size_t count = mesh.mesh().size();
+    StlWriter writer(path, count);
+    std::uint64_t degenerate = 0;
+    for (std::size_t begin = 0; begin < count; begin += at_a_time) {
+        std::vector<Triangle3f> triangles(std::min(at_a_time, count - begin));
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const Triangle3 before = mesh.mesh().triangle(begin + i);
+            triangles[i] = rounded(before);
+            const Triangle3 after = widened(triangles[i]);
+            if ((has_different_corners(before) && !has_different_corners(after)) ||
+                (has_area(before) && !has_area(after)))
+                ++degenerate;
         }
+        writer.append(TriangleSoup(std::move(triangles)));
     }
-    write_stl(path, TriangleSoup(std::move(triangles)));
+    std::vector<std::string> warnings;
+    if (degenerate > 0)
+        warnings.push_back(std::to_string(degenerate) +
+                           (degenerate == 1 ? " triangle loses its area or a corner"
+                                            : " triangles lose their area or a corner") +
+                           " where it is rounded to single precision, which STL has; .ply and .obj keep it");
+    if (strict && !warnings.empty())
+        throw Error(ErrorKind::defect, path + ": " + warnings.front());
+    writer.finish();
+    return warnings;
+}
+
+std::vector<std::string> write_mesh(const std::string& path, const std::string& extension,
+                                    const MeshPointer& mesh, const std::string& name, bool strict) {
+    const Unlocked released;
+    const TriangleSoup* const soup = mesh->mesh().soup();
+    if (extension == ".ply")
+        write_ply(path, mesh->welded({}));
+    else if (extension == ".obj")
+        write_obj(path, mesh->welded({}), name);
+    else if (soup != nullptr && !soup->has_placement())
+        write_stl(path, *soup);
+    else
+        return write_rounded_stl(path, *mesh, strict);
+    return {};
 }
 
 /// Where in their thickness layers were cut, if not where they say.
@@ -229,7 +309,7 @@ void cut_at(const std::string& at, LayerStack& layers, PlaneRule& rule) {
 
 py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, unsigned threads,
                   const py::object& progress) {
-    if (stack.scan_vectors)
+    if (holds_scan_vectors(stack))
         throw Error(ErrorKind::usage,
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
@@ -252,6 +332,7 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
     fields["volume"] = found.volume_mm3;
     fields["max_area_error"] = found.max_area_error_mm2;
     fields["areas_agree"] = found.areas_agree;
+    fields["gaps"] = found.heights ? found.heights->gaps : 0;
     fields["findings"] = found.findings;
     return fields;
 }
@@ -286,6 +367,8 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     fields["outside"] = found.outside;
     fields["too_short"] = found.too_short;
     fields["miscovered"] = found.miscovered;
+    fields["wrong_contours"] = found.wrong_contours;
+    fields["gaps"] = found.heights ? found.heights->gaps : 0;
     fields["cover"] = found.cover;
     fields["unbounded"] = found.unbounded;
     fields["findings"] = found.findings;
@@ -297,7 +380,7 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
 py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance) {
     StackComparison found;
     {
-        const py::gil_scoped_release released;
+        const Unlocked released;
         const LayerStack of_first = plain(first);
         const LayerStack of_second = plain(second);
         found = compare(RoundedLayers{of_first, first.rounding}, {of_second, second.rounding}, tolerance);
@@ -323,7 +406,8 @@ void bind_files(py::module_& module) {
     module.def("write_mesh", &write_mesh);
     py::class_<StackWriter>(module, "StackWriter")
         .def("write", &StackWriter::write)
-        .def("finish", &StackWriter::finish);
+        .def("finish", &StackWriter::finish)
+        .def("close", &StackWriter::close);
     module.def("open_writer", &open_writer);
     module.def("formats_with", &formats_with);
     module.def("layer_format", [](const std::string& name, const std::string& path) {

@@ -2,7 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
-#include <chrono>
+#include "unlocked.hpp"
+
 #include <memory>
 #include <utility>
 
@@ -92,18 +93,23 @@ LayerPointer LayerStream::next() {
         for (Layer layer; !closed_;) {
             LayerQueue::Found found = LayerQueue::Found::nothing_yet;
             {
-                const py::gil_scoped_release released;
+                const Unlocked released;
                 found = queue_.take(layer);
             }
-            tell(progress_, listener_);
+            // A copy, since whoever is called may close the stream, which forgets its listener.
+            tell(progress_, py::object(listener_));
             check_signals();
             if (found == LayerQueue::Found::end)
-                closed_ = true;
+                close();
             else if (found == LayerQueue::Found::layer) {
                 ++taken_;
                 return std::make_shared<SharedLayer>(std::move(layer));
             }
         }
+    } catch (
+        const py::error_already_set&) { // of the listener, which may have closed it, too, or an interrupt
+        close();
+        throw;
     } catch (...) {
         if (closed_) // by another thread, meanwhile
             throw py::stop_iteration();
@@ -117,10 +123,19 @@ void LayerStream::close() {
     closed_ = true;
     // Of several threads that close it, one gets the worker.
     std::thread worker = std::move(worker_);
-    const py::gil_scoped_release released;
-    queue_.close();
-    if (worker.joinable())
-        worker.join();
+    {
+        const Unlocked released;
+        queue_.close();
+        if (worker.joinable())
+            worker.join();
+    }
+    forget_listener();
+}
+
+double LayerStream::bottom() const {
+    if (left() == 0)
+        throw Error(ErrorKind::usage, "no layers are left: the stream is closed or at its end");
+    return plan_.layers[taken_].bottom;
 }
 
 } // namespace lamella::python

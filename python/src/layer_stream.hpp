@@ -64,8 +64,12 @@ class LayerStream {
     [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
     /// How many layers are to come.
     [[nodiscard]] std::size_t left() const noexcept { return closed_ ? 0 : plan_.layers.size() - taken_; }
-    /// Where the next one begins; some must be left.
-    [[nodiscard]] double bottom() const noexcept { return plan_.layers[taken_].bottom; }
+    /// Where the next one begins. Throws Error{usage} where none is left.
+    [[nodiscard]] double bottom() const;
+
+    /// Who hears of progress; None once the stream is closed or at its end.
+    [[nodiscard]] const pybind11::object& listener() const noexcept { return listener_; }
+    void forget_listener() { listener_ = pybind11::none(); }
 
   private:
     MeshPointer mesh_;

@@ -8,8 +8,10 @@
 #include "lamella/polygon/layer_steps.hpp"
 
 #include "arrays.hpp"
+#include "pickled.hpp"
 #include "placing.hpp"
 #include "shared_layer.hpp"
+#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
@@ -20,7 +22,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -31,8 +35,9 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+// What is no such number already, and would lose something, is none.
+using Doubles = py::array_t<double, py::array::c_style>;
+using Numbers = py::array_t<std::int64_t, py::array::c_style>;
 
 static_assert(sizeof(Point2) == 2 * sizeof(double));
 
@@ -53,14 +58,14 @@ py::array_t<std::int64_t> offsets_of(const py::object& self) {
 }
 
 const LayerMeasure& measure_of(const SharedLayer& layer) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     return layer.measure();
 }
 
 std::string hash_text(const SharedLayer& layer) {
     std::uint64_t hash = 0;
     {
-        const py::gil_scoped_release released;
+        const Unlocked released;
         hash = layer.hash();
     }
     std::array<char, 17> text{};
@@ -90,7 +95,7 @@ py::array_t<double> contour_of(const py::object& self, const py::object& index) 
 
 /// Pairs of a ring and its holes, by number.
 std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(const SharedLayer& layer) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> found;
     for (Polygon& polygon : polygons(layer.nesting()))
         found.emplace_back(polygon.outer, std::move(polygon.holes));
@@ -106,6 +111,8 @@ struct LayerHead {
 };
 
 PointArray points_of(const Doubles& rows) {
+    if (rows.ndim() != 2 || rows.shape(1) != 2)
+        throw Error(ErrorKind::input, "points of a layer must be an array of the shape (n, 2)");
     std::vector<Point2> points(static_cast<std::size_t>(rows.size()) / 2);
     const double* x = rows.data();
     for (Point2& p : points) {
@@ -119,7 +126,7 @@ PointArray points_of(const Doubles& rows) {
 
 std::vector<std::uint64_t> offsets_of(const Numbers& numbers, std::size_t points) {
     std::vector<std::uint64_t> offsets(numbers.data(), numbers.data() + numbers.size());
-    if (offsets.empty() || offsets.front() != 0 || offsets.back() != points ||
+    if (numbers.ndim() != 1 || offsets.empty() || offsets.front() != 0 || offsets.back() != points ||
         std::adjacent_find(offsets.begin(), offsets.end(), std::greater_equal<>()) != offsets.end())
         throw Error(ErrorKind::input,
                     "offsets must begin with 0, ascend, and end with the number of points, " +
@@ -129,27 +136,43 @@ std::vector<std::uint64_t> offsets_of(const Numbers& numbers, std::size_t points
 
 LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const Numbers& offsets,
                              std::size_t rings, const Doubles& hatches) {
+    if (!(std::isfinite(head.bottom) && std::isfinite(head.top) && head.bottom <= head.z &&
+          head.z <= head.top))
+        throw Error(ErrorKind::input, "a layer is cut between its bottom and its top, which are finite");
     Layer layer{.index = head.index, .z = head.z, .bottom = head.bottom, .top = head.top};
     layer.points = points_of(points);
     layer.offsets = offsets_of(offsets, layer.points.size());
     layer.hatches = points_of(hatches);
+    if (layer.hatches.size() % 2 != 0)
+        throw Error(ErrorKind::input, "hatch lines of a layer must have two points each");
     layer.rings = rings;
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
     return std::make_shared<SharedLayer>(std::move(layer)); // as it was: the order of scan vectors counts
 }
 
+/// Without what docs/conventions.md drops from contours: points equal to the one before them, contours with
+/// too few points left.
+void add_contour(const PointArray& points, bool closed, LayerBuilder& builder) {
+    std::vector<Point2> kept;
+    std::unique_copy(points.begin(), points.end(), std::back_inserter(kept));
+    while (closed && kept.size() > 1 && kept.back() == kept.front())
+        kept.pop_back();
+    if (kept.size() < (closed ? 3U : 2U))
+        return;
+    for (const Point2& p : kept)
+        builder.add_point(p);
+    builder.end_contour(closed);
+}
+
 /// Contours in any order.
 LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, double bottom, double top,
                                std::uint64_t index, const std::vector<Doubles>& chains) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     LayerBuilder builder;
     for (const auto* contours : {&rings, &chains})
-        for (const Doubles& contour : *contours) {
-            for (const Point2& p : points_of(contour))
-                builder.add_point(p);
-            builder.end_contour(contours == &rings);
-        }
+        for (const Doubles& contour : *contours)
+            add_contour(points_of(contour), contours == &rings, builder);
     return std::make_shared<SharedLayer>(builder.finish(index, z, bottom, top));
 }
 
@@ -187,7 +210,7 @@ std::string layer_text(const SharedLayer& layer) {
 
 /// The layer after steps, each of which leaves it alone unless it is asked for.
 LayerPointer after(const SharedLayer& layer, const LayerSteps& steps) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     LayerChanges changes;
     return std::make_shared<SharedLayer>(take_steps(steps, layer.get(), changes));
 }
@@ -195,7 +218,7 @@ LayerPointer after(const SharedLayer& layer, const LayerSteps& steps) {
 /// What the operation makes of a layer and another one.
 template <BooleanOperation operation>
 LayerPointer combined(const SharedLayer& layer, const SharedLayer& other) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     return std::make_shared<SharedLayer>(combine(layer.get(), other.get(), operation));
 }
 
@@ -206,8 +229,6 @@ py::tuple layer_state(const py::object& self) {
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
-    if (state.size() != 8)
-        throw Error(ErrorKind::input, "this is no pickled layer");
     const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
                          state[3].cast<double>()};
     return layer_of_arrays(head, state[4].cast<Doubles>(), state[5].cast<Numbers>(),
@@ -226,7 +247,8 @@ StackPointer part_of(const Stack& stack, const py::slice& range) {
     if (step < 0)
         throw py::value_error("layers of a stack ascend: its slices cannot run backwards");
     auto part = std::make_shared<Stack>(stack);
-    part->parts.clear();
+    for (StackPointer& each : part->parts)
+        each = part_of(*each, range);
     part->layers.clear();
     for (py::ssize_t i = 0; i < count; ++i)
         part->layers.push_back(stack.layers[static_cast<std::size_t>(start + i * step)]);
@@ -246,7 +268,7 @@ template <class T, class Value>
 auto measures_of(const Value& value) {
     return [value](const Stack& stack) {
         {
-            const py::gil_scoped_release released;
+            const Unlocked released;
             for (const LayerPointer& layer : stack.layers)
                 static_cast<void>(layer->measure());
         }
@@ -255,7 +277,7 @@ auto measures_of(const Value& value) {
 }
 
 double volume_of(const Stack& stack) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     double volume = 0;
     for (const LayerPointer& layer : stack.layers)
         volume += layer->measure().area_mm2 * layer->get().thickness();
@@ -272,7 +294,8 @@ std::uint64_t sum_of(const Stack& stack, const Count& count) {
 
 double resolution_of(const Stack& stack) {
     double largest = 0;
-    for (const Point3& corner : {stack.box.min, stack.box.max})
+    const Box3 box = shown_box(stack);
+    for (const Point3& corner : {box.min, box.max})
         largest = std::max({largest, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
     return stack.rounding.step_at(largest);
 }
@@ -316,22 +339,35 @@ py::tuple pickled(const Stack& stack) {
     return py::make_tuple(stack.layers, py::bytes(stack.label), bounds_of(stack.box), matrix_of(stack.matrix),
                           py::bytes(stack.path), stack.format, stack.rounding.step_mm,
                           stack.rounding.single_precision, plane_rule_name(stack.rule), stack.parts,
-                          stack.scan_vectors);
+                          stack.exposure, stack.support);
+}
+
+/// None of them None, which pybind11 takes for a pointer.
+template <class Pointer>
+std::vector<Pointer> pointers_of(const py::object& list) {
+    auto pointers = list.cast<std::vector<Pointer>>();
+    if (std::find(pointers.begin(), pointers.end(), nullptr) != pointers.end())
+        throw Error(ErrorKind::input, "None is in the place of a layer or a part of a pickled stack");
+    return pointers;
 }
 
 StackPointer unpickled(const py::tuple& state) {
-    if (state.size() != 11)
-        throw Error(ErrorKind::input, "this is no pickled stack of layers");
-    StackPointer stack =
-        stack_of_layers(state[0].cast<std::vector<LayerPointer>>(), state[1].cast<std::string>());
+    const StackPointer stack =
+        stack_of_layers(pointers_of<LayerPointer>(state[0]), state[1].cast<std::string>());
     stack->box = box_of(state[2].cast<Bounds>());
     stack->matrix = transform_of(state[3].cast<Matrix>());
     stack->path = state[4].cast<std::string>();
     stack->format = state[5].cast<std::string>();
     stack->rounding = {state[6].cast<double>(), state[7].cast<bool>()};
     stack->rule = rule_named(state[8].cast<std::string>());
-    stack->parts = state[9].cast<std::vector<StackPointer>>();
-    stack->scan_vectors = state[10].cast<bool>();
+    stack->parts = pointers_of<StackPointer>(state[9]);
+    for (const StackPointer& part : stack->parts)
+        if (part->layers.size() != stack->layers.size())
+            throw Error(ErrorKind::input, "the parts of a pickled stack must have as many layers as it has");
+    stack->exposure = state[10].cast<std::optional<Exposure>>();
+    stack->support = state[11].cast<bool>();
+    if (!finite(stack->matrix) || !(stack->box.empty() || finite(stack->box)))
+        throw Error(ErrorKind::input, "the bounds and the matrix of a pickled stack must be finite");
     return stack;
 }
 
@@ -341,7 +377,7 @@ py::object each_of(const py::object& sequence) {
 }
 
 void bind_layer(py::module_& module) {
-    py::class_<SharedLayer, LayerPointer>(
+    py::class_<SharedLayer, LayerPointer> cls(
         module, "Layer",
         "What one plane yields: closed rings, and open chains where the mesh has defects. It never "
         "changes.\n\n"
@@ -351,8 +387,11 @@ void bind_layer(py::module_& module) {
         "counter-clockwise, holes clockwise. A ring does not repeat its first point at its end.\n\n"
         "Slicing and reading make layers. Layer(rings, z, bottom=z, top=z, index=0, chains=()) makes one of "
         "arrays\n"
-        "(n, 2) in millimetres, in any order.")
-        .def(py::init(&layer_of_contours))
+        "(n, 2) in millimetres, in any order. Points equal to the one before them are left out, and so are "
+        "rings "
+        "of\n"
+        "less than three points and chains of less than two.");
+    cls.def(py::init(&layer_of_contours))
         .def_property_readonly(
             "index", [](const SharedLayer& self) { return self.get().index; },
             "Its number in the whole plan, also when only a part of that was sliced.")
@@ -390,7 +429,7 @@ void bind_layer(py::module_& module) {
                 const auto& layer = self.cast<const SharedLayer&>();
                 const std::vector<std::int64_t>* parents = nullptr;
                 {
-                    const py::gil_scoped_release released;
+                    const Unlocked released;
                     parents = &layer.parents();
                 }
                 return view(parents->data(), {static_cast<py::ssize_t>(parents->size())}, self);
@@ -444,16 +483,16 @@ void bind_layer(py::module_& module) {
             "__eq__", [](const SharedLayer& self, const SharedLayer& other) { return same(self, other); },
             py::is_operator())
         .def("__hash__", [](const SharedLayer& self) { return self.hash() >> 1; })
-        .def("__repr__", &layer_text)
-        .def(py::pickle(&layer_state, &layer_of_state));
+        .def("__repr__", &layer_text);
+    bind_pickle(cls, "layer", 8, &layer_state, &layer_of_state);
 }
 
 void bind_stack(py::module_& module) {
-    py::class_<Stack, StackPointer>(
+    py::class_<Stack, StackPointer> cls(
         module, "Stack",
         "Layers in ascending z, as lamella.slice and lamella.read give them. A sequence of Layer: stack[i],\n"
-        "stack[a:b], len(stack), and for layer in stack. It never changes.")
-        .def(py::init(&stack_of_layers))
+        "stack[a:b], len(stack), and for layer in stack. It never changes.");
+    cls.def(py::init(&stack_of_layers))
         .def_property_readonly("z", numbers_of<double>([](const SharedLayer& l) { return l.get().z; }),
                                "Where the layers were cut, in millimetres: (layers,) float64.")
         .def_property_readonly("bottom",
@@ -491,7 +530,7 @@ void bind_stack(py::module_& module) {
             "label", [](const Stack& self) { return path_text(self.label); },
             "What the part is called in slice files.")
         .def_property_readonly(
-            "bounds", [](const Stack& self) { return bounds_of(self.box); },
+            "bounds", [](const Stack& self) { return bounds_of(shown_box(self)); },
             "The smallest and the largest x, y and z in millimetres: (2, 3) float64. Of the mesh that was\n"
             "sliced; of the layers where they come from a slice file.")
         .def_property_readonly(
@@ -505,6 +544,16 @@ void bind_stack(py::module_& module) {
                 return self->parts.empty() ? std::vector<StackPointer>{self} : self->parts;
             },
             "The parts of a slice file that holds several, each a stack with a label; else the stack itself.")
+        .def_property_readonly(
+            "exposure", [](const Stack& self) { return self.exposure; },
+            "What is exposed, and how, where the layers are scan vectors from a file: an Exposure; None for "
+            "contours.\n"
+            "What the file does not say of parameters is 0.")
+        .def_property_readonly(
+            "support", [](const Stack& self) { return self.support; },
+            "Whether that file marks the part as a support.")
+        // Of nothing it is empty, from inf to -inf, where `bounds` has the origin.
+        .def_property_readonly("_box", [](const Stack& self) { return bounds_of(self.box); })
         .def_property_readonly(
             "path", [](const Stack& self) { return path_text(self.path); },
             "The slice file it was read from; empty where it was sliced.")
@@ -532,8 +581,8 @@ void bind_stack(py::module_& module) {
         .def(
             "__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },
             py::is_operator())
-        .def("__repr__", &stack_text)
-        .def(py::pickle(&pickled, &unpickled));
+        .def("__repr__", &stack_text);
+    bind_pickle(cls, "stack of layers", 12, &pickled, &unpickled);
 }
 
 } // namespace

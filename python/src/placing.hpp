@@ -16,6 +16,7 @@ using Matrix = std::array<std::array<double, 4>, 4>; ///< by rows; acts on colum
 
 [[nodiscard]] pybind11::array_t<double> bounds_of(const Box3& box);
 [[nodiscard]] Box3 box_of(const Bounds& bounds);
+[[nodiscard]] bool finite(const Box3& box) noexcept;
 
 [[nodiscard]] pybind11::array_t<double> matrix_of(const Transform& map);
 /// Throws Error{usage} where the last row is not 0, 0, 0, 1.

@@ -1,5 +1,7 @@
 #include "run.hpp"
 
+#include "unlocked.hpp"
+
 #include <chrono>
 #include <exception>
 #include <thread>
@@ -20,7 +22,7 @@ class Bell {
 
     /// Waits for a moment. True when the work is done.
     bool wait() {
-        const py::gil_scoped_release released;
+        const Unlocked released;
         std::unique_lock lock(mutex_);
         return changed_.wait_for(lock, between_signals, [&] { return rung_; });
     }
@@ -50,7 +52,7 @@ void tell(ProgressBox& box, const py::object& listener) {
     if (listener.is_none())
         return;
     for (const Progress& progress : box.take())
-        listener(stage_name(progress.stage), progress.done, progress.total);
+        or_wait_for_the_end([&] { listener(stage_name(progress.stage), progress.done, progress.total); });
 }
 
 void check_signals() {

@@ -7,17 +7,22 @@
 #include "lamella/scan/strategy_fields.hpp"
 
 #include "layers.hpp"
+#include "pickled.hpp"
 #include "shared_layer.hpp"
+#include "unlocked.hpp"
 
-#include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -26,32 +31,24 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-/// As errors of Python name it.
-template <class Value>
-void set_value(const char* name, Value& into, const py::object& value) {
-    try {
-        into = value.cast<Value>();
-    } catch (const py::cast_error&) {
-        throw py::type_error(std::string(name) + ": " + Py_TYPE(value.ptr())->tp_name + " is not possible");
-    }
+/// The value as a check of the package gives it, whose errors name the attribute.
+template <class Value, class... More>
+Value checked(const char* check, const char* name, const py::object& value, const More&... more) {
+    return py::module_::import("lamella._arguments").attr(check)(name, value, more...).template cast<Value>();
 }
 
-template <class Choice>
-requires std::is_enum_v<Choice>
-void set_value(const char* name, Choice& into, const py::object& value) {
-    const NamedValues<Choice> known = named_values(Choice{});
-    std::string wanted;
-    set_value(name, wanted, value);
-    std::string there_are;
-    for (const Choice choice : known.values) {
-        if (known.name(choice) == wanted) {
-            into = choice;
-            return;
-        }
-        there_are += (there_are.empty() ? "" : ", ") + std::string(known.name(choice));
-    }
-    throw Error(ErrorKind::usage,
-                std::string(name) + ": \"" + wanted + "\" is not possible; there are " + there_are);
+template <class Value>
+void set_value(const char* name, Value& into, const py::object& value) {
+    if constexpr (std::is_enum_v<Value>) {
+        const NamedValues<Value> known = named_values(Value{});
+        const auto chosen = checked<std::string>("choice", name, value, known.names());
+        into = *std::ranges::find(known.values, chosen, known.name);
+    } else if constexpr (std::is_same_v<Value, bool>)
+        into = checked<bool>("flag", name, value);
+    else if constexpr (std::is_integral_v<Value>)
+        into = checked<Value>("whole", name, value, 0, std::numeric_limits<Value>::max());
+    else
+        into = checked<Value>("number", name, value);
 }
 
 template <class Value>
@@ -60,6 +57,31 @@ py::object value_of(const Value& value) {
         return py::cast(named_values(Value{}).name(value));
     else
         return py::cast(value);
+}
+
+/// The values that an attribute can have, where there are few.
+template <class Rule, class Value>
+std::string choices_of(Value Rule::* /*member*/) {
+    std::string text;
+    if constexpr (std::is_enum_v<Value>)
+        for (const std::string& name : named_values(Value{}).names())
+            text += (text.empty() ? ": \"" : ", \"") + name + '"';
+    return text;
+}
+
+/// An attribute that is a rule itself.
+template <class Rule, class Part>
+void bind_part(py::class_<Rule>& cls, const char* name, Part Rule::*part, const char* about) {
+    cls.def_property(
+        name, [part](Rule& rule) -> Part& { return rule.*part; },
+        [part, name](Rule& rule, const py::object& value) {
+            if (!py::isinstance<Part>(value))
+                checked<py::object>("refuse_type", name,
+                                    py::str("a lamella.{}").format(py::type::of<Part>().attr("__name__")),
+                                    value);
+            rule.*part = value.cast<const Part&>();
+        },
+        about);
 }
 
 /// Attributes by the table of fields.
@@ -73,7 +95,7 @@ py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* ab
             [&](const auto member) {
                 const char* const key = field.name.data(); // a literal
                 std::string text(field.unit);
-                text += (text.empty() ? "" : ", ") + std::string(field.help);
+                text += (text.empty() ? "" : ", ") + std::string(field.help) + choices_of(member);
                 cls.def_property(
                     key, [member](const Rule& rule) { return value_of(rule.*member); },
                     [member, key](Rule& rule, const py::object& value) {
@@ -85,27 +107,42 @@ py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* ab
     return cls;
 }
 
-std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared) {
+std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared, const Rounding& rounding) {
     std::vector<ScanLayer> layers;
     for (const LayerPointer& layer : shared)
-        layers.emplace_back(layer->get());
+        layers.emplace_back(layer->get(), rounding);
     return layers;
 }
 
-std::vector<LayerPointer> scanned(const SharedLayer& layer, const std::vector<LayerPointer>& below,
-                                  const std::vector<LayerPointer>& above, const ScanStrategy& strategy) {
-    const py::gil_scoped_release released;
-    return shared(scan(layer.get(), layers_of(below), layers_of(above), strategy));
+/// Of the file that the layers come from, where they do.
+Rounding rounding_of(const Stack* stack) {
+    return stack != nullptr ? stack->rounding : Rounding{};
 }
 
-std::vector<LayerPointer> scanned_support(const SharedLayer& layer, const ScanStrategy& strategy) {
-    const py::gil_scoped_release released;
-    return shared(scan_support(layer.get(), strategy));
+/// Layers of vectors, and the number of rings that are too thin for any.
+using Scanned = std::pair<std::vector<LayerPointer>, std::uint64_t>;
+
+Scanned scanned(const SharedLayer& layer, const std::vector<LayerPointer>& below,
+                const std::vector<LayerPointer>& above, const ScanStrategy& strategy, const Stack* stack) {
+    const Unlocked released;
+    const Rounding rounding = rounding_of(stack);
+    std::uint64_t thin_rings = 0;
+    std::vector<Layer> vectors = scan(ScanLayer(layer.get(), rounding), layers_of(below, rounding),
+                                      layers_of(above, rounding), strategy, nullptr, &thin_rings);
+    return {shared(std::move(vectors)), thin_rings};
+}
+
+Scanned scanned_support(const SharedLayer& layer, const ScanStrategy& strategy, const Stack* stack) {
+    const Unlocked released;
+    std::uint64_t thin_rings = 0;
+    std::vector<Layer> vectors =
+        scan_support(ScanLayer(layer.get(), rounding_of(stack)), strategy, nullptr, &thin_rings);
+    return {shared(std::move(vectors)), thin_rings};
 }
 
 std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
                                   const std::vector<Exposure>& exposures) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     std::vector<ScanFigures> figures;
     std::optional<Point2> beam;
     for (std::size_t i = 0; i < vectors.size(); ++i)
@@ -117,40 +154,64 @@ void bind_rules(py::module_& module) {
     constexpr const char* parameters = "What the beam does along these lines: a ParameterSet.";
     bind_rule(module, "ParameterSet", "What a beam does along vectors and between them.", parameter_fields())
         .def(py::init<const ParameterSet&>())
-        .def_readwrite("name", &ParameterSet::name, "What files and machines call it.")
-        .def(py::self == py::self);
-    bind_rule(module, "HatchRule", "Parallel lines that fill an area.", hatch_fields())
-        .def_readwrite("parameters", &HatchRule::parameters, parameters);
-    bind_rule(module, "ContourRule", "Lines along the outline of the part.", contour_fields())
-        .def_readwrite("parameters", &ContourRule::parameters, parameters);
-    bind_rule(module, "SkinRule", "Where a layer has little material above it, or below.", skin_fields())
-        .def_readwrite("hatch", &SkinRule::hatch, "Its lines: a HatchRule.");
-    py::class_<SupportRule>(module, "SupportRule", "All of what is a support, which has no skins.")
-        .def(py::init())
-        .def_readwrite("contours", &SupportRule::contours, "Lines along its outline: a ContourRule.")
-        .def_readwrite("hatch", &SupportRule::hatch, "Lines that fill it: a HatchRule.");
-    bind_rule(module, "ScanStrategy",
-              "How a powder-bed machine is to expose a part: contours, hatches, skins. By default what makes "
-              "sense\n"
-              "for 316L steel and layers of 0.03 mm.",
-              strategy_fields())
-        .def_readwrite("contours", &ScanStrategy::contours, "Lines along the outline: a ContourRule.")
-        .def_readwrite("hatch", &ScanStrategy::hatch, "Lines that fill the core: a HatchRule.")
-        .def_readwrite("upskin", &ScanStrategy::upskin, "Where there is little material above: a SkinRule.")
-        .def_readwrite("downskin", &ScanStrategy::downskin,
-                       "Where there is little material below: a SkinRule.")
-        .def_readwrite("support", &ScanStrategy::support, "What is a support: a SupportRule.");
+        .def_property(
+            "name", [](const ParameterSet& self) { return path_text(self.name); },
+            [](ParameterSet& self, const py::object& value) {
+                self.name = checked<std::string>("label", "name", value);
+            },
+            "What files and machines call it.");
+    auto hatch = bind_rule(module, "HatchRule", "Parallel lines that fill an area.", hatch_fields());
+    bind_part(hatch, "parameters", &HatchRule::parameters, parameters);
+    auto contour = bind_rule(module, "ContourRule", "Lines along the outline of the part.", contour_fields());
+    bind_part(contour, "parameters", &ContourRule::parameters, parameters);
+    auto skin =
+        bind_rule(module, "SkinRule", "Where a layer has little material above it, or below.", skin_fields());
+    bind_part(skin, "hatch", &SkinRule::hatch, "Its lines: a HatchRule.");
+    py::class_<SupportRule> support(module, "SupportRule", "All of what is a support, which has no skins.");
+    support.def(py::init());
+    bind_part(support, "contours", &SupportRule::contours, "Lines along its outline: a ContourRule.");
+    bind_part(support, "hatch", &SupportRule::hatch, "Lines that fill it: a HatchRule.");
+    auto strategy =
+        bind_rule(module, "ScanStrategy",
+                  "How a powder-bed machine is to expose a part: contours, hatches, skins. By default what "
+                  "makes sense\n"
+                  "for 316L steel and layers of 0.03 mm.",
+                  strategy_fields());
+    bind_part(strategy, "contours", &ScanStrategy::contours, "Lines along the outline: a ContourRule.");
+    bind_part(strategy, "hatch", &ScanStrategy::hatch, "Lines that fill the core: a HatchRule.");
+    bind_part(strategy, "upskin", &ScanStrategy::upskin, "Where there is little material above: a SkinRule.");
+    bind_part(strategy, "downskin", &ScanStrategy::downskin,
+              "Where there is little material below: a SkinRule.");
+    bind_part(strategy, "support", &ScanStrategy::support, "What is a support: a SupportRule.");
 }
 
-} // namespace
+bool same_exposures(const Exposure& a, const Exposure& b) {
+    return a.part == b.part && a.region == b.region && a.kind == b.kind && a.contour == b.contour &&
+           a.parameters == b.parameters;
+}
 
-void bind_scanning(py::module_& module) {
-    bind_rules(module);
-    py::class_<Exposure>(
+py::tuple exposure_state(const Exposure& exposure) {
+    return py::make_tuple(py::bytes(exposure.part), static_cast<unsigned>(exposure.region),
+                          static_cast<unsigned>(exposure.kind), exposure.contour, exposure.parameters);
+}
+
+Exposure exposure_of_state(const py::tuple& state) {
+    const auto region = state[1].cast<unsigned>();
+    const auto kind = state[2].cast<unsigned>();
+    if (region > static_cast<unsigned>(ScanRegion::support) ||
+        kind > static_cast<unsigned>(VectorKind::hatch))
+        throw Error(ErrorKind::input, "a pickled exposure is of no region or no kind that is known");
+    return {state[0].cast<std::string>(), static_cast<ScanRegion>(region), static_cast<VectorKind>(kind),
+            state[3].cast<std::uint32_t>(), state[4].cast<ParameterSet>()};
+}
+
+void bind_exposure(py::module_& module) {
+    py::class_<Exposure> cls(
         module, "Exposure",
-        "What the vectors of a part on a layer have in common that a machine executes in one go.")
-        .def_property_readonly(
-            "part", [](const Exposure& self) { return path_text(self.part); }, "What the part is called.")
+        "What the vectors of a part on a layer have in common that a machine executes in one go. It never "
+        "changes.");
+    cls.def_property_readonly(
+           "part", [](const Exposure& self) { return path_text(self.part); }, "What the part is called.")
         .def_property_readonly(
             "region", [](const Exposure& self) { return scan_region_name(self.region); },
             "\"core\", \"upskin\", \"downskin\" or \"support\".")
@@ -159,16 +220,48 @@ void bind_scanning(py::module_& module) {
             "\"contour\" or \"hatch\".")
         .def_readonly("contour", &Exposure::contour,
                       "The number of a contour, from outside, from 1; 0 for hatches.")
-        .def_readonly("parameters", &Exposure::parameters, "What the beam does: a ParameterSet.")
+        .def_property_readonly(
+            "parameters", [](const Exposure& self) { return ParameterSet(self.parameters); },
+            "What the beam does: a ParameterSet, which is a copy.")
         .def_property_readonly("name", &Exposure::name, "Such as \"core contour 1\".")
-        .def("__repr__",
-             [](const Exposure& self) { return "<lamella.Exposure " + self.part + " " + self.name() + ">"; });
-    py::class_<ScanFigures>(module, "ScanFigures", "What a machine does for vectors.")
-        .def_readonly("vectors", &ScanFigures::vectors, "How many lines.")
+        .def("__eq__", &same_exposures, py::is_operator())
+        .def("__hash__", [](const Exposure& self) { return py::hash(py::bytes(self.label())); })
+        .def("__repr__", [](const Exposure& self) {
+            return py::str("<lamella.Exposure {} {}>").format(path_text(self.part), self.name());
+        });
+    bind_pickle(cls, "exposure", 5, &exposure_state, &exposure_of_state);
+}
+
+auto figures_of(const ScanFigures& figures) {
+    return std::tuple(figures.vectors, figures.marked_mm, figures.jumped_mm, figures.build_seconds,
+                      figures.energy_j);
+}
+
+void bind_figures(py::module_& module) {
+    py::class_<ScanFigures> cls(module, "ScanFigures", "What a machine does for vectors.");
+    cls.def_readonly("vectors", &ScanFigures::vectors, "How many lines.")
         .def_readonly("marked_mm", &ScanFigures::marked_mm, "Their length in millimetres.")
         .def_readonly("jumped_mm", &ScanFigures::jumped_mm, "The ways between them in millimetres.")
         .def_readonly("build_seconds", &ScanFigures::build_seconds, "By speeds and delays alone.")
-        .def_readonly("energy_j", &ScanFigures::energy_j, "Power by the time of marking, in joules.");
+        .def_readonly("energy_j", &ScanFigures::energy_j, "Power by the time of marking, in joules.")
+        .def(
+            "__eq__",
+            [](const ScanFigures& a, const ScanFigures& b) { return figures_of(a) == figures_of(b); },
+            py::is_operator());
+    bind_pickle(
+        cls, "figures", 5, [](const ScanFigures& self) { return py::tuple(py::cast(figures_of(self))); },
+        [](const py::tuple& state) {
+            return ScanFigures{state[0].cast<std::uint64_t>(), state[1].cast<double>(),
+                               state[2].cast<double>(), state[3].cast<double>(), state[4].cast<double>()};
+        });
+}
+
+} // namespace
+
+void bind_scanning(py::module_& module) {
+    bind_rules(module);
+    bind_exposure(module);
+    bind_figures(module);
     module.def("check_strategy", &check_strategy);
     module.def("exposures", &exposures);
     module.def("support_exposures", &support_exposures);

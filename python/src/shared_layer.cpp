@@ -33,16 +33,21 @@ std::uint64_t SharedLayer::hash() const {
 
 Box3 box_of(const std::vector<LayerPointer>& layers) {
     Box3 box;
-    if (layers.empty())
-        return box;
     for (const LayerPointer& layer : layers)
-        for (const Point2& p : layer->get().points)
-            box.add(Point3{p.x, p.y, layer->get().z});
-    if (box.empty())
-        box.add(Point3{});
-    box.min.z = layers.front()->get().bottom;
-    box.max.z = layers.back()->get().top;
+        for (const PointArray* points : {&layer->get().points, &layer->get().hatches})
+            for (const Point2& p : *points)
+                box.add(Point3{p.x, p.y, layer->get().z});
+    if (!box.empty()) {
+        box.min.z = layers.front()->get().bottom;
+        box.max.z = layers.back()->get().top;
+    }
     return box;
+}
+
+Box3 shown_box(const Stack& stack) {
+    if (!stack.box.empty() || stack.layers.empty())
+        return stack.box;
+    return {{0, 0, stack.layers.front()->get().bottom}, {0, 0, stack.layers.back()->get().top}};
 }
 
 std::vector<LayerPointer> shared(LayerStack layers) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/plane_rule.hpp"
@@ -47,7 +48,8 @@ using LayerPointer = std::shared_ptr<SharedLayer>;
 struct Stack {
     std::vector<LayerPointer> layers;
     std::string label = {};
-    /// Of the mesh that was sliced, as it was sliced; of the layers themselves where there was none.
+    /// Of the mesh that was sliced, as it was sliced. Where there was none, of the layers themselves; empty
+    /// where these are.
     Box3 box = {};
     /// From the coordinates of the mesh to those in which it was sliced.
     Transform matrix = {};
@@ -56,14 +58,18 @@ struct Stack {
     std::string format = {};
     Rounding rounding = {}; ///< of that file
     PlaneRule rule = PlaneRule::section_above;
-    bool scan_vectors = false; ///< whether that file has some here
-    /// The parts of a file that holds several.
+    /// Where set, the layers are scan vectors.
+    std::optional<Exposure> exposure = {};
+    bool support = false; ///< marked so in that file
+    /// The parts of a file that holds several, with as many layers.
     std::vector<std::shared_ptr<Stack>> parts = {};
 };
 
-/// Without an index where it has none: the box of the contours, from the bottom of the first layer to the top
-/// of the last. Never empty for a stack with layers.
+/// Of the contours and hatches, from the bottom of the first layer to the top of the last; empty where there
+/// are none.
 [[nodiscard]] Box3 box_of(const std::vector<LayerPointer>& layers);
+/// The box of the stack, or where it is empty the origin at the heights of its layers.
+[[nodiscard]] Box3 shown_box(const Stack& stack);
 
 [[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers);
 /// Throws Error{usage} for no rule's name.

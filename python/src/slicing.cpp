@@ -84,11 +84,43 @@ void bind_cuts(py::module_& module) {
         }));
 }
 
+/// Null where it is not made yet. Objects of several bases, which Python can derive, never are.
+LayerStream* stream_of(PyObject* self) {
+    auto* const instance = reinterpret_cast<py::detail::instance*>(self);
+    if (!instance->simple_layout || !instance->simple_holder_constructed)
+        return nullptr;
+    return instance->get_value_and_holder().value_ptr<LayerStream>();
+}
+
+/// A listener may hold the stream that holds it: only the garbage collector finds that nobody else does.
+void collect_streams(PyHeapTypeObject* heap_type) {
+    PyTypeObject& type = heap_type->ht_type;
+    type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+    type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
+        Py_VISIT(Py_TYPE(self));
+        if (const LayerStream* const stream = stream_of(self))
+            Py_VISIT(stream->listener().ptr());
+        return 0;
+    };
+    type.tp_clear = [](PyObject* self) {
+        if (LayerStream* const stream = stream_of(self))
+            stream->forget_listener();
+        return 0;
+    };
+    // Other threads run while the stream stops. Where one collects garbage then, it must not find what is
+    // half taken down; pybind11 2.10 leaves it where it is found.
+    type.tp_dealloc = [](PyObject* self) {
+        PyObject_GC_UnTrack(self);
+        py::detail::pybind11_object_dealloc(self);
+    };
+}
+
 void bind_stream(py::module_& module) {
     py::class_<LayerStream>(
         module, "LayerStream",
         "Layers while they are being made, in ascending z: an iterator. Few of them are in memory at\n"
-        "a time. It may be closed before its end, and closes itself when nobody holds it any more.")
+        "a time. It may be closed before its end, and closes itself when nobody holds it any more.",
+        py::custom_type_setup(collect_streams))
         .def_property_readonly(
             "z",
             [](const LayerStream& self) {

@@ -7,16 +7,19 @@
 
 #include "arrays.hpp"
 #include "layers.hpp"
+#include "pickled.hpp"
 #include "placing.hpp"
 #include "run.hpp"
+#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <limits>
-#include <span>
 #include <utility>
 
 namespace py = pybind11;
@@ -24,8 +27,8 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Doubles = py::array_t<double, py::array::c_style>;
+using Numbers = py::array_t<std::int64_t, py::array::c_style>;
 
 std::vector<Point3> vertices_of(const Doubles& rows) {
     std::vector<Point3> points(static_cast<std::size_t>(rows.shape(0)));
@@ -51,17 +54,20 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const Numbers& rows, std:
     return triangles;
 }
 
-/// `vertices` (n, 3) and `faces` (m, 3): lamella/_meshes.py has looked at their shapes.
+/// `vertices` (n, 3) and `faces` (m, 3).
 MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
+    if (vertices.ndim() != 2 || vertices.shape(1) != 3 || faces.ndim() != 2 || faces.shape(1) != 3)
+        throw Error(ErrorKind::input, "vertices and faces must be arrays of the shapes (n, 3) and (m, 3)");
     if (static_cast<std::uint64_t>(vertices.shape(0)) > std::numeric_limits<std::uint32_t>::max())
         throw Error(ErrorKind::limit, "vertices: a mesh has 2^32 - 1 at most");
-    const py::gil_scoped_release released;
+    const Unlocked released;
     IndexedMesh mesh;
     mesh.vertices = vertices_of(vertices);
     mesh.triangles = triangles_of(faces, mesh.vertices.size());
     check(mesh);
     if (mesh.triangles.empty())
         throw Error(ErrorKind::input, "faces: holds no triangle");
+    drop_unused_vertices(mesh); // as files do: bounds are those of the faces
     MeshOrigin origin;
     origin.stored_triangles = mesh.triangles.size();
     return std::make_shared<SourceMesh>(Mesh(std::move(mesh)), std::move(origin), Execution{});
@@ -74,10 +80,35 @@ MeshPointer read_source_mesh(const std::string& path, std::optional<double> unit
     });
 }
 
-MeshPointer transformed(const SourceMesh& source, const Transform& map) {
+/// Of all that the map adds up for a point of the box, nothing is beyond what a number can be.
+bool stays_finite(const Transform& map, const Box3& box) {
+    const std::array largest{std::max(std::abs(box.min.x), std::abs(box.max.x)),
+                             std::max(std::abs(box.min.y), std::abs(box.max.y)),
+                             std::max(std::abs(box.min.z), std::abs(box.max.z))};
+    for (std::size_t r = 0; r < 3; ++r) {
+        double sum = std::abs(map.offset[r]);
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += std::abs(map.linear[r][c]) * largest[c];
+        if (!std::isfinite(sum))
+            return false;
+    }
+    return true;
+}
+
+/// `argument` is what asked for the map.
+MeshPointer transformed(const SourceMesh& source, const Transform& map, const char* argument,
+                        unsigned threads) {
     MeshOrigin origin = source.origin();
     origin.matrix = compose(map, origin.matrix);
-    return std::make_shared<SourceMesh>(source.mesh().transformed(map), std::move(origin), Execution{});
+    return result_of(threads, py::none(), [&](const Execution& execution) {
+        if (finite(map) && finite(origin.matrix) && stays_finite(map, source.box())) {
+            auto made = std::make_shared<SourceMesh>(source.mesh().transformed(map), origin, execution);
+            if (finite(made->box()))
+                return made;
+        }
+        throw Error(ErrorKind::usage,
+                    std::string(argument) + ": puts the mesh where its coordinates are no finite numbers");
+    });
 }
 
 py::dict defects_of(const SourceMesh& source, unsigned threads, const py::object& progress) {
@@ -108,7 +139,7 @@ py::str mesh_text(const SourceMesh& source) {
 }
 
 const IndexedMesh& welded_of(const SourceMesh& source) {
-    const py::gil_scoped_release released;
+    const Unlocked released;
     return source.welded({});
 }
 
@@ -120,8 +151,6 @@ py::tuple mesh_state(const py::object& self) {
 }
 
 MeshPointer mesh_of_state(const py::tuple& state) {
-    if (state.size() != 10)
-        throw Error(ErrorKind::input, "this is no pickled mesh");
     const MeshPointer mesh = mesh_of_arrays(state[0].cast<Doubles>(), state[1].cast<Numbers>());
     MeshOrigin origin{.path = state[2].cast<std::string>(),
                       .format = state[3].cast<std::string>(),
@@ -131,6 +160,8 @@ MeshPointer mesh_of_state(const py::tuple& state) {
                       .stored_triangles = state[7].cast<std::uint64_t>(),
                       .warnings = state[8].cast<std::vector<std::string>>(),
                       .matrix = transform_of(state[9].cast<Matrix>())};
+    if (!finite(origin.matrix) || !std::isfinite(origin.unit_mm))
+        throw Error(ErrorKind::input, "the matrix and the unit of a pickled mesh must be finite");
     return std::make_shared<SourceMesh>(mesh->mesh(), std::move(origin), Execution{});
 }
 
@@ -172,14 +203,15 @@ MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm, const Exec
 }
 
 void bind_meshes(py::module_& module) {
-    py::class_<SourceMesh, MeshPointer>(
+    py::class_<SourceMesh, MeshPointer> cls(
         module, "Mesh",
         "A triangle mesh in millimetres. It never changes.\n\n"
         "Made by lamella.read from a file, or from arrays: Mesh(vertices, faces) with vertices (n, 3), in\n"
         "millimetres, and faces (m, 3), three numbers of vertices each, counter-clockwise seen from "
         "outside.\n"
-        "Wherever a function takes a mesh, arrays and paths will do, too.")
-        .def(py::init(&mesh_of_arrays))
+        "Vertices that no face has are left out. Wherever a function takes a mesh, arrays and paths will do, "
+        "too.");
+    cls.def(py::init(&mesh_of_arrays))
         .def_property_readonly(
             "vertices",
             [](const py::object& self) {
@@ -201,7 +233,7 @@ void bind_meshes(py::module_& module) {
         .def_property_readonly(
             "volume",
             [](const SourceMesh& self) {
-                const py::gil_scoped_release released;
+                const Unlocked released;
                 return volume(self.mesh());
             },
             "The volume in cubic millimetres: meaningful for a closed mesh, negative for one turned inside "
@@ -226,14 +258,16 @@ void bind_meshes(py::module_& module) {
             "What was odd about the file, and what was made of it: a line each.")
         .def("_defects", &defects_of)
         .def("_transformed",
-             [](const SourceMesh& self, const Matrix& rows) { return transformed(self, transform_of(rows)); })
+             [](const SourceMesh& self, const Matrix& rows, unsigned threads) {
+                 return transformed(self, transform_of(rows), "transform", threads);
+             })
         .def("_turned",
-             [](const SourceMesh& self, const std::array<double, 3>& d) {
-                 return transformed(self, upright({d[0], d[1], d[2]}));
+             [](const SourceMesh& self, const std::array<double, 3>& d, unsigned threads) {
+                 return transformed(self, upright({d[0], d[1], d[2]}), "direction", threads);
              })
         .def("__len__", [](const SourceMesh& self) { return self.mesh().size(); })
-        .def("__repr__", &mesh_text)
-        .def(py::pickle(&mesh_state, &mesh_of_state));
+        .def("__repr__", &mesh_text);
+    bind_pickle(cls, "mesh", 10, &mesh_state, &mesh_of_state);
 
     module.def("defect_kinds", [] {
         std::vector<std::array<std::string_view, 3>> kinds;

@@ -66,35 +66,37 @@ bool is_gzip(std::span<const std::byte> bytes) noexcept {
            bytes[2] == std::byte{8};
 }
 
-ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const Execution& execution) {
+ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Execution& execution) {
+    if (!is_gzip(source.bytes))
+        return source;
     // Small enough for zlib's counters, and for a look at cancelling now and then.
     constexpr std::size_t step = std::size_t{8} << 20;
-    const std::uint64_t most = max_bytes != 0 ? max_bytes : usual_most_unpacked(packed.bytes.size());
+    const std::uint64_t most = max_bytes != 0 ? max_bytes : usual_most_unpacked(source.bytes.size());
     Inflater inflater;
-    const auto unpacked = std::make_shared<GrowingMemory>();
+    const auto memory = std::make_shared<GrowingMemory>();
     std::size_t at = 0;
     const auto fail = [&](const std::string& what) {
-        throw Error(ErrorKind::input, fmt::format("{}: byte {}: {}", packed.name, at, what));
+        throw Error(ErrorKind::input, fmt::format("{}: byte {}: {}", source.name, at, what));
     };
     for (bool whole = false; !whole;) {
         if (execution.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
-        const std::span<std::byte> all_room = unpacked->room();
+        const std::span<std::byte> all_room = memory->room();
         const std::span<std::byte> room = all_room.first(std::min(step, all_room.size()));
         const auto [taken, made, code] =
-            inflater.unpack(packed.bytes.subspan(at, std::min(step, packed.bytes.size() - at)), room);
+            inflater.unpack(source.bytes.subspan(at, std::min(step, source.bytes.size() - at)), room);
         at += taken;
-        unpacked->use(made);
-        if (unpacked->size() > most)
+        memory->use(made);
+        if (memory->size() > most)
             throw Error(
                 ErrorKind::limit,
                 max_bytes != 0
-                    ? fmt::format("{}: unpacks to more than the {} bytes of `max_memory`", packed.name, most)
+                    ? fmt::format("{}: unpacks to more than the {} bytes of `max_memory`", source.name, most)
                     : fmt::format(
                           "{}: unpacks to more than {} bytes, {} times its size; `max_memory` allows more",
-                          packed.name, most, most / packed.bytes.size()));
+                          source.name, most, most / source.bytes.size()));
         if (code == Z_STREAM_END) {
-            const auto rest = packed.bytes.subspan(at);
+            const auto rest = source.bytes.subspan(at);
             // Some programs fill up the last block with zeros.
             whole =
                 std::all_of(rest.begin(), rest.end(), [](std::byte byte) { return byte == std::byte{0}; });
@@ -103,21 +105,17 @@ ByteSource unpack_gzip(const ByteSource& packed, std::uint64_t max_bytes, const 
             inflater.start_again();
         } else if (code == Z_MEM_ERROR) {
             throw std::bad_alloc();
-        } else if (code == Z_BUF_ERROR || (code == Z_OK && at == packed.bytes.size() && made < room.size())) {
+        } else if (code == Z_BUF_ERROR || (code == Z_OK && at == source.bytes.size() && made < room.size())) {
             fail("the file ends before what is packed with gzip in it; it is cut off");
         } else if (code != Z_OK) {
             fail(fmt::format("what is packed with gzip is broken ({}); fetch the file once more",
                              inflater.message()));
         }
     }
-    if (unpacked->size() == 0)
+    if (memory->size() == 0)
         fail("nothing is packed in it, expected a file with content");
-    unpacked->trim();
-    return {packed.name, unpacked->bytes(), unpacked};
-}
-
-ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Execution& execution) {
-    return is_gzip(source.bytes) ? unpack_gzip(source, max_bytes, execution) : source;
+    memory->trim();
+    return {source.name, memory->bytes(), memory};
 }
 
 } // namespace lamella

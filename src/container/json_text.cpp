@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "container/utf8.hpp"
 #include "core/parse_number.hpp"
 
 #include <fmt/format.h>
@@ -16,27 +17,6 @@ namespace lamella {
 namespace {
 
 constexpr int deepest = 64;
-
-void append_utf8(std::string& to, unsigned c) {
-    const auto tail = [&](unsigned shift) {
-        to += static_cast<char>(0x80U | ((c >> shift) & 0x3FU));
-    };
-    if (c < 0x80) {
-        to += static_cast<char>(c);
-    } else if (c < 0x800) {
-        to += static_cast<char>(0xC0U | (c >> 6U));
-        tail(0);
-    } else if (c < 0x10000) {
-        to += static_cast<char>(0xE0U | (c >> 12U));
-        tail(6);
-        tail(0);
-    } else {
-        to += static_cast<char>(0xF0U | (c >> 18U));
-        tail(12);
-        tail(6);
-        tail(0);
-    }
-}
 
 } // namespace
 

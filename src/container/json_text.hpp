@@ -42,7 +42,6 @@ class JsonText {
     void end();
     /// Bytes taken so far.
     [[nodiscard]] std::size_t at() const noexcept { return at_; }
-    [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
     /// At the value that is next.
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const;

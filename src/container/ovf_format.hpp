@@ -54,6 +54,7 @@ enum : std::uint32_t {
     y_turn = 6,
     z_turn = 7,
     block_count = 8,
+    repeats = 9,
     number = 10
 };
 } // namespace work_plane
@@ -64,6 +65,8 @@ enum : std::uint32_t {
     hatches = 2,
     last_of_vectors = 12, ///< up to here other kinds of vectors
     marking_params_key = 50,
+    laser_index = 53,
+    repeats = 54,
     meta_data = 100,
     lpbf_meta_data = 101
 };

@@ -94,7 +94,6 @@ std::string_view ProtobufReader::bytes() const {
 ProtobufReader ProtobufReader::delimited(std::string_view file, std::uint64_t& place,
                                          const std::string& name) {
     ProtobufReader all(file.substr(std::min<std::uint64_t>(place, file.size())), place, name);
-    all.field_place_ = place;
     const std::string_view bytes = all.take(all.take_varint());
     place = all.place_;
     return {bytes, all.value_place_, name};

@@ -16,7 +16,7 @@ class ProtobufReader {
   public:
     /// Of `bytes`, which begin at byte `place` of a file called `name`.
     ProtobufReader(std::string_view bytes, std::uint64_t place, const std::string& name)
-        : rest_(bytes), place_(place), name_(&name) {}
+        : rest_(bytes), place_(place), name_(&name), field_place_(place) {}
 
     /// Moves to the next field; false at the end.
     [[nodiscard]] bool next();
@@ -58,7 +58,7 @@ class ProtobufReader {
     std::string_view rest_;
     std::uint64_t place_;
     const std::string* name_;
-    std::uint64_t field_place_ = 0;
+    std::uint64_t field_place_;
     std::uint32_t field_ = 0;
     ProtobufType type_{};
     std::uint64_t integer_ = 0;

@@ -266,10 +266,6 @@ class Parse {
 
 } // namespace
 
-XmlName XmlAttributes::name_of(std::string_view written) noexcept {
-    return split(written);
-}
-
 std::string_view XmlAttributes::find(std::string_view local) const noexcept {
     for (const char** pair = pairs_; *pair != nullptr; pair += 2)
         if (local == *pair)

@@ -31,16 +31,7 @@ class XmlAttributes {
     [[nodiscard]] std::string_view find(std::string_view local) const noexcept;
     [[nodiscard]] std::string_view find(XmlName name) const noexcept;
 
-    /// visit(name, value) for each.
-    template <class Visit>
-    void each(const Visit& visit) const {
-        for (const char** pair = pairs_; *pair != nullptr; pair += 2)
-            visit(name_of(pair[0]), std::string_view(pair[1]));
-    }
-
   private:
-    static XmlName name_of(std::string_view written) noexcept;
-
     const char** pairs_; // name, value, ..., null
 };
 

@@ -7,6 +7,7 @@
 
 #include "container/inflate.hpp"
 #include "container/text_place.hpp"
+#include "core/lower_case.hpp"
 #include "core/pages.hpp"
 
 #include <fmt/format.h>
@@ -33,10 +34,6 @@ constexpr unsigned flag_strongly_encrypted = 1U << 6;
 constexpr unsigned flag_masked = 1U << 13;
 
 constexpr std::size_t longest_shown_name = 200;
-
-std::string_view view(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 std::uint64_t number(std::string_view bytes, std::size_t at, int size) {
     std::uint64_t value = 0;
@@ -157,13 +154,23 @@ class DirectoryFinder {
     const std::string& name_;
 };
 
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+bool before_in_any_case(std::string_view a, std::string_view b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                        [](char x, char y) { return lower_case(x) < lower_case(y); });
 }
 
-bool same_but_for_case(std::string_view a, std::string_view b) {
-    return a.size() == b.size() &&
-           std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
+/// Names that differ in case only lie side by side.
+bool comes_before(std::string_view a, std::string_view b) {
+    return before_in_any_case(a, b) || (!before_in_any_case(b, a) && a < b);
+}
+
+/// Places of entries in the order of their names.
+std::vector<std::size_t> order_of_names(const std::vector<ZipEntry>& entries) {
+    std::vector<std::size_t> order(entries.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return comes_before(entries[a].name, entries[b].name); });
+    return order;
 }
 
 } // namespace
@@ -179,7 +186,7 @@ ZipReader::ZipReader(ByteSource source, std::uint64_t max_unpacked)
 }
 
 void ZipReader::read_directory() {
-    const std::string_view bytes = view(source_.bytes);
+    const std::string_view bytes = source_.text();
     const Directory directory = DirectoryFinder(bytes, source_.name).find();
     if (directory.trailing != 0)
         oddities_.push_back(fmt::format("{} bytes follow the end of the zip archive; they were left out",
@@ -225,7 +232,7 @@ void ZipReader::read_directory() {
 /// Reads the head in front of each entry's bytes, turns `place` into that of the bytes, and has it that no
 /// two entries share any.
 void ZipReader::settle_places(std::uint64_t directory_place) {
-    const std::string_view bytes = view(source_.bytes);
+    const std::string_view bytes = source_.text();
     const auto fail = [&](const ZipEntry& entry, const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{}: byte {}: zip entry '{}' {}", source_.name, entry.place,
                                                   printable(entry.name, longest_shown_name), what));
@@ -291,10 +298,7 @@ void ZipReader::settle_names() {
     if (rooted != 0)
         oddities_.push_back(
             fmt::format("{} names in the zip archive begin with '/', which was left out", rooted));
-    std::vector<std::size_t> order(entries_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return entries_[a].name < entries_[b].name; });
+    const std::vector<std::size_t> order = order_of_names(entries_);
     for (std::size_t i = 1; i < order.size(); ++i)
         if (entries_[order[i]].name == entries_[order[i - 1]].name)
             throw Error(ErrorKind::input,
@@ -302,17 +306,20 @@ void ZipReader::settle_names() {
                                     printable(entries_[order[i]].name, longest_shown_name)));
     std::erase_if(entries_,
                   [](const ZipEntry& entry) { return entry.name.ends_with('/') && entry.size == 0; });
+    by_name_ = order_of_names(entries_);
 }
 
 const ZipEntry* ZipReader::find(std::string_view name) const noexcept {
-    const ZipEntry* similar = nullptr;
-    for (const ZipEntry& entry : entries_) {
-        if (entry.name == name)
-            return &entry;
-        if (similar == nullptr && same_but_for_case(entry.name, name))
-            similar = &entry;
-    }
-    return similar;
+    const auto first_not = [&](bool (*order)(std::string_view, std::string_view)) -> const ZipEntry* {
+        const auto found = std::lower_bound(
+            by_name_.begin(), by_name_.end(), name,
+            [&](std::size_t i, std::string_view wanted) { return order(entries_[i].name, wanted); });
+        return found == by_name_.end() ? nullptr : &entries_[*found];
+    };
+    if (const ZipEntry* const same = first_not(comes_before); same != nullptr && same->name == name)
+        return same;
+    const ZipEntry* const similar = first_not(before_in_any_case);
+    return similar != nullptr && !before_in_any_case(name, similar->name) ? similar : nullptr;
 }
 
 ByteSource ZipReader::read(const ZipEntry& entry) const {
@@ -343,7 +350,8 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
         content.bytes = packed;
     } else {
         const auto room = std::make_shared<PageArray<std::byte>>(entry.size);
-        const Inflated inflated = inflate(view(packed), room->span());
+        const Inflated inflated =
+            inflate(source_.text().substr(entry.place, entry.packed_size), room->span());
         release(source_, packed);
         switch (inflated) {
         case Inflated::whole:
@@ -360,7 +368,7 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
         content.bytes = room->span();
         content.owner = room;
     }
-    if (const std::uint32_t crc = crc32_of(view(content.bytes)); crc != entry.crc)
+    if (const std::uint32_t crc = crc32_of(content.text()); crc != entry.crc)
         fail(fmt::format("is damaged: its checksum is {:08x}, expected {:08x}", crc, entry.crc));
     return content;
 }

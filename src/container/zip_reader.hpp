@@ -6,6 +6,7 @@
 #include "core/byte_source.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -34,8 +35,8 @@ class ZipReader {
     /// In the order of the directory; without folders.
     [[nodiscard]] const std::vector<ZipEntry>& entries() const noexcept { return entries_; }
 
-    /// The entry of that name (without a slash in front), or else the first one that differs in the case of
-    /// ASCII letters only; null when there is none.
+    /// The entry of that name (without a slash in front), or else one that differs in the case of ASCII
+    /// letters only, of several the first in the order of their bytes; null when there is none.
     [[nodiscard]] const ZipEntry* find(std::string_view name) const noexcept;
 
     /// The bytes of an entry, CRC checked; they may be none. Stored ones are a view of the archive. The name
@@ -58,6 +59,7 @@ class ZipReader {
     std::uint64_t max_unpacked_;
     mutable std::atomic<std::uint64_t> unpacked_{0};
     std::vector<ZipEntry> entries_;
+    std::vector<std::size_t> by_name_; ///< entries in the order of their names
     std::vector<std::string> oddities_;
 };
 

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <span>
 #include <tuple>
-#include <utility>
 
 namespace lamella {
 
@@ -243,12 +242,10 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
     if (!(std::isfinite(within_mm) && within_mm > 0))
         throw Error(ErrorKind::usage,
                     fmt::format("gaps up to {} mm cannot be closed; it must be a number above 0", within_mm));
-    ClosedGaps result;
+    ClosedGaps result{.layer = layer, .joins = {}};
     const std::vector<Candidate> candidates = find_candidates(layer, within_mm);
-    if (candidates.empty()) {
-        result.layer = layer;
+    if (candidates.empty())
         return result;
-    }
     Rows rows(layer, within_mm);
     Joined joined(layer);
     for (const Candidate& join : candidates) {
@@ -266,10 +263,8 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
         result.longest_mm = std::max(result.longest_mm, join.length);
         result.total_mm += join.length;
     }
-    if (result.joins.empty()) {
-        result.layer = layer;
+    if (result.joins.empty())
         return result;
-    }
     LayerBuilder builder;
     const auto add = [&](std::span<const Point2> points, bool closed) {
         for (const Point2& p : points)

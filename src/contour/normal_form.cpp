@@ -12,7 +12,6 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
-#include <numeric>
 #include <utility>
 #include <vector>
 

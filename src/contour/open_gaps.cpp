@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -148,70 +147,53 @@ double length_of(std::span<const Point2> chain) {
     return length;
 }
 
-/// Every chain is followed by one, and follows one.
-class Matching {
-  public:
-    explicit Matching(std::vector<std::span<const Point2>> chains)
-        : chains_(std::move(chains)), starts_(starts_of(chains_)), taken_(chains_.size(), false),
-          matched_(chains_.size(), false) {
-        for (const std::span<const Point2> chain : chains_)
-            lengths_.push_back(length_of(chain));
+/// Every chain is followed by one, and follows one: visit(from, to) for all gaps.
+template <class Visit>
+void for_each_gap(const std::vector<std::span<const Point2>>& chains, const Visit& visit) {
+    std::vector<Point2> first_points;
+    std::vector<double> lengths;
+    for (const std::span<const Point2> chain : chains) {
+        first_points.push_back(chain.front());
+        lengths.push_back(length_of(chain));
     }
-
-    /// visit(from, to) for all gaps.
-    template <class Visit>
-    void for_each_gap(const Visit& visit) {
-        std::priority_queue<Gap, std::vector<Gap>, std::greater<>> closest;
-        const auto propose = [&](std::size_t from) {
-            const Point2 end = chains_[from].back();
-            const std::size_t to = starts_.nearest(end, [&](std::size_t start, double length) {
-                return start != from || 2 * length <= lengths_[from];
-            });
-            if (to != none)
-                closest.push({distance(end, chains_[to].front()), from, to});
-        };
-        for (std::size_t c = 0; c < chains_.size(); ++c)
-            propose(c);
-        std::vector<unsigned char> forestalled(chains_.size(), 0);
-        while (!closest.empty()) {
-            const Gap gap = closest.top();
-            closest.pop();
-            if (taken_[gap.to]) {
-                if (++forestalled[gap.from] < most_times)
-                    propose(gap.from);
-                continue;
-            }
-            assert(!matched_[gap.from]);
-            taken_[gap.to] = matched_[gap.from] = true;
-            starts_.remove(gap.to);
-            visit(chains_[gap.from].back(), chains_[gap.to].front());
+    NearestPoints starts(std::move(first_points));
+    std::vector<bool> taken(chains.size(), false);   // starts
+    std::vector<bool> matched(chains.size(), false); // ends
+    std::priority_queue<Gap, std::vector<Gap>, std::greater<>> closest;
+    const auto propose = [&](std::size_t from) {
+        const Point2 end = chains[from].back();
+        const std::size_t to = starts.nearest(end, [&](std::size_t start, double length) {
+            return start != from || 2 * length <= lengths[from];
+        });
+        if (to != none)
+            closest.push({distance(end, chains[to].front()), from, to});
+    };
+    for (std::size_t c = 0; c < chains.size(); ++c)
+        propose(c);
+    constexpr unsigned char most_times = 16;
+    std::vector<unsigned char> forestalled(chains.size(), 0);
+    while (!closest.empty()) {
+        const Gap gap = closest.top();
+        closest.pop();
+        if (taken[gap.to]) {
+            if (++forestalled[gap.from] < most_times)
+                propose(gap.from);
+            continue;
         }
-        for (std::size_t from = 0, to = 0; from < chains_.size(); ++from) {
-            if (matched_[from])
-                continue;
-            while (taken_[to])
-                ++to;
-            assert(to < chains_.size()); // as many starts are left as ends
-            visit(chains_[from].back(), chains_[to++].front());
-        }
+        assert(!matched[gap.from]);
+        taken[gap.to] = matched[gap.from] = true;
+        starts.remove(gap.to);
+        visit(chains[gap.from].back(), chains[gap.to].front());
     }
-
-  private:
-    static constexpr unsigned char most_times = 16;
-
-    static std::vector<Point2> starts_of(std::span<const std::span<const Point2>> chains) {
-        std::vector<Point2> starts;
-        for (const std::span<const Point2> chain : chains)
-            starts.push_back(chain.front());
-        return starts;
+    for (std::size_t from = 0, to = 0; from < chains.size(); ++from) {
+        if (matched[from])
+            continue;
+        while (taken[to])
+            ++to;
+        assert(to < chains.size()); // as many starts are left as ends
+        visit(chains[from].back(), chains[to++].front());
     }
-
-    std::vector<std::span<const Point2>> chains_;
-    NearestPoints starts_;
-    std::vector<double> lengths_;
-    std::vector<bool> taken_;   ///< starts
-    std::vector<bool> matched_; ///< ends
-};
+}
 
 } // namespace
 
@@ -234,12 +216,11 @@ OpenGaps open_gaps(const Layer& layer) {
             chains.push_back(layer.contour(c));
     if (chains.empty())
         return all;
-    [[maybe_unused]] const std::size_t ends = chains.size();
-    Matching(std::move(chains)).for_each_gap([&](const Point2& from, const Point2& to) {
+    for_each_gap(chains, [&](const Point2& from, const Point2& to) {
         const double length = distance(from, to);
         all += {.count = 1, .longest_mm = length, .total_mm = length, .from = from, .to = to};
     });
-    assert(all.count == ends);
+    assert(all.count == chains.size());
     return all;
 }
 

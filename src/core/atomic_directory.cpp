@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -67,6 +68,13 @@ void AtomicDirectory::check_replaceable() const {
         throw output_error(path_, error.value());
 }
 
+void AtomicDirectory::write(const std::string& name, std::string_view bytes) {
+    AtomicFile file((working_ / name).string());
+    file.append(bytes);
+    file.commit();
+    bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
+}
+
 void AtomicDirectory::commit() {
     if (working_.empty())
         throw Error(ErrorKind::internal, fmt::format("'{}' was ended twice", path_));
@@ -107,6 +115,15 @@ void AtomicDirectory::commit() {
     working_.clear();
     std::error_code ignored;
     fs::remove_all(aside, ignored);
+}
+
+bool begins_with_mark(const fs::path& path, std::string_view mark) {
+    if (!fs::is_regular_file(fs::symlink_status(path)))
+        return false;
+    std::string begin(mark.size(), '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    return file && begin == mark;
 }
 
 } // namespace lamella

@@ -4,9 +4,12 @@
 
 #include "core/unfinished_name.hpp"
 
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace lamella {
 
@@ -22,8 +25,10 @@ class AtomicDirectory {
     AtomicDirectory(const AtomicDirectory&) = delete;
     AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
-    /// Where to create the files, until `commit`.
-    [[nodiscard]] const std::filesystem::path& working_path() const noexcept { return working_; }
+    /// Creates one of its files, until `commit`. From any threads.
+    void write(const std::string& name, std::string_view bytes);
+    /// Of all files so far.
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
 
     void commit();
 
@@ -35,6 +40,10 @@ class AtomicDirectory {
     std::function<bool(const std::filesystem::path&)> may_remove_;
     std::filesystem::path working_; ///< empty after commit
     UnfinishedName unfinished_;
+    std::atomic<std::uint64_t> bytes_{0};
 };
+
+/// Whether a path is a regular file that begins with `mark`: by this, files of ours are known again.
+[[nodiscard]] bool begins_with_mark(const std::filesystem::path& path, std::string_view mark);
 
 } // namespace lamella

@@ -1,5 +1,7 @@
 #include "core/atomic_file.hpp"
 
+#include "lamella/core/whole_file.hpp"
+
 #include "core/nameless_file.hpp"
 
 #include <fcntl.h>
@@ -10,6 +12,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -67,6 +70,12 @@ std::string follow_links(const std::string& path) {
     throw ELOOP;
 }
 
+std::string temporary_folder() {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody here changes the environment
+    const char* const wished = std::getenv("TMPDIR");
+    return wished != nullptr && *wished != '\0' ? wished : "/tmp";
+}
+
 } // namespace
 
 Error output_error(const std::string& path, int system_error) {
@@ -116,7 +125,7 @@ Error output_error(const std::string& path, int system_error) {
 }
 
 AtomicFile::AtomicFile(std::string path, Overwriting overwriting) : path_(std::move(path)) {
-    buffer_ = std::make_unique<char[]>(buffer_size);
+    buffer_.reset(new char[buffer_size]); // what is not used takes no memory
     if (path_ == "-") {
         descriptor_ = STDOUT_FILENO;
         owns_descriptor_ = false;
@@ -159,13 +168,17 @@ void AtomicFile::open_in_place() {
 }
 
 void AtomicFile::spool() {
-    std::error_code error;
-    const std::string folder = fs::temp_directory_path(error).string();
-    spool_ = error ? -1 : create_scratch(folder);
+    const std::string folder = temporary_folder();
+    spool_ = create_scratch(folder);
     if (spool_ < 0) {
-        const int system_error = error ? error.value() : errno;
+        const std::string reason = std::generic_category().message(errno);
         discard();
-        throw output_error(folder + '/', system_error);
+        throw Error(
+            ErrorKind::output,
+            fmt::format("cannot make a temporary file in the folder '{}', where this output waits for "
+                        "its end: {}; set the environment variable TMPDIR to a folder that can be "
+                        "written",
+                        folder, reason));
     }
 }
 
@@ -346,6 +359,21 @@ void AtomicFile::discard() noexcept {
 void AtomicFile::fail(int system_error) {
     discard();
     throw output_error(target_.empty() ? path_ : target_, system_error);
+}
+
+void write_whole_file(const std::string& path, std::string_view bytes) {
+    AtomicFile file(path);
+    file.append(bytes);
+    file.commit();
+}
+
+void check_writable(const std::string& path) {
+    struct stat status {};
+    const bool exists = path != "-" && stat(path.c_str(), &status) == 0;
+    if (path == "-" || names_open_file(path) ||
+        (exists && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)))
+        return;
+    const AtomicFile file(path);
 }
 
 } // namespace lamella

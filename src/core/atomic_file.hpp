@@ -57,9 +57,6 @@ class AtomicFile {
     /// written in place. From here on the file has a name, which stays when the process is killed.
     [[nodiscard]] const std::string& share();
 
-    /// As given.
-    [[nodiscard]] const std::string& path() const noexcept { return path_; }
-
   private:
     void open_in_place();
     void open_unfinished();

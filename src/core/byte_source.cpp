@@ -16,7 +16,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -108,6 +107,25 @@ ByteSource mapped_bytes(std::string name, const std::shared_ptr<Mapping>& mappin
     return {std::move(name), {mapping->data(), bytes}, mapping, true, mapping->descriptor()};
 }
 
+/// A small regular file, to its end as it is now: some files of the system have fewer bytes than they say.
+ByteSource read_whole(int descriptor, std::string name, std::size_t most) {
+    const auto memory = std::make_shared<Pages>(most);
+    auto* const data = static_cast<std::byte*>(memory->data());
+    std::size_t bytes = 0;
+    while (bytes < most) {
+        const ssize_t got = pread(descriptor, data + bytes, most - bytes, static_cast<off_t>(bytes));
+        if (got == 0)
+            break;
+        if (got > 0)
+            bytes += static_cast<std::size_t>(got);
+        else if (errno != EINTR)
+            fail_with_errno(name, errno);
+    }
+    if (bytes == 0)
+        fail(name, "is empty, expected a file with content");
+    return {std::move(name), {data, bytes}, memory};
+}
+
 /// Waits until reading does not block.
 void wait_for_bytes(int descriptor, const Execution& execution) {
     constexpr int patience_ms = 100;
@@ -182,6 +200,9 @@ ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t mo
     // Some files of the system claim to have no bytes, and standard input may be half read: those are read.
     if (S_ISREG(status.st_mode) && status.st_size > 0 && lseek(descriptor.number(), 0, SEEK_CUR) == 0) {
         const auto size = static_cast<std::size_t>(status.st_size);
+        constexpr std::size_t worth_mapping = std::size_t{1} << 16; // to map and unmap costs more below
+        if (size < worth_mapping)
+            return read_whole(descriptor.number(), std::move(name), size);
         if (const auto mapping = map_file(descriptor.number(), size))
             return mapped_bytes(std::move(name), mapping, size);
     }
@@ -190,11 +211,7 @@ ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t mo
 
 } // namespace
 
-ByteSource open_bytes(const std::string& path, const Execution& execution) {
-    return open_bytes(path, std::numeric_limits<std::uint64_t>::max(), execution);
-}
-
-ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory, const Execution& execution) {
+ByteSource open_bytes(const std::string& path, const Execution& execution, std::uint64_t most_in_memory) {
     if (path == "-")
         return take(Descriptor(STDIN_FILENO, false), "standard input", most_in_memory, execution);
     // Not blocking: a pipe that nobody writes to yet must not hold up a request to stop.

@@ -29,18 +29,16 @@ struct ByteSource {
 /// Opens a file of any size. A regular file is memory-mapped: nothing is read before it is touched, and the
 /// file must keep its length as long as the bytes live (the system ends a program that touches a page that is
 /// gone with SIGBUS; renaming or deleting the file does no harm). It stays open as long as the bytes live,
-/// unless the process has many open files already. What cannot be mapped, such as a pipe, is
-/// read into memory to its end. "-" is standard input.
+/// unless the process has many open files already. A file of less than 64 KB is read at once, and what cannot
+/// be mapped, such as a pipe, to its end. "-" is standard input.
 ///
 /// Throws Error{input} when the file is missing, empty, a directory, a device or may not be read, and
 /// Error{cancelled} soon after a stop is requested, also while it waits for the other end of a pipe.
-[[nodiscard]] ByteSource open_bytes(const std::string& path, const Execution& execution = {});
-
-/// The same, but of what cannot be mapped no more than `most_in_memory` bytes are kept in memory: what is
-/// longer goes to a spill file (core/spill_file.hpp), and that is mapped. Throws Error{output} when
-/// there is no room for it.
-[[nodiscard]] ByteSource open_bytes(const std::string& path, std::uint64_t most_in_memory,
-                                    const Execution& execution = {});
+///
+/// Of what cannot be mapped no more than `most_in_memory` bytes are kept in memory: what is longer goes to a
+/// spill file (core/spill_file.hpp), and that is mapped. Throws Error{output} when there is no room for it.
+[[nodiscard]] ByteSource open_bytes(const std::string& path, const Execution& execution = {},
+                                    std::uint64_t most_in_memory = ~std::uint64_t{0});
 
 /// Copies the bytes from `place` on into `to`, which they fill. Bytes of a file are read from it, where that
 /// can be: a page that is mapped costs more to touch for the first time than to copy. Any number of threads

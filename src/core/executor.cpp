@@ -32,12 +32,6 @@ Executor::~Executor() {
         thread.join();
 }
 
-void Executor::start_threads() {
-    threads_.reserve(workers_ - 1);
-    for (unsigned worker = 1; worker < workers_; ++worker)
-        threads_.emplace_back([this, worker] { work(worker); });
-}
-
 void Executor::guarded(unsigned worker) noexcept {
     try {
         (*body_)(worker);
@@ -66,8 +60,8 @@ void Executor::work(unsigned worker) {
 }
 
 void Executor::run(const std::function<void(unsigned)>& body) {
-    if (workers_ > 1 && threads_.empty())
-        start_threads();
+    for (auto worker = static_cast<unsigned>(threads_.size()) + 1; worker < workers_; ++worker)
+        threads_.emplace_back([this, worker] { work(worker); });
     body_ = &body;
     failed_.store(false, std::memory_order_relaxed);
     {

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -52,7 +51,6 @@ class Executor {
 
   private:
     void work(unsigned worker);
-    void start_threads();
     void guarded(unsigned worker) noexcept;
 
     unsigned workers_;

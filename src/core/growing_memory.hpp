@@ -3,7 +3,6 @@
 // Memory for bytes of which nobody knows how many will come.
 
 #include <cstddef>
-#include <memory>
 #include <span>
 
 namespace lamella {

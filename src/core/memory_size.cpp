@@ -48,15 +48,18 @@ std::uint64_t control_group_limit() {
     return limit;
 }
 
+std::uint64_t physical_memory() {
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    const long page = sysconf(_SC_PAGESIZE);
+    return pages > 0 && page > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page)
+                                 : unlimited;
+}
+
 } // namespace
 
 std::uint64_t memory_size() {
-    const long pages = sysconf(_SC_PHYS_PAGES);
-    const long page = sysconf(_SC_PAGESIZE);
-    const std::uint64_t physical = pages > 0 && page > 0
-                                       ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page)
-                                       : unlimited;
-    return std::min(physical, control_group_limit());
+    static const std::uint64_t size = std::min(physical_memory(), control_group_limit());
+    return size;
 }
 
 std::uint64_t usual_memory() {

@@ -7,7 +7,7 @@
 namespace lamella {
 
 /// Bytes that this process and its like can have in all: the physical memory, or less where a control group
-/// (of a container, of a batch system's job) says so.
+/// (of a container, of a batch system's job) says so. Asked of the system once.
 [[nodiscard]] std::uint64_t memory_size();
 
 /// Of that, what a run may take unless somebody says more or less: three quarters.

@@ -4,7 +4,6 @@
 // big arrays are asked for in pages of 2 MB, and only the pages that are touched are ever there.
 
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>

@@ -10,6 +10,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <system_error>
@@ -28,7 +29,8 @@ std::string spill_folder() {
 
 } // namespace
 
-SpillFile::SpillFile(std::uint64_t bytes) : folder_(spill_folder()), bytes_(bytes) {
+SpillFile::SpillFile(std::uint64_t bytes, std::uint64_t of_all)
+    : folder_(spill_folder()), bytes_(std::max(bytes, of_all)) {
     descriptor_ = create_scratch(folder_);
     if (descriptor_ < 0)
         fail(errno);

@@ -18,8 +18,9 @@ namespace lamella {
 class SpillFile {
   public:
     /// For `bytes` in all, if that is known. They are reserved at once, where the file system can do that, so
-    /// that a disk without the room is found before the work is done.
-    explicit SpillFile(std::uint64_t bytes = 0);
+    /// that a disk without the room is found before the work is done. `of_all`: of several files together,
+    /// as errors tell it.
+    explicit SpillFile(std::uint64_t bytes = 0, std::uint64_t of_all = 0);
     ~SpillFile();
     SpillFile(const SpillFile&) = delete;
     SpillFile& operator=(const SpillFile&) = delete;
@@ -35,7 +36,7 @@ class SpillFile {
     [[noreturn]] void fail(int system_error) const;
 
     std::string folder_;
-    std::uint64_t bytes_;
+    std::uint64_t bytes_; ///< as errors tell them
     int descriptor_ = -1;
 };
 

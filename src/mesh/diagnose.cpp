@@ -80,19 +80,12 @@ void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
             walk_from(vertex);
         begin = end;
     }
-    for (std::size_t begin = 0; begin < edges.size();) {
-        const std::uint32_t vertex = edges[begin].first;
-        std::size_t end = begin;
-        while (end < edges.size() && edges[end].first == vertex)
-            ++end;
-        while (begin + used[begin] < end)
-            walk_from(vertex);
-        begin = end;
-    }
+    for (std::size_t i = 0; i < edges.size(); ++i)
+        if (const std::size_t first = first_of(edges[i].first); first + used[first] <= i)
+            walk_from(edges[i].first);
 }
 
-void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, std::size_t keep,
-                Diagnosis& found) {
+void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, Diagnosis& found) {
     for_each_loop(edges, [&](std::span<const std::uint32_t> vertices, bool closed) {
         BoundaryLoop loop;
         loop.closed = closed;
@@ -113,8 +106,6 @@ void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, s
                      [](const BoundaryLoop& a, const BoundaryLoop& b) {
                          return std::tuple(-a.length_mm, a.box.min) < std::tuple(-b.length_mm, b.box.min);
                      });
-    if (found.loops.size() > keep)
-        found.loops.resize(keep);
 }
 
 /// Joins the corners of triangles at the same vertex over their common edges; vertices with more than one
@@ -145,8 +136,8 @@ void find_nonmanifold_vertices(Executor& executor, const IndexedMesh& mesh, std:
             if (groups.find(corner) != corner)
                 continue;
             std::uint8_t& groups_seen = seen[mesh.triangles[i][k]];
-            if (++groups_seen > 2)
-                groups_seen = 2;
+            if (groups_seen < 2)
+                ++groups_seen;
         }
     }
     for (std::size_t v = 0; v < seen.size(); ++v)
@@ -168,19 +159,13 @@ std::vector<Shell> tell_shells(const Survey& all, const IndexedMesh& mesh) {
                      : all.volumes[s] >= 0 ? ShellKind::body
                      : all.cavity[s]       ? ShellKind::cavity
                                            : ShellKind::inverted;
+        shell.depth = all.depth[s];
+        if (all.inside[s] != no_shell)
+            shell.inside = all.inside[s];
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         if (const std::uint32_t s = all.shells.of_triangle[i]; s != no_shell)
             ++shells[s].triangles;
-    for (const Enclosure& enclosure : all.enclosures) {
-        Shell& shell = shells[enclosure.shell];
-        ++shell.depth;
-        const auto volume = [&](std::uint32_t s) {
-            return std::abs(all.volumes[s]);
-        };
-        if (!shell.inside || volume(enclosure.encloser) < volume(*shell.inside))
-            shell.inside = enclosure.encloser;
-    }
     return shells;
 }
 
@@ -200,7 +185,12 @@ Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, con
     found.counts.box = bounding_box(mesh, execution);
     found.opposite_pairs = all.opposite_pairs;
 
-    find_loops(mesh, all.places.boundary, options.keep, found);
+    const auto keep_first = [&](auto& places) {
+        if (places.size() > options.keep)
+            places.resize(options.keep);
+    };
+    find_loops(mesh, all.places.boundary, found);
+    keep_first(found.loops);
     const auto keep_edges = [&](const std::vector<VertexPair>& edges, std::vector<EdgePlace>& kept) {
         for (std::size_t i = 0; i < std::min(edges.size(), options.keep); ++i)
             kept.push_back({mesh.vertices[edges[i].first], mesh.vertices[edges[i].second]});
@@ -208,8 +198,7 @@ Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, con
     keep_edges(all.places.nonmanifold, found.nonmanifold_edges);
     keep_edges(all.places.conflicts, found.conflicting_edges);
     found.duplicate_triangles = all.places.duplicates;
-    if (found.duplicate_triangles.size() > options.keep)
-        found.duplicate_triangles.resize(options.keep);
+    keep_first(found.duplicate_triangles);
     for (std::uint32_t i = 0; i < mesh.triangles.size() && found.degenerate_triangles.size() < options.keep &&
                               found.degenerate_triangles.size() < found.counts.degenerate_triangles;
          ++i)
@@ -218,8 +207,7 @@ Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, con
     find_nonmanifold_vertices(executor, mesh, options.keep, found);
 
     found.shells = tell_shells(all, mesh);
-    if (found.shells.size() > options.keep)
-        found.shells.resize(options.keep);
+    keep_first(found.shells);
     if (options.self_intersections)
         found.self_intersections = find_self_intersections(
             mesh, {.keep = options.keep, .parts = all.shells.of_triangle.span()}, execution);

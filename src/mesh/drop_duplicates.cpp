@@ -6,6 +6,8 @@
 #include "mesh/used_vertices.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 namespace lamella {
 
@@ -37,7 +39,7 @@ DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& exec
             result.places.push_back(middle(corners(mesh, i)));
     }
     if (result.mesh.triangles.size() < mesh.triangles.size())
-        keep_used_vertices(result.mesh);
+        drop_unused_vertices(result.mesh, executor);
     return result;
 }
 

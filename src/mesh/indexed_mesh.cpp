@@ -3,11 +3,16 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
+#include "core/pages.hpp"
 #include "mesh/folds.hpp"
+#include "mesh/used_vertices.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace lamella {
@@ -33,6 +38,41 @@ void check(const IndexedMesh& mesh) {
                             fmt::format("triangle {} names vertex {}, but there are only {} "
                                         "vertices (numbered from 0)",
                                         i, v, mesh.vertices.size()));
+}
+
+void drop_unused_vertices(IndexedMesh& mesh, Executor& executor) {
+    constexpr std::uint64_t chunk = 50'000;
+    PageArray<std::atomic<std::uint8_t>> used(mesh.vertices.size(), Fill::zero);
+    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            for (const std::uint32_t v : mesh.triangles[i])
+                used[v].store(1, std::memory_order_relaxed);
+    });
+    std::atomic<bool> all{true};
+    executor.for_chunks(used.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        if (std::find(used.data() + begin, used.data() + end, std::uint8_t{0}) != used.data() + end)
+            all = false;
+    });
+    if (all)
+        return;
+    std::vector<std::uint32_t> number(mesh.vertices.size());
+    std::uint32_t kept = 0;
+    for (std::size_t v = 0; v < number.size(); ++v)
+        if (used[v] != 0) {
+            number[v] = kept;
+            mesh.vertices[kept++] = mesh.vertices[v];
+        }
+    mesh.vertices.resize(kept);
+    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            for (std::uint32_t& v : mesh.triangles[i])
+                v = number[v];
+    });
+}
+
+void drop_unused_vertices(IndexedMesh& mesh, const Execution& execution) {
+    Executor executor(execution);
+    drop_unused_vertices(mesh, executor);
 }
 
 Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution) {

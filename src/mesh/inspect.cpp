@@ -8,6 +8,8 @@
 #include "mesh/shells.hpp"
 #include "mesh/survey.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace lamella {
@@ -50,19 +52,23 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
     found.shells = shells.size();
     all.volumes = shell_volumes(executor, mesh, shells);
     std::vector<bool> inward(shells.size());
-    bool any = false;
-    for (std::size_t s = 0; s < shells.size(); ++s) {
+    for (std::size_t s = 0; s < shells.size(); ++s)
         inward[s] = shells.closed[s] && all.volumes[s] < 0;
-        any = any || inward[s];
-    }
     all.boxes = shell_boxes(mesh, shells);
-    if (with_places ? shells.size() > 1 : any)
-        all.enclosures = find_enclosures(executor, mesh, shells, all.boxes,
-                                         with_places ? std::vector<bool>(shells.size(), true) : inward);
+    all.depth.assign(shells.size(), 0);
+    all.inside.assign(shells.size(), no_shell);
     // Tells cavities from shells that are turned inside out: a cavity lies in the material of the others.
     std::vector<int> around(shells.size(), 0);
-    for (const Enclosure& enclosure : all.enclosures)
+    const auto note = [&](const Enclosure& enclosure) {
         around[enclosure.shell] += enclosure.winding;
+        ++all.depth[enclosure.shell];
+        std::uint32_t& inside = all.inside[enclosure.shell];
+        if (inside == no_shell || std::abs(all.volumes[enclosure.encloser]) < std::abs(all.volumes[inside]))
+            inside = enclosure.encloser;
+    };
+    if (with_places ? shells.size() > 1 : std::find(inward.begin(), inward.end(), true) != inward.end())
+        for_each_enclosure(executor, mesh, shells, all.boxes,
+                           with_places ? std::vector<bool>(shells.size(), true) : inward, note);
     all.cavity.resize(shells.size());
     for (std::size_t s = 0; s < shells.size(); ++s)
         if (inward[s]) {

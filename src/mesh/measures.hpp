@@ -5,7 +5,6 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 
 #include <cmath>
-#include <cstddef>
 
 namespace lamella {
 

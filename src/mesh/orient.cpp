@@ -98,10 +98,6 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
     return patches;
 }
 
-void turn(std::array<std::uint32_t, 3>& t) noexcept {
-    std::swap(t[1], t[2]);
-}
-
 /// Marks patches that are not closed; the box around the ends of their open edges for each.
 std::vector<Box3> find_open_edges(Executor& executor, const IndexedMesh& mesh, Patches& patches) {
     struct OpenEdge {
@@ -171,9 +167,12 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
     OrientedMesh result;
     result.mesh = mesh;
     Patches patches = flood(mesh, find_neighbours(executor, mesh));
+    const auto turn = [&](std::size_t i) {
+        std::swap(result.mesh.triangles[i][1], result.mesh.triangles[i][2]);
+    };
     for (std::size_t i = 0; i < n; ++i)
         if (patches.turned[i])
-            turn(result.mesh.triangles[i]);
+            turn(i);
 
     const std::vector<Box3> open = find_open_edges(executor, result.mesh, patches);
     const std::vector<double> volumes = patch_volumes(result.mesh, patches.shells, open);
@@ -181,11 +180,13 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
     std::vector<std::uint32_t> depth(count, 0);
     if (count > 1) {
         const std::vector<Box3> boxes = shell_boxes(result.mesh, patches.shells);
-        for (const Enclosure& enclosure :
-             find_enclosures(executor, result.mesh, patches.shells, boxes, std::vector<bool>(count, true)))
-            if (patches.shells.closed[enclosure.encloser] && !patches.one_sided[enclosure.encloser] &&
-                holds(boxes[enclosure.encloser], boxes[enclosure.shell]))
-                ++depth[enclosure.shell];
+        for_each_enclosure(executor, result.mesh, patches.shells, boxes, std::vector<bool>(count, true),
+                           [&](const Enclosure& enclosure) {
+                               if (patches.shells.closed[enclosure.encloser] &&
+                                   !patches.one_sided[enclosure.encloser] &&
+                                   holds(boxes[enclosure.encloser], boxes[enclosure.shell]))
+                                   ++depth[enclosure.shell];
+                           });
     }
     std::vector<bool> turn_patch(count, false);
     for (std::size_t p = 0; p < count; ++p) {
@@ -202,7 +203,7 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
         if (p == no_shell)
             continue;
         if (turn_patch[p])
-            turn(result.mesh.triangles[i]);
+            turn(i);
         if (patches.turned[i] != turn_patch[p]) {
             ++result.turned_triangles;
             if (result.places.size() < repair_places)

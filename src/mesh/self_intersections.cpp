@@ -8,8 +8,11 @@
 #include "mesh/triangle_contact.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace lamella {
 
@@ -18,63 +21,43 @@ namespace {
 struct Pair {
     std::uint32_t a;
     std::uint32_t b;
-    Contact contact;
+    MeetingKind kind;
 
     friend bool operator<(const Pair& p, const Pair& q) noexcept {
         return std::pair(p.a, p.b) < std::pair(q.a, q.b);
     }
 };
 
-/// The lowest few of all pairs that are added.
-class FirstPairs {
-  public:
-    void add(const Pair& pair, std::size_t keep) {
-        if (pairs_.size() >= keep) {
-            if (keep == 0 || !(pair < pairs_.front()))
-                return;
-            std::pop_heap(pairs_.begin(), pairs_.end());
-            pairs_.pop_back();
-        }
-        pairs_.push_back(pair);
-        std::push_heap(pairs_.begin(), pairs_.end());
+/// Adds a pair to the lowest few of all that are added, a heap with the last of them on top.
+void add_to(std::vector<Pair>& first, const Pair& pair, std::size_t keep) {
+    if (first.size() >= keep) {
+        if (keep == 0 || !(pair < first.front()))
+            return;
+        std::pop_heap(first.begin(), first.end());
+        first.pop_back();
     }
-    [[nodiscard]] const std::vector<Pair>& pairs() const noexcept { return pairs_; }
-
-  private:
-    std::vector<Pair> pairs_; ///< a heap with the last of them on top
-};
+    first.push_back(pair);
+    std::push_heap(first.begin(), first.end());
+}
 
 /// Of pairs of parts; without parts, all triangles are of part 0.
 struct Found {
-    FirstPairs through; ///< that cross or overlap
-    FirstPairs beside;  ///< that touch
-    std::map<std::pair<std::uint32_t, std::uint32_t>, PartMeetings> parts;
+    std::vector<Pair> through; ///< the first that cross or overlap
+    std::vector<Pair> beside;  ///< the first that touch
+    /// How many of each kind.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::uint64_t, 3>> parts;
 
     void add(const Pair& pair, const MeetingOptions& options) {
-        (pair.contact == Contact::touching ? beside : through).add(pair, options.keep);
+        add_to(pair.kind == MeetingKind::touching ? beside : through, pair, options.keep);
         const auto part_of = [&](std::uint32_t triangle) {
             return options.parts.empty() ? 0U : options.parts[triangle];
         };
-        const auto [a, b] = std::minmax({part_of(pair.a), part_of(pair.b)});
-        PartMeetings& meetings = parts[{a, b}];
-        meetings.part_a = a;
-        meetings.part_b = b;
-        ++(pair.contact == Contact::crossing      ? meetings.crossing
-           : pair.contact == Contact::overlapping ? meetings.overlapping
-                                                  : meetings.touching);
+        ++parts[std::minmax({part_of(pair.a), part_of(pair.b)})][static_cast<std::size_t>(pair.kind)];
     }
 };
 
 NamedTriangle named(const IndexedMesh& mesh, std::uint32_t i) {
     return {corners(mesh, i), mesh.triangles[i]};
-}
-
-Meeting described(const IndexedMesh& mesh, const Pair& pair) {
-    const MeetingKind kind = pair.contact == Contact::crossing      ? MeetingKind::crossing
-                             : pair.contact == Contact::overlapping ? MeetingKind::overlapping
-                                                                    : MeetingKind::touching;
-    return {pair.a, pair.b, kind,
-            contact_place(named(mesh, pair.a).corners, named(mesh, pair.b).corners, pair.contact)};
 }
 
 } // namespace
@@ -89,7 +72,7 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
     const auto piece = [&](std::size_t begin, std::size_t end) {
         std::uint64_t count = 0;
         for (std::size_t i = begin; i < end; ++i)
-            if (degenerate(mesh.triangles[i]) || flat(named(mesh, static_cast<std::uint32_t>(i)).corners)) {
+            if (degenerate(mesh.triangles[i]) || flat(corners(mesh, i))) {
                 without_area[i] = 1;
                 ++count;
             }
@@ -112,9 +95,8 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
             tree.close_to_leaf(leaf, [&, first = begin](std::size_t place_a, std::size_t place_b) {
                 const std::uint32_t a = tree.triangle(place_a);
                 const std::uint32_t b = tree.triangle(place_b);
-                const Contact contact = seekers[place_a - first].with(named(mesh, b));
-                if (contact != Contact::none)
-                    found[worker].add({std::min(a, b), std::max(a, b), contact}, options);
+                if (const std::optional<MeetingKind> kind = seekers[place_a - first].with(named(mesh, b)))
+                    found[worker].add({std::min(a, b), std::max(a, b), *kind}, options);
             });
         }
     };
@@ -123,31 +105,27 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
 
     Found all;
     for (const Found& part : found) {
-        for (const Pair& pair : part.through.pairs())
-            all.through.add(pair, options.keep);
-        for (const Pair& pair : part.beside.pairs())
-            all.beside.add(pair, options.keep);
-        for (const auto& [key, meetings] : part.parts) {
-            PartMeetings& sum = all.parts[key];
-            sum.part_a = meetings.part_a;
-            sum.part_b = meetings.part_b;
-            sum.crossing += meetings.crossing;
-            sum.overlapping += meetings.overlapping;
-            sum.touching += meetings.touching;
-        }
+        for (const Pair& pair : part.through)
+            add_to(all.through, pair, options.keep);
+        for (const Pair& pair : part.beside)
+            add_to(all.beside, pair, options.keep);
+        for (const auto& [parts, counts] : part.parts)
+            for (std::size_t kind = 0; kind < counts.size(); ++kind)
+                all.parts[parts][kind] += counts[kind];
     }
-    for (const FirstPairs* some : {&all.through, &all.beside}) {
-        std::vector<Pair> pairs = some->pairs();
-        std::sort(pairs.begin(), pairs.end());
-        for (const Pair& pair : pairs)
-            result.first.push_back(described(mesh, pair));
+    for (std::vector<Pair>* first : {&all.through, &all.beside}) {
+        std::sort(first->begin(), first->end());
+        for (const Pair& pair : *first)
+            result.first.push_back({pair.a, pair.b, pair.kind,
+                                    contact_place(corners(mesh, pair.a), corners(mesh, pair.b), pair.kind)});
     }
-    for (const auto& [key, meetings] : all.parts) {
-        result.crossing += meetings.crossing;
-        result.overlapping += meetings.overlapping;
-        result.touching += meetings.touching;
+    for (const auto& [parts, counts] : all.parts) {
+        const auto& [crossing, overlapping, touching] = counts;
+        result.crossing += crossing;
+        result.overlapping += overlapping;
+        result.touching += touching;
         if (!options.parts.empty())
-            result.parts.push_back(meetings);
+            result.parts.push_back({parts.first, parts.second, crossing, overlapping, touching});
     }
     return result;
 }

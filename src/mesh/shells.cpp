@@ -6,6 +6,8 @@
 #include "mesh/winding.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <span>
 
 namespace lamella {
 
@@ -70,8 +72,9 @@ std::vector<Box3> shell_boxes(const IndexedMesh& mesh, const Shells& shells) {
     return boxes;
 }
 
-std::vector<Enclosure> find_enclosures(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
-                                       const std::vector<Box3>& boxes, const std::vector<bool>& asked) {
+void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
+                        const std::vector<Box3>& boxes, const std::vector<bool>& asked,
+                        const std::function<void(const Enclosure&)>& visit) {
     std::vector<double> largest(shells.size(), -1);
     std::vector<Point3> middles(shells.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -95,28 +98,58 @@ std::vector<Enclosure> find_enclosures(Executor& executor, const IndexedMesh& me
         return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y &&
                box.min.z <= p.z && p.z <= box.max.z;
     };
+    // Shells in one another have as many hits as pairs. So many are kept at a time; of one point there are
+    // never more.
+    const std::uint64_t most_hits = std::max<std::uint64_t>(std::uint64_t{1} << 20, mesh.triangles.size());
     std::vector<std::vector<Enclosure>> hits(executor.workers());
-    for_triangles_above(executor, mesh, points,
-                        [&](std::size_t point, std::size_t triangle, int winding, unsigned worker) {
-                            const std::uint32_t shell = shells.of_triangle[triangle];
-                            const std::uint32_t own = shell_of_point[point];
-                            if (shell != no_shell && shell != own && holds(boxes[shell], points[point]))
-                                hits[worker].push_back({own, shell, winding});
-                        });
-    std::vector<Enclosure> all;
-    for (const std::vector<Enclosure>& part : hits)
-        all.insert(all.end(), part.begin(), part.end());
-    std::sort(all.begin(), all.end());
-    std::vector<Enclosure> enclosures;
-    for (const Enclosure& hit : all) {
-        if (!enclosures.empty() && enclosures.back().shell == hit.shell &&
-            enclosures.back().encloser == hit.encloser)
-            enclosures.back().winding += hit.winding;
-        else
-            enclosures.push_back(hit);
+    std::vector<std::atomic<std::uint32_t>> hits_of_point(points.size());
+    std::atomic<std::uint64_t> found{0};
+    const auto find = [&](std::size_t begin, std::size_t end) {
+        found = 0;
+        const auto keep = [&](std::size_t place, std::size_t triangle, int winding, unsigned worker) {
+            const std::size_t point = begin + place;
+            const std::uint32_t shell = shells.of_triangle[triangle];
+            const std::uint32_t own = shell_of_point[point];
+            if (shell == no_shell || shell == own || !holds(boxes[shell], points[point]))
+                return;
+            hits_of_point[point].fetch_add(1, std::memory_order_relaxed);
+            if (found.fetch_add(1, std::memory_order_relaxed) < most_hits)
+                hits[worker].push_back({own, shell, winding});
+        };
+        for_triangles_above(executor, mesh, std::span(points).subspan(begin, end - begin), keep);
+    };
+    const auto tell = [&] {
+        std::vector<Enclosure> all;
+        for (std::vector<Enclosure>& part : hits) {
+            all.insert(all.end(), part.begin(), part.end());
+            part.clear();
+        }
+        std::sort(all.begin(), all.end());
+        for (auto hit = all.begin(); hit != all.end();) {
+            Enclosure sum = *hit++;
+            for (; hit != all.end() && hit->shell == sum.shell && hit->encloser == sum.encloser; ++hit)
+                sum.winding += hit->winding;
+            if (sum.winding != 0)
+                visit(sum);
+        }
+    };
+    find(0, points.size());
+    if (found <= most_hits) {
+        tell();
+        return;
     }
-    std::erase_if(enclosures, [](const Enclosure& e) { return e.winding == 0; });
-    return enclosures;
+    // Too many for once, but now it is known how many each point has.
+    const std::vector<std::uint32_t> counts(hits_of_point.begin(), hits_of_point.end());
+    std::size_t end = 0;
+    for (std::size_t begin = 0; begin < points.size(); begin = end) {
+        executor.check_cancelled();
+        for (std::uint64_t sum = 0; end < points.size() && (end == begin || sum + counts[end] <= most_hits);)
+            sum += counts[end++];
+        for (std::vector<Enclosure>& part : hits)
+            part.clear();
+        find(begin, end);
+        tell();
+    }
 }
 
 } // namespace lamella

@@ -10,7 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <functional>
 #include <vector>
 
 namespace lamella {
@@ -44,10 +44,11 @@ struct Enclosure {
     friend auto operator<=>(const Enclosure&, const Enclosure&) = default;
 };
 
-/// Which shells lie around which, ascending; of the shells that asked(shell) says. A shell is judged by the
-/// middle of its largest triangle: well away from edges where shells touch.
-[[nodiscard]] std::vector<Enclosure> find_enclosures(Executor& executor, const IndexedMesh& mesh,
-                                                     const Shells& shells, const std::vector<Box3>& boxes,
-                                                     const std::vector<bool>& asked);
+/// Visits which shells lie around which, ascending; of the shells that asked(shell) says. A shell is judged
+/// by the middle of its largest triangle: well away from edges where shells touch. Where many shells lie in
+/// one another, the time grows with the square of their number, but memory does not.
+void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
+                        const std::vector<Box3>& boxes, const std::vector<bool>& asked,
+                        const std::function<void(const Enclosure&)>& visit);
 
 } // namespace lamella

@@ -22,8 +22,10 @@ struct Survey {
     std::vector<double> volumes = {}; ///< of the shells
     std::vector<Box3> boxes = {};
     std::vector<bool> cavity = {};
-    /// With places of all shells, without of those that may be cavities.
-    std::vector<Enclosure> enclosures = {};
+    /// Of each shell, in how many others it lies, and the smallest of them, or no_shell. With places of all
+    /// shells, without of those that may be cavities.
+    std::vector<std::uint32_t> depth = {};
+    std::vector<std::uint32_t> inside = {};
 };
 
 [[nodiscard]] Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places);

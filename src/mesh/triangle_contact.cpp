@@ -66,18 +66,19 @@ bool in_a_point(const Signs& s) noexcept {
 
 /// For triangles in different planes that are no neighbours over an edge. `p_signs`: of p's corners by the
 /// plane of q.
-Contact contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_signs, Signs q_signs,
-                          bool share_a_corner) noexcept {
+std::optional<MeetingKind> contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_signs, Signs q_signs,
+                                             bool share_a_corner) noexcept {
     put_lone_corner_first(p, p_signs, q, q_signs);
     put_lone_corner_first(q, q_signs, p, p_signs);
     const int first = orientation(p[0], p[1], q[0], q[1]);
     const int second = orientation(p[0], p[2], q[2], q[0]);
     if (first > 0 || second > 0)
-        return Contact::none;
+        return std::nullopt;
     const bool segment = first < 0 && second < 0 && !in_a_point(p_signs) && !in_a_point(q_signs);
-    if (!segment)
-        return share_a_corner ? Contact::none : Contact::touching;
-    return both_sides(p_signs) && both_sides(q_signs) ? Contact::crossing : Contact::touching;
+    if (!segment && share_a_corner)
+        return std::nullopt;
+    return segment && both_sides(p_signs) && both_sides(q_signs) ? MeetingKind::crossing
+                                                                 : MeetingKind::touching;
 }
 
 bool all_outside(const Flat& edges_of, const Flat& corners, bool strictly) noexcept {
@@ -122,7 +123,8 @@ Shared shared_corners(const NamedTriangle& p, const NamedTriangle& q) noexcept {
     return shared;
 }
 
-Contact contact_in_a_plane(const Triangle3& p, const Triangle3& q, const Shared& shared) noexcept {
+std::optional<MeetingKind> contact_in_a_plane(const Triangle3& p, const Triangle3& q,
+                                              const Shared& shared) noexcept {
     // Any projection in which p keeps an area will do; the largest part of its normal is the safest one.
     const Point3 n = normal(p);
     const std::array<double, 3> sizes{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
@@ -146,12 +148,12 @@ Contact contact_in_a_plane(const Triangle3& p, const Triangle3& q, const Shared&
     if (area_sign(q) < 0)
         turn(fq, at_q);
     if (!all_outside(fp, fq, false) && !all_outside(fq, fp, false))
-        return Contact::overlapping;
-    if (shared.count == 0)
-        return all_outside(fp, fq, true) || all_outside(fq, fp, true) ? Contact::none : Contact::touching;
+        return MeetingKind::overlapping;
     // Apart but for the line between them. Where it holds a common corner, it holds more when edges run along
     // each other from there.
-    return shared.count == 1 && edges_together(fp, at_p, fq, at_q) ? Contact::touching : Contact::none;
+    const bool touch = shared.count == 0 ? !all_outside(fp, fq, true) && !all_outside(fq, fp, true)
+                                         : shared.count == 1 && edges_together(fp, at_p, fq, at_q);
+    return touch ? std::optional(MeetingKind::touching) : std::nullopt;
 }
 
 } // namespace
@@ -165,10 +167,10 @@ bool flat(const Triangle3& t) noexcept {
     return true;
 }
 
-Contact contact(const NamedTriangle& p, const NamedTriangle& q) noexcept {
+std::optional<MeetingKind> contact(const NamedTriangle& p, const NamedTriangle& q) noexcept {
     const Shared shared = shared_corners(p, q);
     if (shared.count >= 3)
-        return Contact::overlapping;
+        return MeetingKind::overlapping;
     const auto signs_by = [](const NamedTriangle& plane, const NamedTriangle& of) {
         Signs signs{};
         for (std::size_t k = 0; k < 3; ++k) {
@@ -182,20 +184,20 @@ Contact contact(const NamedTriangle& p, const NamedTriangle& q) noexcept {
     };
     const Signs q_signs = signs_by(p, q);
     if (same(q_signs, 1) || same(q_signs, -1))
-        return Contact::none;
+        return std::nullopt;
     if (same(q_signs, 0))
         return contact_in_a_plane(p.corners, q.corners, shared);
     const bool share_a_corner = shared.count == 1;
     if (shared.count == 2 || (share_a_corner && in_a_point(q_signs)))
-        return Contact::none;
+        return std::nullopt;
     const Signs p_signs = signs_by(q, p);
     if (same(p_signs, 1) || same(p_signs, -1) || (share_a_corner && in_a_point(p_signs)))
-        return Contact::none;
+        return std::nullopt;
     return contact_in_a_line(p.corners, q.corners, p_signs, q_signs, share_a_corner);
 }
 
-Point3 contact_place(const Triangle3& p, const Triangle3& q, Contact contact) noexcept {
-    if (contact == Contact::crossing) {
+Point3 contact_place(const Triangle3& p, const Triangle3& q, MeetingKind kind) noexcept {
+    if (kind == MeetingKind::crossing) {
         // Where edges of one pass through the plane of the other: four points on a line, of which the middle
         // two are the ends of what is common.
         std::array<Point3, 4> ends;

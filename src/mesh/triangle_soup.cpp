@@ -9,14 +9,6 @@ namespace lamella {
 
 namespace {
 
-const std::byte* bytes(const std::vector<Triangle3f>& triangles) {
-    return reinterpret_cast<const std::byte*>(triangles.data());
-}
-
-void merge_boxes(Box3& total, const Box3& box) {
-    total.add(box);
-}
-
 /// The box in single precision, at the speed of memory: six chains of minima and maxima, no stores.
 Box3 stored_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -51,7 +43,7 @@ Box3 placed_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
 
 TriangleSoup::TriangleSoup(std::vector<Triangle3f> triangles) {
     const auto owned = std::make_shared<const std::vector<Triangle3f>>(std::move(triangles));
-    first_ = bytes(*owned);
+    first_ = reinterpret_cast<const std::byte*>(owned->data());
     count_ = owned->size();
     owner_ = owned;
 }
@@ -73,7 +65,7 @@ Box3 bounding_box(const TriangleSoup& soup, const Execution& execution) {
     const auto piece = [&](std::size_t begin, std::size_t end) {
         return soup.has_placement() ? placed_box(soup, begin, end) : stored_box(soup, begin, end);
     };
-    return fold(executor, soup.size(), Box3{}, piece, merge_boxes);
+    return fold(executor, soup.size(), Box3{}, piece, [](Box3& total, const Box3& box) { total.add(box); });
 }
 
 double volume(const TriangleSoup& soup, const Execution& execution) {

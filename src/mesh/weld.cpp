@@ -19,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <atomic>
 #include <bit>
 #include <compare>
@@ -217,24 +218,18 @@ IndexedMesh weld(IndexedMesh mesh, const Execution& execution) {
 std::optional<IndexedMesh> joined_vertices(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
     const std::size_t vertices = mesh.vertices.size();
-    const auto key_of = [](const Point3& p) {
-        return std::bit_cast<DoubleKey>(Point3{p.x + 0.0, p.y + 0.0, p.z + 0.0});
-    };
     const PageArray<DoubleKey> keys(vertices);
     executor.for_chunks(vertices, block, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i)
-            keys[i] = key_of(mesh.vertices[i]);
+        for (std::size_t i = begin; i < end; ++i) {
+            const Point3& p = mesh.vertices[i];
+            keys[i] = std::bit_cast<DoubleKey>(Point3{p.x + 0.0, p.y + 0.0, p.z + 0.0});
+        }
     });
-    std::vector<std::span<const DoubleKey>> parts;
-    for (unsigned part = 0; part < executor.workers(); ++part) {
-        const std::size_t begin = vertices * part / executor.workers();
-        const std::size_t end = vertices * (part + 1) / executor.workers();
-        parts.push_back(std::span<const DoubleKey>(keys.span()).subspan(begin, end - begin));
-    }
+    const std::array<std::span<const DoubleKey>, 1> all{keys.span()};
     const PageArray<std::uint32_t> first(vertices, Fill::zero);
     std::atomic<bool> any = false;
     join_equal_keys<DoubleKey>(
-        executor, parts, [](const DoubleKey& key) { return hash(key); },
+        executor, all, [](const DoubleKey& key) { return hash(key); },
         [&](std::uint32_t representative, std::uint32_t other, unsigned) {
             first[other] = representative + 1;
             any.store(true, std::memory_order_relaxed);

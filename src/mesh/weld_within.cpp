@@ -22,6 +22,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -136,33 +137,6 @@ std::vector<PointPair> close_pairs(Executor& executor, std::span<const Point3> p
     return pairs;
 }
 
-/// Groups of points, each with its box.
-class Groups {
-  public:
-    explicit Groups(std::span<const Point3> points) : boxes_(points.size()), sets_(points.size()) {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            boxes_[i].add(points[i]);
-    }
-
-    /// The lowest member of the group.
-    [[nodiscard]] std::uint32_t find(std::uint32_t i) const noexcept { return sets_.find(i); }
-
-    void join_where_it_fits(std::uint32_t a, std::uint32_t b, double square_of_diagonal) noexcept {
-        a = find(a);
-        b = find(b);
-        Box3 box = boxes_[a];
-        box.add(boxes_[b]);
-        if (a == b || square_of_gap(box.max, box.min) > square_of_diagonal)
-            return;
-        sets_.join(a, b);
-        boxes_[std::min(a, b)] = box;
-    }
-
-  private:
-    std::vector<Box3> boxes_;
-    UnionFind sets_;
-};
-
 } // namespace
 
 ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Execution& execution) {
@@ -171,8 +145,7 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
                     fmt::format("the weld tolerance is {} mm; it must be a number above 0", tolerance_mm));
     Executor executor(execution);
     std::vector<std::uint32_t> order(mesh.vertices.size());
-    for (std::uint32_t v = 0; v < order.size(); ++v)
-        order[v] = v;
+    std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         return std::tuple(mesh.vertices[a], a) < std::tuple(mesh.vertices[b], b);
     });
@@ -184,23 +157,32 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
         point_of_vertex[v] = static_cast<std::uint32_t>(points.size() - 1);
     }
 
-    Groups groups(points);
+    const UnionFind groups(points.size());
+    std::vector<Box3> boxes(points.size()); // of each group, at its lowest member
+    for (std::size_t i = 0; i < points.size(); ++i)
+        boxes[i].add(points[i]);
     const std::vector<PointPair> pairs = close_pairs(executor, points, tolerance_mm);
-    for (const PointPair& pair : pairs)
-        groups.join_where_it_fits(pair.a, pair.b, tolerance_mm * tolerance_mm);
+    for (const PointPair& pair : pairs) {
+        const std::uint32_t a = groups.find(pair.a);
+        const std::uint32_t b = groups.find(pair.b);
+        Box3 box = boxes[a];
+        box.add(boxes[b]);
+        if (a == b || square_of_gap(box.max, box.min) > tolerance_mm * tolerance_mm)
+            continue;
+        groups.join(a, b);
+        boxes[std::min(a, b)] = box;
+    }
 
     ToleranceWeld result;
     for (const PointPair& pair : pairs)
         result.pairs_apart += groups.find(pair.a) != groups.find(pair.b) ? 1 : 0;
-    std::uint32_t last_place = 0xffffffff;
     std::vector<std::uint32_t> places;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         const std::uint32_t to = groups.find(i);
         if (to == i)
             continue;
         result.longest_move_mm = std::max(result.longest_move_mm, distance(points[i], points[to]));
-        if (to != last_place)
-            places.push_back(last_place = to);
+        places.push_back(to);
     }
     std::sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());

@@ -1,8 +1,8 @@
 #include "pipeline/agreement.hpp"
 
+#include <exception>
 #include <new>
 #include <string>
-#include <utility>
 
 namespace lamella {
 namespace {

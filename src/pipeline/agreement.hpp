@@ -5,7 +5,6 @@
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/processes.hpp"
 
-#include <exception>
 #include <functional>
 
 namespace lamella {

@@ -59,6 +59,25 @@ RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes)
     return {bound(process), bound(process + 1)};
 }
 
+/// The triangles of those batches of a file that planes cut, in few ranges: what lies between two that are
+/// close to one another is read with them.
+std::vector<RecordRange> records_on(PlaneRange planes, std::span<const PlaneRange> cuts,
+                                    std::uint64_t records) {
+    constexpr std::uint64_t close = 4 * fold_piece;
+    std::vector<RecordRange> ranges;
+    for (std::size_t batch = 0; batch < cuts.size(); ++batch) {
+        if (cuts[batch].end <= planes.begin || planes.end <= cuts[batch].begin)
+            continue;
+        const std::uint64_t begin = batch * fold_piece;
+        const std::uint64_t end = std::min(records, begin + fold_piece);
+        if (ranges.empty() || ranges.back().end + close < begin)
+            ranges.push_back({begin, end});
+        else
+            ranges.back().end = end;
+    }
+    return ranges;
+}
+
 std::optional<std::uint32_t> neighbours_of(const FileJob& job) {
     if (!job.scan)
         return std::nullopt;
@@ -97,6 +116,10 @@ void check_size(const std::string& path, const Mesh& mesh, const JobMemory& memo
                         path, mesh.size(), byte_amount(bytes), byte_amount(memory.limit)));
 }
 
+Error changed_while_read(const std::string& path) {
+    return {ErrorKind::input, fmt::format("{}: was changed while it was read", path)};
+}
+
 } // namespace
 
 // ------------------------------------------------------------------------------------------------- open
@@ -126,6 +149,8 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                 not_streamed = file.path();
             divisible = divisible && file.can_stream() && file.records().has_value();
         }
+        if (bytes != 0)
+            bytes += memory_.besides_meshes(threads);
     });
     // Machines differ in memory, but all processes have to go the same way.
     std::uint64_t too_large = bytes > memory_.limit ? 1 : 0;
@@ -175,9 +200,10 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
 /// The first pass.
 void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
     for (MeshInput& input : inputs) {
-        File& file = files_.emplace_back(File{std::move(input), std::nullopt, {}, 0, {}});
+        File& file = files_.emplace_back(File{std::move(input), std::nullopt, std::nullopt, {}, 0, {}, {}});
+        file.records = file.input.records();
         if (among_->size() > 1) {
-            file.part = part_of(file.input.records().value(), among_->process(), among_->size());
+            file.part = part_of(file.records.value(), among_->process(), among_->size());
             figures_.triangles_read += file.part->end - file.part->begin;
         }
         bytes_to_read_ += passes * bytes_of(file, file.part);
@@ -226,6 +252,9 @@ std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>&
 MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
                       const std::optional<RecordRange>& part) {
     const Stopwatch reading;
+    // A pass over a file that has become another one would read what is not there.
+    if (file.input.records() != file.records)
+        throw changed_while_read(file.input.path());
     Execution counted = execution;
     if (execution.progress)
         counted.progress = [&](const Progress& progress) {
@@ -277,18 +306,26 @@ void Feed::count_streams(const Plan& plan, const Execution& execution) {
         volumes.emplace_back(placement(shape), files_[plate_.shapes[shape].input].first_corner);
     }
     in_agreement(*among_, [&] {
-        for (const File& file : files_)
+        for (File& file : files_) {
+            const std::uint64_t records = file.part ? 0 : file.records.value_or(0);
+            file.cuts.assign((records + fold_piece - 1) / fold_piece, {});
             static_cast<void>(stream(
                 file,
                 [&](const TriangleSoup& batch, std::uint64_t number) {
+                    PlaneRange cut{static_cast<std::uint32_t>(plan.layers.size()), 0};
                     for (const std::size_t shape : file.shapes) {
                         const TriangleSoup placed = batch.transformed(placement(shape));
-                        counters[shape].add(placed);
+                        const PlaneRange planes = counters[shape].add(placed);
+                        if (planes.size() > 0)
+                            cut = {std::min(cut.begin, planes.begin), std::max(cut.end, planes.end)};
                         if (measure_volume_)
                             volumes[shape].add(placed, number);
                     }
+                    if (number < file.cuts.size())
+                        file.cuts[number] = cut;
                 },
                 execution, file.part));
+        }
     });
     std::vector<double> six_volumes(shapes, 0);
     for (std::size_t shape = 0; shape < shapes; ++shape) {
@@ -313,24 +350,43 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
     const PlaneRange mine = division[processes_.process()];
     if (files_.empty())
         return mine.size() > 0 ? std::vector{mine} : std::vector<PlaneRange>{};
-    std::vector<PlaneRange> shares;
     in_agreement(*among_, [&] {
-        shares = shares_of(plan, mine, thread_count(execution));
-        store_.emplace(plan, shares, counts_);
+        shares_ = shares_of(plan, mine, thread_count(execution));
+        if (is_cheap_to_read_again())
+            plan_ = plan;
+        else
+            store_.emplace(plan, shares_, counts_);
     });
     for (const PlaneCounts& shape : counts_)
         figures_.triangles_sliced += SlabSurvey(shape).triangles(mine);
     if (among_->size() > 1)
         exchange(plan, division, execution);
-    else
-        bring_own(execution);
+    else if (store_)
+        bring_own(mine, *store_, execution);
     in_agreement(*among_, [&] {
-        if (!store_->full())
-            throw changed_while_read();
         if (execution.progress)
             execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
     });
-    return shares;
+    return shares_;
+}
+
+/// Whether it is to read parts of the files for each share, against writing down what there is for all of
+/// them and reading that. Not known before the triangles were counted.
+bool Feed::is_cheap_to_read_again() const {
+    constexpr std::uint64_t times_the_files = 2;
+    if (shares_.size() <= 1)
+        return false;
+    std::uint64_t room = 0;
+    std::uint64_t records = 0;
+    for (const File& file : files_) {
+        if (file.cuts.empty())
+            return false;
+        room += times_the_files * file.records.value();
+        for (const PlaneRange& share : shares_)
+            for (const RecordRange& range : records_on(share, file.cuts, file.records.value()))
+                records += range.end - range.begin;
+    }
+    return records <= room;
 }
 
 std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsigned threads) const {
@@ -344,9 +400,10 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
         .points_in_flight = memory_.points_in_flight(threads)};
     if (plate_.parts.size() > 1 || neighbours_) // then all layers of a share are held
         slab.points_in_flight = ~std::uint64_t{0};
-    const std::uint64_t overhead = JobMemory::overhead(threads, plan.layers.size()) +
-                                   memory_.of_messages(processes_.size()) +
-                                   most_points(survey, neighbours_.value_or(0)) * sizeof(Point2);
+    const std::uint64_t overhead =
+        JobMemory::overhead(threads, plan.layers.size(), plate_.shapes.size(), measure_volume_) +
+        memory_.of_messages(processes_.size()) +
+        most_points(survey, neighbours_.value_or(0)) * sizeof(Point2);
     std::uint64_t largest = 0;
     std::uint32_t where = 0;
     for (std::uint32_t p = 0; p < survey.planes(); ++p)
@@ -354,6 +411,12 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
             largest = bytes;
             where = p;
         }
+    if (overhead > memory_.limit)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{}: {} layers and `threads` {} take {} of memory, above the {} of "
+                                "`max_memory`; allow more, choose higher layers, or use fewer threads",
+                                plate_.files.front().path, plan.layers.size(), threads, byte_amount(overhead),
+                                byte_amount(memory_.limit)));
     if (overhead + largest > memory_.limit)
         throw Error(ErrorKind::limit,
                     fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
@@ -369,24 +432,27 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
     return shares;
 }
 
-Error Feed::changed_while_read() const {
-    return {ErrorKind::input, fmt::format("{}: was changed while it was read", plate_.files.front().path)};
-}
-
-/// The third pass, where this process reads all of the files.
-void Feed::bring_own(const Execution& execution) {
+/// The third pass, where this process reads all of the files, as far as these planes cut them.
+void Feed::bring_own(PlaneRange planes, ShareStore& store, const Execution& execution) {
     std::atomic<bool> fits{true};
-    for (const File& file : files_)
-        static_cast<void>(stream(
-            file,
-            [&](const TriangleSoup& batch, std::uint64_t) {
-                for (const std::size_t shape : file.shapes)
-                    if (!store_->add(shape, batch.transformed(placement(shape))))
-                        fits = false;
-            },
-            execution, std::nullopt));
-    if (!fits)
-        throw changed_while_read();
+    for (const File& file : files_) {
+        std::vector<std::optional<RecordRange>> parts{std::nullopt};
+        if (!file.cuts.empty()) {
+            const std::vector<RecordRange> cut = records_on(planes, file.cuts, file.records.value());
+            parts.assign(cut.begin(), cut.end());
+        }
+        for (const std::optional<RecordRange>& part : parts)
+            static_cast<void>(stream(
+                file,
+                [&](const TriangleSoup& batch, std::uint64_t) {
+                    for (const std::size_t shape : file.shapes)
+                        if (!store.add(shape, batch.transformed(placement(shape))))
+                            fits = false;
+                },
+                execution, part));
+    }
+    if (!fits || !store.full())
+        throw changed_while_read(plate_.files.front().path);
 }
 
 /// The third pass, where each process reads a part: in rounds, so that triangles on their way take little
@@ -398,7 +464,7 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
     for (const File& file : files_) {
         std::uint64_t longest = 0;
         for (std::size_t p = 0; p < among_->size(); ++p) {
-            const RecordRange part = part_of(file.input.records().value(), p, among_->size());
+            const RecordRange part = part_of(file.records.value(), p, among_->size());
             longest = std::max(longest, part.end - part.begin);
         }
         for (std::uint64_t done = 0; done < longest; done += at_once) {
@@ -436,6 +502,10 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
             figures_.exchange_seconds += exchanging.seconds();
         }
     }
+    in_agreement(*among_, [&] {
+        if (!store_->full())
+            throw changed_while_read(plate_.files.front().path);
+    });
 }
 
 /// What the other processes have for this one, and what it keeps of its own.
@@ -471,16 +541,28 @@ void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Executi
     const TriangleSoup placed = triangles.transformed(placement(shape));
     executor.for_chunks(placed.size(), at_once, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         if (!store_->add(shape, placed.part(begin, end)))
-            throw changed_while_read();
+            throw changed_while_read(plate_.files.front().path);
     });
     executor.check_cancelled();
 }
 
 Plate Feed::take(std::size_t share, const Execution& execution) {
     Plate plate = plate_;
-    if (!files_.empty())
+    if (files_.empty())
+        return plate;
+    const auto take_from = [&](ShareStore& from, std::size_t number) {
         for (std::size_t shape = 0; shape < plate.shapes.size(); ++shape)
-            plate.shapes[shape].mesh = store_->take(share, shape, execution).transformed(placement(shape));
+            plate.shapes[shape].mesh = from.take(number, shape, execution).transformed(placement(shape));
+    };
+    if (store_) {
+        take_from(*store_, share);
+        return plate;
+    }
+    ShareStore store(*plan_, std::span(&shares_[share], 1), counts_);
+    Execution silent = execution; // that reading has come to its end was told
+    silent.progress = nullptr;
+    bring_own(shares_[share], store, silent);
+    take_from(store, 0);
     return plate;
 }
 

@@ -2,7 +2,6 @@
 
 // The triangles of a job on their way to be sliced.
 
-#include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
@@ -30,9 +29,11 @@ namespace lamella {
 ///     count    how many triangles each plane of the plan cuts
 ///     bring    the triangles to where they wait for the planes that cut them
 ///
-/// To read a file again is faster than to write its triangles down, and takes no room. Where several
-/// processes slice the job and the files can be divided, each reads its part of every file, and they talk
-/// after each pass; so all of them make one Feed of the same job, and call its functions in the same order.
+/// To read a file again is faster than to write its triangles down, and takes no room. So where triangles lie
+/// in the file near those that the same planes cut, nothing waits: each share is read when it is taken. Where
+/// several processes slice the job and the files can be divided, each reads its part of every file, and they
+/// talk after each pass; so all of them make one Feed of the same job, and call its functions in the same
+/// order.
 class Feed {
   public:
     /// Reads the files of the job, or looks at them: where they do not fit its memory, and where several
@@ -59,8 +60,8 @@ class Feed {
     [[nodiscard]] double volume_mm3() const noexcept { return volume_mm3_; }
 
     /// After `count` of the same plan. `division`: the planes that each process slices. Divides those of this
-    /// process into shares that fit its memory, and has their triangles wait. Throws Error{limit} where a
-    /// layer does not fit by itself.
+    /// process into shares that fit its memory, and has their triangles wait, unless they are read when they
+    /// are taken. Throws Error{limit} where a layer does not fit by itself.
     [[nodiscard]] std::vector<PlaneRange> bring(const Plan& plan, std::span<const PlaneRange> division,
                                                 const Execution& execution);
 
@@ -75,10 +76,14 @@ class Feed {
   private:
     struct File {
         MeshInput input;
-        std::optional<RecordRange> part; ///< of this process; unset: all of it
-        std::vector<std::size_t> shapes; ///< of the plate, that are made of it
-        std::uint64_t triangles = 0;     ///< usable ones, of all processes
-        Point3f first_corner;            ///< as stored
+        std::optional<std::uint64_t> records; ///< of a binary file, as it was when it was first looked at
+        std::optional<RecordRange> part;      ///< of this process; unset: all of it
+        std::vector<std::size_t> shapes;      ///< of the plate, that are made of it
+        std::uint64_t triangles = 0;          ///< usable ones, of all processes
+        Point3f first_corner;                 ///< as stored
+        /// By batch of a binary file that one process reads: from the first plane that cuts any triangle of
+        /// it to the last one. Empty for other files.
+        std::vector<PlaneRange> cuts;
     };
 
     void read(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution);
@@ -93,11 +98,11 @@ class Feed {
 
     [[nodiscard]] std::vector<PlaneRange> shares_of(const Plan& plan, PlaneRange mine,
                                                     unsigned threads) const;
-    void bring_own(const Execution& execution);
+    [[nodiscard]] bool is_cheap_to_read_again() const;
+    void bring_own(PlaneRange planes, ShareStore& store, const Execution& execution);
     void exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution);
     [[nodiscard]] TriangleSoup exchanged(std::span<const std::vector<Triangle3f>> outgoing);
     void store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution);
-    [[nodiscard]] Error changed_while_read() const;
 
     JobMemory memory_;
     Communicator& processes_;
@@ -112,7 +117,9 @@ class Feed {
     std::uint64_t bytes_read_ = 0;
     std::vector<PlaneCounts> counts_; ///< by shape, of all processes
     double volume_mm3_ = 0;
-    std::optional<ShareStore> store_;
+    std::vector<PlaneRange> shares_;
+    std::optional<ShareStore> store_; ///< of all shares; or
+    std::optional<Plan> plan_;        ///< by which each is read when it is taken
     ProcessFigures figures_;
 };
 

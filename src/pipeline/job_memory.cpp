@@ -9,9 +9,6 @@ namespace lamella {
 
 namespace {
 
-// As slice_to has it.
-constexpr std::uint64_t usual_points_per_thread = (std::uint64_t{56} << 20) / sizeof(Point2);
-
 /// A point in flight and the text it becomes.
 constexpr std::uint64_t bytes_per_point = 56;
 
@@ -32,13 +29,16 @@ JobMemory::JobMemory(const FileJob& job)
     : limit(job.max_memory != 0 ? job.max_memory : usual_memory()), asked(job.max_memory != 0) {}
 
 std::uint64_t JobMemory::points_in_flight(unsigned threads) const noexcept {
-    return std::clamp<std::uint64_t>(limit / 4 / bytes_per_point, 1, usual_points_per_thread * threads);
+    return std::clamp<std::uint64_t>(limit / 4 / bytes_per_point, 1, usual_points_in_flight(threads));
 }
 
-std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes) noexcept {
+std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes, std::size_t shapes,
+                                  bool statistics) noexcept {
     constexpr std::uint64_t program = std::uint64_t{20} << 20;
     constexpr std::uint64_t thread = std::uint64_t{12} << 20;
-    constexpr std::uint64_t plane = 500;
+    // Triangles are counted by each thread, and the counts added up.
+    const std::uint64_t further_shape = 24 * (threads + std::uint64_t{1}) + 56;
+    const std::uint64_t plane = 500 + further_shape * (shapes - 1) + (statistics ? 400 : 0);
     return program + thread * threads + plane * planes;
 }
 
@@ -62,8 +62,12 @@ std::uint64_t JobMemory::of_input(unsigned threads) const noexcept {
     return limit / times;
 }
 
+std::uint64_t JobMemory::besides_meshes(unsigned threads) const noexcept {
+    return overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
+}
+
 std::uint64_t JobMemory::of_mesh(const Mesh& mesh, unsigned threads) const noexcept {
-    std::uint64_t bytes = overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
+    std::uint64_t bytes = besides_meshes(threads);
     if (const IndexedMesh* const indexed = mesh.indexed()) {
         bytes += indexed->vertices.size() * sizeof indexed->vertices.front();
         bytes += indexed->triangles.size() * sizeof indexed->triangles.front();
@@ -74,14 +78,12 @@ std::uint64_t JobMemory::of_mesh(const Mesh& mesh, unsigned threads) const noexc
 }
 
 std::uint64_t JobMemory::of_whole(const MeshInput& file, bool placed, unsigned threads) const {
-    const std::uint64_t around = overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
     const std::uint64_t each = triangle_bytes(placed, threads);
     if (const auto records = file.records())
-        return around + *records * (binary_record + each);
+        return *records * (binary_record + each);
     // A text is read into pieces, and those are put together.
     const std::uint64_t facets = file.bytes() / least_facet;
-    return around +
-           std::max(file.bytes() + facets * 2 * sizeof(Triangle3f), facets * (sizeof(Triangle3f) + each));
+    return std::max(file.bytes() + facets * 2 * sizeof(Triangle3f), facets * (sizeof(Triangle3f) + each));
 }
 
 } // namespace lamella

@@ -21,8 +21,10 @@ struct JobMemory {
     /// that they and what is made of them take no more than a quarter of the limit.
     [[nodiscard]] std::uint64_t points_in_flight(unsigned threads) const noexcept;
 
-    /// What the program, its threads and its notes about each plane take.
-    [[nodiscard]] static std::uint64_t overhead(unsigned threads, std::uint64_t planes) noexcept;
+    /// What the program, its threads and its notes about each plane take; on a plate, there are some for each
+    /// shape. `statistics`: of layers.
+    [[nodiscard]] static std::uint64_t overhead(unsigned threads, std::uint64_t planes,
+                                                std::size_t shapes = 1, bool statistics = false) noexcept;
 
     /// What goes from process to process, and what a process of several keeps of its output until all write.
     [[nodiscard]] std::uint64_t of_messages(std::size_t processes) const noexcept;
@@ -38,7 +40,9 @@ struct JobMemory {
     /// What slicing a mesh in memory takes at most, all else included.
     [[nodiscard]] std::uint64_t of_mesh(const Mesh& mesh, unsigned threads) const noexcept;
 
-    /// What slicing an STL file whole takes at most, all else included.
+    /// What slicing takes whatever the meshes: `overhead`, and points on their way.
+    [[nodiscard]] std::uint64_t besides_meshes(unsigned threads) const noexcept;
+    /// What an STL file that is sliced whole takes at most, besides.
     [[nodiscard]] std::uint64_t of_whole(const MeshInput& file, bool placed, unsigned threads) const;
 };
 

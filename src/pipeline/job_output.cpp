@@ -73,14 +73,17 @@ void write_at(const std::string& path, std::uint64_t place, const ByteStore& byt
 
 JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Communicator& processes,
                      std::uint64_t most_in_memory)
-    : processes_(processes), mine_(mine), path_(job.output), most_bytes_(job.write.most_bytes),
-      waiting_(most_in_memory) {
+    : processes_(processes), path_(job.output), most_bytes_(job.write.most_bytes), waiting_(most_in_memory) {
     if (!job.output.empty()) {
         format_ = &layer_format(job.format, job.output);
         LayerWriteOptions options = job.write;
         shared_ = processes.size() > 1 && format_->pieces && can_be_shared(job.output);
         if (shared_) {
-            create_shared(job.output);
+            in_agreement(processes, [&] {
+                if (processes.process() == 0)
+                    file_.emplace(job.output);
+            });
+            working_path_ = processes.gather(file_ ? file_->share() : std::string()).front();
             piece_ = {mine.begin, mine.size(), [this](std::string_view bytes) {
                           waiting_.add(bytes);
                       }};
@@ -95,14 +98,6 @@ JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Co
     }
     if (!job.report.path.empty())
         page_ = open_layer_page(job.report.path, info, job.report.page);
-}
-
-void JobOutput::create_shared(const std::string& path) {
-    in_agreement(processes_, [&] {
-        if (processes_.process() == 0)
-            file_.emplace(path);
-    });
-    working_path_ = processes_.gather(file_ ? file_->share() : std::string()).front();
 }
 
 std::function<void()> JobOutput::prepare(std::span<const Layer> parts) {
@@ -133,7 +128,7 @@ JobOutput::Written JobOutput::finish_file() {
             return send_layers();
         if (!shared_)
             write_layers_of_others();
-        if (!shared_ || mine_.size() > 0)
+        if (!shared_ || piece_.layers > 0)
             writer_->finish();
         written.bytes = shared_ ? 0 : writer_->bytes();
         written.warnings = writer_->warnings();

@@ -17,7 +17,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -48,13 +47,11 @@ class JobOutput {
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }
 
   private:
-    void create_shared(const std::string& path);
     void send_layers();
     void write_layers_of_others();
     [[nodiscard]] std::uint64_t write_shared();
 
     Communicator& processes_;
-    PlaneRange mine_;
     std::string path_;
     std::uint64_t most_bytes_;
     const LayerFormat* format_ = nullptr;

@@ -47,7 +47,8 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const Layer& layer = parts[i];
         row.open_gaps += open_gaps(layer);
-        // In normal form the first ring has the smallest point of all, so nothing lies around it.
+        // In normal form the first ring has the smallest point of all rings: nothing but an open chain lies
+        // around it.
         row.inside_out |= layer.rings > 0 && ring_area(layer.contour(0)) < 0;
         parts_[i].contours.fetch_add(layer.contours(), std::memory_order_relaxed);
         parts_[i].open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
@@ -67,10 +68,11 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
                               .scan = {}};
 }
 
-void LayerTotals::add(std::uint64_t index, std::span<const ScanFigures> vectors) {
+void LayerTotals::add(std::uint64_t index, std::span<const ScanFigures> vectors, std::uint64_t thin_rings) {
     assert(vectors.size() == exposures_.size());
     const auto place = static_cast<std::size_t>(index - rows_.front().index);
     assert(rows_.at(place).index == index);
+    rows_[place].thin_rings = thin_rings;
     std::copy(vectors.begin(), vectors.end(),
               vectors_.begin() + static_cast<std::ptrdiff_t>(place * exposures_.size()));
 }
@@ -85,15 +87,6 @@ std::uint64_t LayerTotals::points() const noexcept {
 void LayerTotals::gather(Communicator& processes) {
     if (processes.size() == 1)
         return;
-    struct Figures { // of a layer, without what has no fixed size
-        std::uint64_t index;
-        double z;
-        double thickness;
-        LayerMeasure measure;
-        OpenGaps open_gaps;
-        std::uint64_t hash;
-        LayerChanges changes;
-    };
     Packer mine;
     for (const Counts& part : parts_)
         mine.put(part.contours.load()).put(part.open_chains.load()).put(part.points.load());
@@ -102,9 +95,14 @@ void LayerTotals::gather(Communicator& processes) {
         .put_all(std::span<const LayerChanges>(changes_))
         .put_all(std::span<const ScanFigures>(vectors_));
     for (const LayerStatistics& layer : statistics_)
-        mine.put(Figures{layer.index, layer.z, layer.thickness, layer.measure, layer.open_gaps, layer.hash,
-                         layer.changes})
-            .put_all(std::span(layer.joins));
+        mine.put(layer.index)
+            .put(layer.z)
+            .put(layer.thickness)
+            .put(layer.measure)
+            .put(layer.open_gaps)
+            .put_all(std::span(layer.joins))
+            .put(layer.hash)
+            .put(layer.changes);
     rows_.clear();
     closed_.clear();
     changes_.clear();
@@ -125,18 +123,16 @@ void LayerTotals::gather(Communicator& processes) {
         append(closed_, from.get_all<FileResult::Gaps>());
         append(changes_, from.get_all<LayerChanges>());
         append(vectors_, from.get_all<ScanFigures>());
-        while (!from.empty()) {
-            const Figures layer = from.get<Figures>();
-            statistics_.push_back({.index = layer.index,
-                                   .z = layer.z,
-                                   .thickness = layer.thickness,
-                                   .measure = layer.measure,
-                                   .open_gaps = layer.open_gaps,
+        while (!from.empty()) // in the order in which they were put
+            statistics_.push_back({.index = from.get<std::uint64_t>(),
+                                   .z = from.get<double>(),
+                                   .thickness = from.get<double>(),
+                                   .measure = from.get<LayerMeasure>(),
+                                   .open_gaps = from.get<OpenGaps>(),
                                    .joins = from.get_all<GapJoin>(),
-                                   .hash = layer.hash,
-                                   .changes = layer.changes,
+                                   .hash = from.get<std::uint64_t>(),
+                                   .changes = from.get<LayerChanges>(),
                                    .scan = {}});
-        }
     }
 }
 
@@ -149,6 +145,7 @@ void LayerTotals::tell(FileResult& result) const {
         count(row.open_gaps.count > 0, row.z, result.open);
         result.open_gaps += row.open_gaps;
         count(row.inside_out, row.z, result.inside_out);
+        result.thin.add(row.thin_rings, row.z);
     }
     for (std::size_t i = 0; i < closed_.size(); ++i) {
         count(closed_[i].closed > 0, rows_[i].z, result.gaps);

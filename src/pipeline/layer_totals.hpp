@@ -8,7 +8,6 @@
 #include "lamella/slicing/plan.hpp"
 
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,8 +24,9 @@ class LayerTotals {
     /// The layers of all parts on one plane, as they are written, and what was done to them. From any thread,
     /// once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes);
-    /// Of the scan vectors of a plane, by `plane_exposures`. From any thread, once for each plane.
-    void add(std::uint64_t index, std::span<const ScanFigures> vectors);
+    /// Of the scan vectors of a plane, by `plane_exposures`, and how many rings have none. From any thread,
+    /// once for each plane.
+    void add(std::uint64_t index, std::span<const ScanFigures> vectors, std::uint64_t thin_rings);
 
     /// Points of the layers that were added.
     [[nodiscard]] std::uint64_t points() const noexcept;
@@ -43,6 +43,7 @@ class LayerTotals {
         double z = 0;
         OpenGaps open_gaps;
         bool inside_out = false;
+        std::uint64_t thin_rings = 0; ///< that have no scan vectors
     };
     struct Counts {
         std::atomic<std::uint64_t> contours{0};

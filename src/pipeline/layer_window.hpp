@@ -6,7 +6,6 @@
 #include "lamella/slicing/plan.hpp"
 
 #include "pipeline/plane_scan.hpp"
-#include "pipeline/plate_slicing.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
+#include "lamella/scan/strategy_fields.hpp"
 
 #include "core/atomic_file.hpp"
 #include "core/byte_source.hpp"
@@ -16,6 +17,8 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
+#include <variant>
 
 namespace lamella {
 namespace {
@@ -32,6 +35,7 @@ struct ShardFile {
     double top = 0;
     double lowest_layer_mm = 0;  ///< how thick it is
     double highest_layer_mm = 0; ///< how thick it is
+    std::vector<std::string> warnings = {};
 };
 
 ShardFile look_at(const std::string& path, const LayerReadOptions& reading, const Execution& execution) {
@@ -39,8 +43,6 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
     const LayerStack& layers = file.parts.front().layers;
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", path));
-    if (!file.warnings.empty())
-        throw Error(ErrorKind::input, fmt::format("{}: is not sound: {}", path, file.warnings.front()));
     ShardFile shard{.path = path,
                     .format = file.format,
                     .units_mm = file.units_mm,
@@ -50,7 +52,8 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .bottom = layers.front().bottom,
                     .top = layers.back().top,
                     .lowest_layer_mm = layers.front().thickness(),
-                    .highest_layer_mm = layers.back().thickness()};
+                    .highest_layer_mm = layers.back().thickness(),
+                    .warnings = file.warnings};
     for (const LayerPart& part : file.parts) {
         Box3& box = shard.parts.emplace_back(PartInfo{part.label, {}, part.exposure, part.support}).box;
         for (const Layer& layer : part.layers)
@@ -68,8 +71,10 @@ std::vector<std::string> labels_of(const ShardFile& shard) {
     return labels;
 }
 
-bool holds_vectors(const ShardFile& shard) {
-    return std::all_of(shard.parts.begin(), shard.parts.end(),
+/// Some formats know only parts that have something: a shard may have no skin, or end below a part.
+bool may_lack_parts(const ShardFile& shard) {
+    return layer_format(shard.format, shard.path).filled_parts ||
+           std::all_of(shard.parts.begin(), shard.parts.end(),
                        [](const PartInfo& part) { return part.exposure.has_value(); });
 }
 
@@ -84,9 +89,8 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
     if (below.rule != above.rule)
         refuse(fmt::format("one is cut by {}, the other by {}", plane_rule_name(below.rule),
                            plane_rule_name(above.rule)));
-    // Formats of scan vectors know what has some only: a shard may have no skin.
     if (const auto one = labels_of(below), other = labels_of(above);
-        one != other && !(holds_vectors(below) && holds_vectors(above)))
+        one != other && !(may_lack_parts(below) && may_lack_parts(above)))
         refuse(fmt::format("hold different parts ({} and {})", fmt::join(one, ", "), fmt::join(other, ", ")));
     // Formats round heights, but never by half a layer.
     const double slack = std::min(below.highest_layer_mm, above.lowest_layer_mm) / 2;
@@ -137,8 +141,7 @@ struct CommonLayerFile {
 
 CommonLayerFile take_apart(const std::string& path, const Execution& execution) {
     CommonLayerFile file{open_bytes(path, execution), {}, {}, {}, {}};
-    const std::string_view text(reinterpret_cast<const char*>(file.source.bytes.data()),
-                                file.source.bytes.size());
+    const std::string_view text = file.source.text();
     constexpr std::string_view count_key = "$$LAYERS/";
     constexpr std::string_view head_end = "$$HEADEREND";
     const std::size_t key = text.find(count_key);
@@ -191,6 +194,10 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
     AtomicFile out(output);
     std::string head;
     for (std::size_t i = 0; i < shards.size(); ++i) {
+        // Bytes are put together as they are, with what is wrong with them.
+        if (!shards[i].warnings.empty())
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: is not sound: {}", shards[i].path, shards[i].warnings.front()));
         const CommonLayerFile file = take_apart(shards[i].path, execution);
         if (i == 0) {
             head = file.before_count;
@@ -216,24 +223,61 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
 
 // ------------------------------------------------------------------------------------------ any format
 
+/// A part as the first of the files has it that knows it.
+struct KnownPart {
+    PartInfo info;
+    const std::string* path;
+};
+
+/// A part is exposed in one way in all of a file: none of two is silently taken for the other.
+void check_parameters(const KnownPart& known, const PartInfo& part, const std::string& path) {
+    const auto refuse = [&](std::string_view name, const auto& one, const auto& other) {
+        throw Error(
+            ErrorKind::input,
+            fmt::format("{} and {}: the part {} has {} {} in one and {} in the other; they are not of "
+                        "one job",
+                        *known.path, path, part.label, name, one, other));
+    };
+    if (!known.info.exposure || !part.exposure) {
+        if (known.info.exposure.has_value() != part.exposure.has_value())
+            refuse("parameters of scan vectors:", known.info.exposure ? "some" : "none",
+                   part.exposure ? "some" : "none");
+        return;
+    }
+    const ParameterSet& one = known.info.exposure->parameters;
+    const ParameterSet& other = part.exposure->parameters;
+    if (one == other)
+        return;
+    for (const StrategyField<ParameterSet>& field : parameter_fields()) {
+        const auto member = std::get<double ParameterSet::*>(field.member);
+        if (one.*member != other.*member)
+            refuse(field.name, one.*member, other.*member);
+    }
+    refuse("parameters called", one.name, other.name);
+}
+
 /// Those of all files, each in its order; boxes of all.
 std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
-    std::vector<PartInfo> all;
+    std::vector<KnownPart> all;
     for (const ShardFile& shard : shards) {
         auto next = all.begin();
         for (const PartInfo& part : shard.parts) {
-            const auto known =
-                std::find_if(next, all.end(), [&](const PartInfo& one) { return one.label == part.label; });
+            const auto known = std::find_if(
+                next, all.end(), [&](const KnownPart& one) { return one.info.label == part.label; });
             if (known == all.end()) {
-                next = all.insert(next, part);
+                next = all.insert(next, {part, &shard.path});
             } else {
-                known->box.add(part.box);
+                check_parameters(*known, part, shard.path);
+                known->info.box.add(part.box);
                 next = known;
             }
             ++next;
         }
     }
-    return all;
+    std::vector<PartInfo> parts;
+    for (KnownPart& part : all)
+        parts.push_back(std::move(part.info));
+    return parts;
 }
 
 /// What a file has of a plane of each part; an empty layer where it does not know the part.
@@ -277,7 +321,11 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     }
     writer->finish();
     result.bytes = writer->bytes();
-    result.warnings = writer->warnings();
+    for (const ShardFile& shard : shards)
+        for (const std::string& warning : shard.warnings)
+            result.warnings.push_back(fmt::format("{}: {}", shard.path, warning));
+    for (std::string& warning : writer->warnings())
+        result.warnings.push_back(std::move(warning));
 }
 
 } // namespace

@@ -17,7 +17,8 @@ namespace lamella {
 /// as far below and above as it may have moved the cut.
 template <class Cut>
 auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, const Cut& cut) {
-    std::vector<decltype(cut(Plan{}))> of_layer(layers.size());
+    using OfPlane = typename decltype(cut(Plan{}))::value_type;
+    std::vector<std::vector<OfPlane>> of_layer(layers.size());
     for (const double direction : {0.0, -1.0, 1.0}) {
         if (direction != 0 && rounding == Rounding{})
             break;

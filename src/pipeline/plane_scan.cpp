@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <string>
 #include <utility>
 
 namespace lamella {
@@ -45,9 +45,12 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
     std::optional<Point2> beam;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
         ScanMemory* const memory = &memories[part];
-        std::vector<Layer> scanned = supports[part] ? scan_support(plane.parts[part], strategy, memory)
-                                                    : scan(plane.parts[part], layers_of(part, plane.below),
-                                                           layers_of(part, plane.above), strategy, memory);
+        std::uint64_t thin_rings = 0;
+        std::vector<Layer> scanned = supports[part]
+                                         ? scan_support(plane.parts[part], strategy, memory, &thin_rings)
+                                         : scan(plane.parts[part], layers_of(part, plane.below),
+                                                layers_of(part, plane.above), strategy, memory, &thin_rings);
+        vectors.thin_rings += thin_rings;
         const std::size_t first = supports[part] ? of_supports : 0;
         assert(scanned.size() == (supports[part] ? each.size() : of_supports) - first);
         for (std::size_t i = 0; i < scanned.size(); ++i) {

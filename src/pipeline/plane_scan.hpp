@@ -7,6 +7,7 @@
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct PlaneLayers {
 struct PlaneVectors {
     std::vector<Layer> layers;        ///< of each part each exposure
     std::vector<ScanFigures> figures; ///< of each of `plane_exposures`
+    std::uint64_t thin_rings = 0;     ///< that have no vectors
 };
 
 /// What has figures: the exposures of parts, and then those of supports, where there are such; of no part:

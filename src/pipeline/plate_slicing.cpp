@@ -1,6 +1,7 @@
 #include "pipeline/plate_slicing.hpp"
 
 #include "core/executor.hpp"
+#include "slicing/shrunken_contours.hpp"
 #include "slicing/slabs.hpp"
 
 #include <algorithm>
@@ -51,12 +52,15 @@ class JointProgress {
 Layer moved(const Layer& layer, double dx, double dy) {
     if (dx == 0 && dy == 0)
         return layer;
-    // Rounding can make neighbours equal, and then another point the smallest: the normal form is made anew.
+    // Rounding can make neighbours equal, and then another point the smallest: as where layers are cut, these
+    // go, and the normal form is made anew.
     LayerBuilder builder;
+    std::vector<Point2> contour;
     for (std::size_t i = 0; i < layer.contours(); ++i) {
+        contour.clear();
         for (const Point2& p : layer.contour(i))
-            builder.add_point({p.x + dx, p.y + dy});
-        builder.end_contour(layer.closed(i));
+            contour.push_back({p.x + dx, p.y + dy});
+        add_contour(builder, contour, layer.closed(i));
     }
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }

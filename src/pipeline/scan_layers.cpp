@@ -5,13 +5,29 @@
 #include "core/stopwatch.hpp"
 #include "pipeline/plane_scan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
 namespace lamella {
+
+void ThinRings::add(std::uint64_t count, double z) noexcept {
+    rings += count;
+    if (count > 0 && layers++ == 0)
+        first_z = z;
+}
+
+std::string ThinRings::text() const {
+    return fmt::format("{} ring{} on {} layer{}, the lowest at z = {:.6g} mm, {} thinner than the beam's "
+                       "offsets: {} no vectors",
+                       rings, rings == 1 ? "" : "s", layers, layers == 1 ? "" : "s", first_z,
+                       rings == 1 ? "is" : "are", rings == 1 ? "it has" : "they have");
+}
 
 LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy) {
     LayerFileInfo exposed = info;
@@ -25,37 +41,31 @@ LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& stra
 
 namespace {
 
-/// Planes of several stacks.
-class Stacks {
-  public:
-    Stacks(std::span<const LayerStack> parts, const Rounding& rounding) {
-        planes_.resize(parts.empty() ? 0 : parts.front().size());
-        for (const LayerStack& part : parts) {
-            if (part.size() != planes_.size())
-                throw Error(ErrorKind::usage, "parts of one file must have the same planes");
-            for (std::size_t i = 0; i < part.size(); ++i) {
-                ScanLayer& layer = planes_[i].emplace_back(part[i], rounding);
-                if (i > 0)
-                    layer.share_points(planes_[i - 1][planes_[i].size() - 1]);
-            }
+using StackedPlanes = std::vector<std::vector<ScanLayer>>; // of all parts
+
+StackedPlanes stacked(std::span<const LayerStack> parts, const Rounding& rounding) {
+    StackedPlanes planes(parts.empty() ? 0 : parts.front().size());
+    for (const LayerStack& part : parts) {
+        if (part.size() != planes.size())
+            throw Error(ErrorKind::usage, "parts of one file must have the same planes");
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            ScanLayer& layer = planes[i].emplace_back(part[i], rounding);
+            if (i > 0)
+                layer.share_points(planes[i - 1][planes[i].size() - 1]);
         }
     }
+    return planes;
+}
 
-    [[nodiscard]] std::size_t size() const noexcept { return planes_.size(); }
-
-    /// A plane with the neighbours that a strategy asks for.
-    [[nodiscard]] PlaneLayers plane(std::size_t i, const ScanStrategy& strategy) const {
-        PlaneLayers found{.parts = planes_[i]};
-        for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.downskin.layers, i); ++k)
-            found.below.emplace_back(planes_[i - k]);
-        for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.upskin.layers, size() - 1 - i); ++k)
-            found.above.emplace_back(planes_[i + k]);
-        return found;
-    }
-
-  private:
-    std::vector<std::vector<ScanLayer>> planes_; ///< of all parts
-};
+/// A plane with the neighbours that a strategy asks for.
+PlaneLayers with_its_neighbours(const StackedPlanes& planes, std::size_t i, const ScanStrategy& strategy) {
+    PlaneLayers found{.parts = planes[i]};
+    for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.downskin.layers, i); ++k)
+        found.below.emplace_back(planes[i - k]);
+    for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.upskin.layers, planes.size() - 1 - i); ++k)
+        found.above.emplace_back(planes[i + k]);
+    return found;
+}
 
 } // namespace
 
@@ -63,27 +73,34 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
                        const Rounding& rounding, const LayerFileInfo& info, const ScanStrategy& strategy,
                        const LayerWriteOptions& options, const Execution& execution) {
     check_strategy(strategy);
-    const Stacks stacks(parts, rounding);
+    const StackedPlanes planes = stacked(parts, rounding);
     ScanResult result;
     std::vector<bool> supports;
     for (const PartInfo& part : info.parts)
         supports.push_back(part.support);
     for (Exposure& exposure : plane_exposures(supports, strategy))
         result.exposures.push_back({std::move(exposure), {}});
-    result.layers.resize(stacks.size());
+    result.layers.resize(planes.size());
+    std::vector<std::uint64_t> thin_rings(planes.size());
     std::vector<ScanMemory> memories(supports.size());
     std::atomic<std::uint64_t> nanoseconds{0};
     const std::unique_ptr<LayerWriter> writer =
         open_layer_writer(path, format, with_exposures(info, strategy), options);
     const auto vectors_of = [&](std::size_t i) {
         const Stopwatch scanning;
-        PlaneVectors vectors = scan_plane(stacks.plane(i, strategy), supports, strategy, memories);
+        PlaneVectors vectors =
+            scan_plane(with_its_neighbours(planes, i, strategy), supports, strategy, memories);
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
                               std::memory_order_relaxed);
         result.layers[i] = std::move(vectors.figures);
+        thin_rings[i] = vectors.thin_rings;
         return std::move(vectors.layers);
     };
-    write_planes(*writer, stacks.size(), vectors_of, execution);
+    write_planes(*writer, planes.size(), vectors_of, execution);
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        result.thin.add(thin_rings[i], planes[i].front().layer().z);
+    if (options.strict && result.thin.rings > 0)
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", path, result.thin.text()));
     writer->finish();
     for (const std::vector<ScanFigures>& layer : result.layers)
         for (std::size_t i = 0; i < layer.size(); ++i)

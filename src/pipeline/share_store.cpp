@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 namespace lamella {
 
@@ -12,17 +13,27 @@ ShareStore::ShareStore(const Plan& plan, std::span<const PlaneRange> shares,
     std::vector<SlabSurvey> surveys;
     for (const PlaneCounts& shape : counts)
         surveys.emplace_back(shape);
-    std::uint64_t total = 0;
+    // Threads that write to one file at the same time wait for one another, in the system; and some hundred
+    // shares may be more files than a process can have open.
+    constexpr std::size_t most_files = 16;
+    std::vector<std::uint64_t> totals(std::min(shares_, most_files), 0);
     for (std::size_t share = 0; share < shares_; ++share)
         for (std::size_t shape = 0; shape < shapes_; ++shape) {
             Stretch& its = stretch(share, shape);
+            std::uint64_t& total = totals[share % totals.size()];
             its.begin = its.next = total;
             its.end = total += surveys[shape].triangles(shares[share]);
         }
-    if (shares_ > 1)
-        file_.emplace(total * sizeof(Triangle3f));
-    else
-        memory_ = std::make_shared<const PageArray<Triangle3f>>(total);
+    if (shares_ <= 1) {
+        memory_ = std::make_shared<const PageArray<Triangle3f>>(totals.empty() ? 0 : totals[0]);
+        return;
+    }
+    const std::uint64_t of_all = std::accumulate(totals.begin(), totals.end(), std::uint64_t{0});
+    for (const std::uint64_t total : totals)
+        files_.emplace_back(total * sizeof(Triangle3f), of_all * sizeof(Triangle3f));
+    for (std::size_t share = 0; share < shares_; ++share)
+        for (std::size_t shape = 0; shape < shapes_; ++shape)
+            stretch(share, shape).file = &files_[share % files_.size()];
 }
 
 bool ShareStore::add(std::size_t shape, const TriangleSoup& batch) {
@@ -71,7 +82,7 @@ bool ShareStore::put(Stretch& stretch, std::span<const Triangle3f> triangles) {
     if (memory_)
         std::copy(triangles.begin(), triangles.end(), memory_->data() + at);
     else
-        file_->write(at * sizeof(Triangle3f), std::as_bytes(triangles));
+        stretch.file->write(at * sizeof(Triangle3f), std::as_bytes(triangles));
     return true;
 }
 
@@ -90,11 +101,11 @@ TriangleSoup ShareStore::take(std::size_t share, std::size_t shape, const Execut
     constexpr std::uint64_t at_once = std::uint64_t{1} << 15;
     Executor executor(execution);
     executor.for_chunks(count, at_once, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        file_->read((from.begin + begin) * sizeof(Triangle3f),
-                    std::as_writable_bytes(memory->span().subspan(begin, end - begin)));
+        from.file->read((from.begin + begin) * sizeof(Triangle3f),
+                        std::as_writable_bytes(memory->span().subspan(begin, end - begin)));
     });
     executor.check_cancelled();
-    file_->forget(from.begin * sizeof(Triangle3f), count * sizeof(Triangle3f));
+    from.file->forget(from.begin * sizeof(Triangle3f), count * sizeof(Triangle3f));
     return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
 }
 

@@ -13,8 +13,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,8 +22,8 @@ namespace lamella {
 
 /// Takes the triangles of all shapes of a plate, in any order, and gives them back share by share. The planes
 /// of a plan are divided into shares; a triangle waits for each share that has a plane which cuts it. Those
-/// of a single share wait in memory, of several in a file without a name (SpillFile), each share of a shape
-/// in one stretch of it.
+/// of a single share wait in memory, of several in files without names (SpillFile), each share of a shape in
+/// one stretch of a file.
 class ShareStore {
   public:
     /// `shares` of the plan, ascending; `counts` of each shape say how many triangles will come.
@@ -39,8 +39,9 @@ class ShareStore {
     [[nodiscard]] TriangleSoup take(std::size_t share, std::size_t shape, const Execution& execution);
 
   private:
-    /// A stretch of the memory or of the file, in triangles.
+    /// A stretch of the memory or of a file, in triangles.
     struct Stretch {
+        SpillFile* file = nullptr;
         std::uint64_t begin = 0;
         std::uint64_t end = 0;
         std::atomic<std::uint64_t> next{0};
@@ -58,7 +59,7 @@ class ShareStore {
     std::size_t shares_;
     std::size_t shapes_;
     std::vector<Stretch> stretches_;
-    std::optional<SpillFile> file_;                       ///< either
+    std::deque<SpillFile> files_;                         ///< either
     std::shared_ptr<const PageArray<Triangle3f>> memory_; ///< or
 };
 

@@ -37,16 +37,11 @@
 namespace lamella {
 namespace {
 
-/// Parts are called by the name of their file.
-const PlateFile& file_of(const Plate& plate, const PlatePart& part) {
-    return plate.files[plate.shapes[part.shape].input];
-}
-
 void check_heights(const Plate& plate) {
     for (const PlatePart& part : plate.parts) {
         if (part.box.min.z != part.box.max.z)
             continue;
-        const PlateFile& file = file_of(plate, part);
+        const PlateFile& file = plate.files[plate.shapes[part.shape].input];
         // What its reading met may be the cause.
         const std::string cause = file.warnings.empty() ? "" : fmt::format(" ({})", file.warnings.front());
         throw Error(ErrorKind::input,
@@ -56,19 +51,29 @@ void check_heights(const Plate& plate) {
     }
 }
 
-/// A layer height that is a thousand times too small asks for more layers than memory has notes for.
-void check_count(const FileJob& job, double layer_height, double height) {
+/// So many take nothing to speak of.
+constexpr std::uint32_t few_layers = 100'000;
+
+/// Of uniform layers. One that is a thousand times too small asks for more layers than memory has notes for.
+void check_layer_height(const FileJob& job, double layer_height, const Box3& box) {
+    const double height = box.max.z - box.min.z;
+    if (layer_height > height)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("the layer height of {:.6g} mm is above the part's height of {:.6g} mm; choose "
+                        "a smaller one, or check the unit of the file",
+                        layer_height, height));
     double count = height / layer_height;
     if (const auto& range = job.layering.only.z_range)
         count = std::min(count, (range->second - range->first) / layer_height);
     if (const auto& range = job.layering.only.index_range)
         count = std::min(count, static_cast<double>(range->second - range->first));
-    constexpr double few = 1e5; // take nothing to speak of
     constexpr double most = std::numeric_limits<std::int32_t>::max();
-    if (!(count > few && count <= most))
+    if (!(count > few_layers && count <= most))
         return; // plan_uniform knows what to say of more
     const JobMemory memory(job);
-    const std::uint64_t bytes = JobMemory::overhead(1, static_cast<std::uint64_t>(count));
+    const std::uint64_t bytes =
+        JobMemory::overhead(1, static_cast<std::uint64_t>(count), 1, job.layer_statistics);
     if (bytes > memory.limit)
         throw Error(
             ErrorKind::limit,
@@ -79,26 +84,23 @@ void check_count(const FileJob& job, double layer_height, double height) {
                 memory.asked ? "of `max_memory`" : "that may be taken here"));
 }
 
-/// Of uniform layers.
-void check_layer_height(const FileJob& job, double layer_height, const Box3& box) {
-    const double height = box.max.z - box.min.z;
-    if (layer_height > height)
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("the layer height of {:.6g} mm is above the part's height of {:.6g} mm; choose "
-                        "a smaller one, or check the unit of the file",
-                        layer_height, height));
-    check_count(job, layer_height, height);
-}
-
 } // namespace
 
 Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
     check_heights(plate);
     if (const auto* const uniform = std::get_if<UniformLayers>(&job.layering.cut))
         check_layer_height(job, uniform->layer_height, plate.box);
-    return plan_of(
+    Plan plan = plan_of(
         job.layering, plate.box, [&] { return joined(plate, execution); }, execution);
+    const JobMemory memory(job);
+    const std::uint64_t bytes =
+        JobMemory::overhead(1, plan.layers.size(), plate.shapes.size(), job.layer_statistics);
+    if (bytes > memory.limit && plan.layers.size() > few_layers)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{} layers take {} of memory, above the {} {}; choose higher ones, or fewer",
+                                plan.layers.size(), byte_amount(bytes), byte_amount(memory.limit),
+                                memory.asked ? "of `max_memory`" : "that may be taken here"));
+    return plan;
 }
 
 namespace {
@@ -181,18 +183,8 @@ std::string describe_defects(const Inspection& found) {
     return text;
 }
 
-/// The counts of all parts, each of which is a solid of its own.
-Inspection together(const Plate& plate, const std::vector<Inspection>& shapes) {
-    Inspection all;
-    for (const PlatePart& part : plate.parts) {
-        Inspection one = shapes[part.shape];
-        one.box = part.box;
-        add(all, one);
-    }
-    return all;
-}
-
-/// Inspects every shape, and leaves it welded for an engine that would weld it once more.
+/// Inspects every shape, and leaves it welded for an engine that would weld it once more. Counts are those of
+/// all parts, each of which is a solid of its own.
 Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Execution& execution) {
     std::vector<Inspection> found;
     for (PlateShape& shape : plate.shapes) {
@@ -205,7 +197,13 @@ Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Exec
         if (keep_welded)
             shape.mesh = Mesh(std::move(welded));
     }
-    return together(plate, found);
+    Inspection all;
+    for (const PlatePart& part : plate.parts) {
+        Inspection one = found[part.shape];
+        one.box = part.box;
+        add(all, one);
+    }
+    return all;
 }
 
 /// What was found in the meshes and done to them before they were sliced.
@@ -336,7 +334,7 @@ class LayerWay {
         const Stopwatch scanning;
         PlaneVectors vectors = scan_plane(plane, supports_, *job_.scan, memories_);
         count(scanning, scan_nanoseconds_);
-        totals_.add(plane.parts.front().layer().index, vectors.figures);
+        totals_.add(plane.parts.front().layer().index, vectors.figures, vectors.thin_rings);
         return std::move(vectors.layers);
     }
 
@@ -502,6 +500,13 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
                                 job.inputs.front().path, result.report.open_chains, result.open.first_z));
+    // Of a shard the others may have some.
+    if (job.strict && !job.shard && result.changes && result.changes->changed_layers > 0 &&
+        result.report.contours == 0)
+        throw Error(ErrorKind::defect, fmt::format("{}: nothing is left of any of {} layers after the steps",
+                                                   job.inputs.front().path, result.report.layers));
+    if (job.strict && result.thin.rings > 0)
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", job.inputs.front().path, result.thin.text()));
 
     const Stopwatch writing;
     JobOutput::Written file = output.finish_file();

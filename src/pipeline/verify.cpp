@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 
 #include "core/executor.hpp"
+#include "pipeline/covered_heights.hpp"
 #include "pipeline/layer_check.hpp"
 #include "pipeline/moved_cuts.hpp"
 
@@ -92,11 +93,9 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     std::vector<LayerCheck> checks(layers.size());
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, layers.size());
-    executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            checks[i] = check_layer(layers[i], options.rounding);
-            progress.add(1);
-        }
+    executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        checks[i] = check_layer(layers[i], options.rounding);
+        progress.add(1);
     });
     progress.finish();
 
@@ -125,8 +124,10 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
          {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
           "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
          result.findings);
-    if (options.mesh)
+    if (options.mesh) {
         compare_areas(layers, checks, options, execution, result);
+        result.heights = covered_heights(layers, *options.mesh, options.rounding, execution, result.findings);
+    }
     return result;
 }
 

@@ -1,11 +1,14 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/boolean.hpp"
+#include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
 #include "contour/distance.hpp"
 #include "core/executor.hpp"
+#include "pipeline/covered_heights.hpp"
 #include "pipeline/layer_check.hpp"
+#include "pipeline/length_around.hpp"
 #include "pipeline/moved_cuts.hpp"
 #include "polygon/edge_tree.hpp"
 
@@ -69,12 +72,24 @@ double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept
                                                 : hatch_depth(contours, hatch_of(strategy, exposure.region));
 }
 
+/// What is wrong with the contours of one number.
+struct ContourRow {
+    Finding missing;
+    Finding elsewhere; ///< not of the area at its depth
+
+    void add(const ContourRow& other) {
+        missing.add(other.missing);
+        elsewhere.add(other.elsewhere);
+    }
+};
+
 /// What is wrong with the vectors of a plane.
 struct PlaneCheck {
     ContourFindings contours;
     Finding outside;
     Finding too_short;
     Finding miscovered;
+    std::map<std::uint32_t, ContourRow> rows; ///< by the numbers of contours, of those with findings
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
     std::uint64_t unbounded = 0;
@@ -153,7 +168,48 @@ class VectorCheck {
             measure_cover(group, plane, bounds, found);
     }
 
+    /// Whether each contour that the strategy asks for of a part is there, and where it should be: as the
+    /// area that it encloses tells.
+    void check_rows(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
+        if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0)
+            return;
+        const ContourRule& rule = contours_of(*options_.strategy, group.exposures.front()->exposure->region);
+        const Layer& head = group.exposures.front()->layers[plane];
+        for (std::uint32_t number = 1; number <= rule.count; ++number) {
+            LayerMeasure row;
+            Point2 at;
+            for (const LayerPart* const part : group.exposures) {
+                const Exposure& exposure = *part->exposure;
+                if (exposure.kind != VectorKind::contour || std::max(1U, exposure.contour) != number)
+                    continue;
+                row.add(measure(part->layers[plane]));
+                if (!part->layers[plane].points.empty())
+                    at = part->layers[plane].points[0];
+            }
+            double least = std::numeric_limits<double>::infinity();
+            double greatest = -least;
+            for (const Layer& section : bounds.sections) {
+                const LayerMeasure expected =
+                    measure(moved_inwards(section, contour_depth(rule, number) - bounds.depth));
+                const double slack = 4 * tolerance_ * (expected.perimeter_mm + row.perimeter_mm);
+                least = std::min(least, expected.area_mm2 - slack);
+                greatest = std::max(greatest, expected.area_mm2 + slack);
+                if (row.contours == 0 && !section.points.empty())
+                    at = section.points[0];
+            }
+            if (least <= row.area_mm2 && row.area_mm2 <= greatest)
+                continue;
+            ContourRow& wrong = found.rows[number];
+            (row.contours == 0 ? wrong.missing : wrong.elsewhere).add(head, at);
+        }
+    }
+
   private:
+    /// As `scan` does it: at a depth of 0, too, bodies that overlap are united.
+    static Layer moved_inwards(const Layer& section, double depth) {
+        return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth);
+    }
+
     /// Contours of one number neither cross nor lie within one another's material.
     [[nodiscard]] ContourFindings of_one_exposure(const Layer& vectors) const {
         ContourFindings found = check_layer(vectors, options_.rounding).found;
@@ -227,7 +283,8 @@ class VectorCheck {
         const ScanStrategy& strategy = *options_.strategy;
         Slack slack;
         double covered = 0;
-        double of_skins = 0; // which lie over the core by their overlap
+        double around_skins = 0; // mm; they lie over what is beside them by their overlap
+        double over_others = 0;
         double shallow = std::numeric_limits<double>::infinity();
         double deep = -shallow;
         for (const LayerPart* const part : group.exposures) {
@@ -238,8 +295,12 @@ class VectorCheck {
             slack.add(rule);
             const double area = length_of(part->layers[plane].hatches) * rule.distance;
             covered += area;
-            if (exposure.region == ScanRegion::upskin || exposure.region == ScanRegion::downskin)
-                of_skins += area;
+            if (exposure.region == ScanRegion::upskin || exposure.region == ScanRegion::downskin) {
+                const double around = length_around(part->layers[plane].hatches, rule.distance);
+                around_skins += around;
+                over_others += around * (exposure.region == ScanRegion::upskin ? strategy.upskin.overlap
+                                                                               : strategy.downskin.overlap);
+            }
             shallow = std::min(shallow, depth_of(exposure, strategy) - bounds.depth);
             deep = std::max(deep, depth_of(exposure, strategy) - bounds.depth);
         }
@@ -247,14 +308,16 @@ class VectorCheck {
             return; // no hatches
         const Layer& section = bounds.sections.front();
         const LayerMeasure nominal = measure(offset(section, -shallow));
+        LayerMeasure edges = nominal; // and those of skins
+        edges.perimeter_mm += around_skins;
         double least = nominal.area_mm2;
         double greatest = nominal.area_mm2;
         for (const Layer& moved : bounds.sections) {
             least = std::min(least, measure(offset(moved, -deep)).area_mm2);
             greatest = std::max(greatest, measure(offset(moved, -shallow)).area_mm2);
         }
-        least -= slack.less(nominal) + of_skins;
-        greatest += slack.more(nominal) + of_skins;
+        least -= slack.less(edges);
+        greatest += slack.more(edges) + over_others;
         if (covered < least || covered > greatest)
             found.miscovered.add(group.exposures.front()->layers[plane],
                                  section.points.empty() ? Point2{} : section.points[0]);
@@ -266,11 +329,23 @@ class VectorCheck {
     double tolerance_; ///< by which vectors, and contours that stand for material, may be off
 };
 
+void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
+    const auto tell_of = [&](const Finding& finding, const char* what) {
+        if (finding.total > 0)
+            findings.push_back(fmt::format("contour {} {} on {} layer{}, the first is {}", number, what,
+                                           finding.total, finding.total == 1 ? "" : "s", finding.place));
+    };
+    tell_of(row.missing, "is missing");
+    tell_of(row.elsewhere, "encloses another area than the material has at its depth");
+}
+
 } // namespace
 
 VectorVerification verify_vectors(std::span<const LayerPart> parts, const VectorVerifyOptions& options,
                                   const Execution& execution) {
     const std::vector<Group> groups = groups_of(parts, options.mesh.has_value());
+    // What is asked of contours goes by the part. A mesh of several does not tell these apart.
+    const std::vector<Group> of_parts = options.strategy ? groups_of(parts, false) : std::vector<Group>();
     VectorVerification result;
     if (groups.empty())
         return result;
@@ -294,19 +369,21 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     std::vector<PlaneCheck> checks(planes.size());
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, planes.size());
-    executor.for_chunks(planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            for (const Group& group : groups) {
-                Bounds bounds;
-                if (options.mesh)
-                    bounds.sections = sections[i];
-                else if (group.outermost != nullptr)
-                    bounds = {{group.outermost->layers[i]},
-                              options.strategy ? depth_of(*group.outermost->exposure, *options.strategy) : 0};
-                vectors.check(group, i, bounds, checks[i]);
-            }
-            progress.add(1);
-        }
+    executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        const auto bounds_of = [&](const Group& group, bool by_mesh) {
+            Bounds bounds;
+            if (by_mesh)
+                bounds.sections = sections[i];
+            else if (group.outermost != nullptr)
+                bounds = {{group.outermost->layers[i]},
+                          options.strategy ? depth_of(*group.outermost->exposure, *options.strategy) : 0};
+            return bounds;
+        };
+        for (const Group& group : groups)
+            vectors.check(group, i, bounds_of(group, options.mesh.has_value()), checks[i]);
+        for (const Group& group : of_parts)
+            vectors.check_rows(group, i, bounds_of(group, options.mesh && of_parts.size() == 1), checks[i]);
+        progress.add(1);
     });
     progress.finish();
 
@@ -316,6 +393,8 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
         all.outside.add(check.outside);
         all.too_short.add(check.too_short);
         all.miscovered.add(check.miscovered);
+        for (const auto& row : check.rows)
+            all.rows[row.first].add(row.second);
         result.contour_vectors += check.contour_vectors;
         result.hatch_vectors += check.hatch_vectors;
         result.unbounded += check.unbounded;
@@ -348,6 +427,12 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
          {"layer has lines that cover more or less than they should fill;",
           "layers have lines that cover more or less than they should fill;"},
          result.findings);
+    for (const auto& row : all.rows) {
+        result.wrong_contours += row.second.missing.total + row.second.elsewhere.total;
+        tell_row(row.first, row.second, result.findings);
+    }
+    if (options.mesh)
+        result.heights = covered_heights(planes, *options.mesh, options.rounding, execution, result.findings);
     if (result.unbounded > 0)
         result.findings.push_back(fmt::format(
             "of {} vector{} nothing tells where the material is: no closed contour is around them",

@@ -13,7 +13,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -270,27 +269,6 @@ bool cut(Arrangement& arrangement, const Places& places, const On& on) {
     return true;
 }
 
-/// The line of a side over a place that a sweep has come to, and did not before.
-class LinesAlong {
-  public:
-    explicit LinesAlong(const Arrangement& arrangement)
-        : arrangement_(arrangement), next_(arrangement.sides.size(), 0) {}
-
-    Segment operator()(std::uint32_t i, const Point2& at) {
-        const Side& side = arrangement_.sides[i];
-        const std::span<const Corner> corners = arrangement_.corners_of(side);
-        std::uint32_t& next = next_[i];
-        while (next < corners.size() && corners[next].place <= at)
-            ++next;
-        return {next == 0 ? side.line.lo : corners[next - 1].place,
-                next == corners.size() ? side.line.hi : corners[next].place};
-    }
-
-  private:
-    const Arrangement& arrangement_;
-    std::vector<std::uint32_t> next_; ///< corner of each side
-};
-
 /// Finds what is below each side, by a sweep from left to right. The sides meet in their ends only.
 void wind(Arrangement& arrangement) {
     std::vector<Side>& sides = arrangement.sides;
@@ -299,8 +277,18 @@ void wind(Arrangement& arrangement) {
     lines.reserve(sides.size());
     for (const Side& side : sides)
         lines.push_back(side.line);
-    LinesAlong along(arrangement);
-    SweepStatus status(lines, std::ref(along));
+    std::vector<std::uint32_t> next_corner(sides.size(), 0);
+    // The line of a side over a place that the sweep has come to, and did not before.
+    const auto along = [&arrangement, &next_corner](std::uint32_t i, const Point2& at) -> Segment {
+        const Side& side = arrangement.sides[i];
+        const std::span<const Corner> corners = arrangement.corners_of(side);
+        std::uint32_t& next = next_corner[i];
+        while (next < corners.size() && corners[next].place <= at)
+            ++next;
+        return {next == 0 ? side.line.lo : corners[next - 1].place,
+                next == corners.size() ? side.line.hi : corners[next].place};
+    };
+    SweepStatus status(lines, along);
     const std::vector<SweepEvent> events = sweep_events(lines, SweepOrder::ends_first);
     for (auto event = events.begin(); event != events.end();) {
         if (!event->begins) {

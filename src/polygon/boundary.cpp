@@ -78,28 +78,6 @@ std::vector<std::vector<Directed>> joined(std::vector<Directed> sides) {
     return rings;
 }
 
-/// The corners at which sides end, by their places.
-class EndCorners {
-  public:
-    EndCorners(const Arrangement& arrangement, const ClippingGrid& grid)
-        : corners_(arrangement.end_corners), grid_(grid) {
-        std::sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) {
-            return std::tie(a.place, a.point) < std::tie(b.place, b.point);
-        });
-    }
-    /// Of several ones in a place the smallest, and where there is none the place itself.
-    [[nodiscard]] Corner at(const Point2& place) const {
-        const auto corner = std::partition_point(corners_.begin(), corners_.end(),
-                                                 [&](const Corner& c) { return c.place < place; });
-        return corner != corners_.end() && corner->place == place ? *corner
-                                                                  : Corner{place, grid_.point(place)};
-    }
-
-  private:
-    std::vector<Corner> corners_;
-    const ClippingGrid& grid_;
-};
-
 } // namespace
 
 std::vector<Ring> boundary(const Arrangement& arrangement, const Material& material,
@@ -110,14 +88,23 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
         if (above != material(side.below.windings))
             sides.push_back(directed(arrangement, side, above));
     }
-    const EndCorners ends(arrangement, grid);
+    std::vector<Corner> ends = arrangement.end_corners;
+    std::sort(ends.begin(), ends.end(), [](const Corner& a, const Corner& b) {
+        return std::tie(a.place, a.point) < std::tie(b.place, b.point);
+    });
+    // Of several corners in a place the smallest, and where there is none the place itself.
+    const auto end_at = [&](const Point2& place) {
+        const auto corner =
+            std::partition_point(ends.begin(), ends.end(), [&](const Corner& c) { return c.place < place; });
+        return corner != ends.end() && corner->place == place ? *corner : Corner{place, grid.point(place)};
+    };
     std::vector<std::vector<Corner>> found;
     OpenRuns runs;
     for (const std::vector<Directed>& directed : joined(std::move(sides))) {
         std::vector<Corner>& ring = found.emplace_back();
         bool in_run = false;
         for (const Directed& side : directed) {
-            ring.push_back(ends.at(side.from));
+            ring.push_back(end_at(side.from));
             const std::span<const Corner> between = arrangement.corners_of(*side.side);
             if (side.from == side.side->line.lo)
                 ring.insert(ring.end(), between.begin(), between.end());
@@ -126,7 +113,7 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
             if (!side.side->alone && !in_run)
                 runs.begin(ring.back().point);
             if (!side.side->alone)
-                runs.go_on_to(ends.at(side.to).point);
+                runs.go_on_to(end_at(side.to).point);
             in_run = !side.side->alone;
         }
     }

@@ -1,7 +1,6 @@
 #include "polygon/chain_grid.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace lamella {
@@ -62,15 +61,13 @@ void ChainGrid::take(const Chain& chain, double longest) {
 }
 
 bool ChainGrid::surrounded(const Point2& p, std::uint32_t ring) const noexcept {
-    const auto around = [&](const Box2& box) {
-        return box.x0 <= p.x && p.x <= box.x1 && box.y0 <= p.y && p.y <= box.y1;
-    };
+    const Box2 at = Box2::of(p);
     const auto here = cells_->in_cell(cells_->cell(p));
     return large_rings_.size() > few_large_rings ||
            std::any_of(large_rings_.begin(), large_rings_.end(),
-                       [&](std::uint32_t i) { return i != ring && around(all_chains_->box(i)); }) ||
+                       [&](std::uint32_t i) { return i != ring && all_chains_->box(i).meets(at); }) ||
            std::any_of(here.begin(), here.end(),
-                       [&](std::uint32_t i) { return pieces_[i].ring != ring && around(boxes_[i]); });
+                       [&](std::uint32_t i) { return pieces_[i].ring != ring && boxes_[i].meets(at); });
 }
 
 /// False where the pieces reach into too many cells, or extents are beyond numbers.

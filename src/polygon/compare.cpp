@@ -7,10 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -23,59 +21,42 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 double moved_points(const RoundedLayers& stack) {
     double most = 0;
     for (const Layer& layer : stack.layers)
-        most = std::max(most, moved_point(layer, stack.rounding));
+        most = std::max(most, moved_point(layer.points.span(), stack.rounding));
     return most;
 }
 
 /// Pairs the layers of two stacks, which both ascend.
-class PlanePairs {
-  public:
-    PlanePairs(const RoundedLayers& first, const RoundedLayers& second) : first_(first), second_(second) {
-        std::size_t i = 0;
-        std::size_t j = 0;
-        while (i < first.layers.size() || j < second.layers.size()) {
-            if (belong_together(i, j)) {
-                planes_.push_back({first.layers[i].z, i, j});
-                ++i;
-                ++j;
-            } else if (z(first, i) < z(second, j)) {
-                add_alone(first.layers[i], i, {});
-                ++i;
-            } else {
-                add_alone(second.layers[j], {}, j);
-                ++j;
-            }
-        }
-    }
-
-    [[nodiscard]] std::vector<ComparedPlane> take() { return std::move(planes_); }
-
-  private:
-    [[nodiscard]] static double z(const RoundedLayers& stack, std::size_t i) {
+std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayers& second) {
+    const auto z = [](const RoundedLayers& stack, std::size_t i) {
         return i < stack.layers.size() ? stack.layers[i].z : infinity;
-    }
-
-    [[nodiscard]] bool belong_together(std::size_t i, std::size_t j) const {
-        if (i == first_.layers.size() || j == second_.layers.size())
+    };
+    const auto belong_together = [&](std::size_t i, std::size_t j) {
+        if (i == first.layers.size() || j == second.layers.size())
             return false;
         constexpr double of_arithmetic = 1e-9; // a cut half-way up is computed
-        const double apart = std::abs(z(first_, i) - z(second_, j));
-        return apart <= moved_cut(first_.layers[i], first_.rounding) +
-                            moved_cut(second_.layers[j], second_.rounding) + of_arithmetic &&
-               apart <= std::abs(z(first_, i + 1) - z(second_, j)) &&
-               apart <= std::abs(z(first_, i) - z(second_, j + 1));
+        const double apart = std::abs(z(first, i) - z(second, j));
+        return apart <= moved_cut(first.layers[i], first.rounding) +
+                            moved_cut(second.layers[j], second.rounding) + of_arithmetic &&
+               apart <= std::abs(z(first, i + 1) - z(second, j)) &&
+               apart <= std::abs(z(first, i) - z(second, j + 1));
+    };
+    std::vector<ComparedPlane> planes;
+    for (std::size_t i = 0, j = 0; i < first.layers.size() || j < second.layers.size();) {
+        ComparedPlane plane;
+        const bool together = belong_together(i, j);
+        const bool of_second = together || !(z(first, i) < z(second, j));
+        const bool of_first = together || !of_second;
+        const Layer& layer = of_first ? first.layers[i] : second.layers[j];
+        plane.z = layer.z;
+        if (of_first)
+            plane.first = i++;
+        if (of_second)
+            plane.second = j++;
+        if (together || layer.contours() > 0 || !layer.hatches.empty())
+            planes.push_back(plane);
     }
-
-    void add_alone(const Layer& layer, std::optional<std::size_t> in_first,
-                   std::optional<std::size_t> in_second) {
-        if (layer.contours() > 0)
-            planes_.push_back({layer.z, in_first, in_second});
-    }
-
-    const RoundedLayers& first_;
-    const RoundedLayers& second_;
-    std::vector<ComparedPlane> planes_;
-};
+    return planes;
+}
 
 /// The largest way from a corner of `from` to the contours of the other, where it is larger than what was
 /// found before.
@@ -130,16 +111,16 @@ StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                         std::optional<double> tolerance_mm) {
     StackComparison result{.tolerance_mm =
                                tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
-                           .planes = PlanePairs(first, second).take()};
-    bool paired = false;
+                           .planes = paired(first, second)};
+    bool any_pair = false;
     for (ComparedPlane& plane : result.planes) {
         if (!plane.first || !plane.second)
             continue;
-        paired = true;
+        any_pair = true;
         plane.difference = compare(first.layers[*plane.first], second.layers[*plane.second]);
         plane.agree = plane.difference.within(result.tolerance_mm);
     }
-    result.cut_apart = !paired && lowest_cut_apart(first, second);
+    result.cut_apart = !any_pair && lowest_cut_apart(first, second);
     return result;
 }
 

@@ -7,32 +7,15 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numeric>
 #include <set>
 #include <span>
 #include <tuple>
-#include <utility>
 
 namespace lamella {
 
 namespace {
-
-/// Whether two segments have a point in common. Neither is a point.
-bool meet(const Segment& s, const Segment& t) noexcept {
-    const int a = side(s, t.lo) * side(s, t.hi);
-    if (a > 0)
-        return false;
-    const int b = side(t, s.lo) * side(t, s.hi);
-    if (b > 0)
-        return false;
-    if (a < 0 || b < 0)
-        return true; // one has its ends on both sides of the other one's line, the other one on or across its
-    // Ends that lie on the other one's line: all of them, or a common one, or one in the other's inside.
-    return s.lo <= t.hi && t.lo <= s.hi;
-}
 
 /// Disjoint sets of rings; a set is marked once a contact was found in it.
 class Groups {
@@ -117,8 +100,8 @@ class ContactSearch {
     ContactSearch(const Layer& layer, const MonotoneChains& chains)
         : layer_(layer), all_(chains), groups_(layer.rings) {}
 
-    Contacts run(const ChainGrid* grid) && {
-        const bool searched = grid != nullptr && search(*grid);
+    Contacts run(const std::optional<ChainGrid>& grid) && {
+        const bool searched = grid && search(*grid);
         if (!searched && !all_.all().empty() && (found_ || !free_of_contacts()))
             group_by_boxes(all_, groups_);
         return groups_.contacts();
@@ -205,9 +188,9 @@ class ContactSearch {
             // pieces right beside it: these fold. The same for y.
             const unsigned ways = a.ways | b.ways;
             if (!way::turns_in_y(ways))
-                return way::turns_in_x(ways) && last_step(a).y == 0 && first_step(b).y == 0;
+                return way::turns_in_x(ways) && last_but_one(a).y == a.back.y && second(b).y == b.front.y;
             if (!way::turns_in_x(ways))
-                return last_step(a).x == 0 && first_step(b).x == 0;
+                return last_but_one(a).x == a.back.x && second(b).x == b.front.x;
         }
         return in_contact(a, 0, a.segments, b, 0, b.segments);
     }
@@ -219,21 +202,18 @@ class ContactSearch {
                (end == layer_.offsets[a.ring + 1] ? layer_.offsets[a.ring] : end) == b.first;
     }
 
-    /// Of the first segment of a chain that is no point: 1 in what changes along it, 0 in what does not.
-    [[nodiscard]] Point2 first_step(const Chain& chain) const noexcept {
+    /// The second point of a chain, and the last but one, points that repeat aside.
+    [[nodiscard]] const Point2& second(const Chain& chain) const noexcept {
         std::uint32_t i = 1;
         while (i < chain.segments && all_.point(chain, i) == chain.front)
             ++i;
-        return step(chain.front, all_.point(chain, i));
+        return all_.point(chain, i);
     }
-    [[nodiscard]] Point2 last_step(const Chain& chain) const noexcept {
+    [[nodiscard]] const Point2& last_but_one(const Chain& chain) const noexcept {
         std::uint32_t i = chain.segments - 1;
         while (i > 0 && all_.point(chain, i) == chain.back)
             --i;
-        return step(all_.point(chain, i), chain.back);
-    }
-    static Point2 step(const Point2& a, const Point2& b) noexcept {
-        return {a.x != b.x ? 1.0 : 0.0, a.y != b.y ? 1.0 : 0.0};
+        return all_.point(chain, i);
     }
 
     /// Whether the segments [a0, a1) of chain a are in contact with the segments [b0, b1) of b.
@@ -344,7 +324,8 @@ class ContactSearch {
 
 } // namespace
 
-Contacts find_contacts(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid) {
+Contacts find_contacts(const Layer& layer, const MonotoneChains& chains,
+                       const std::optional<ChainGrid>& grid) {
     if (layer.points.size() >= Contacts::none)
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967294 points; contacts are found in smaller ones");

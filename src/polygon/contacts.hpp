@@ -8,6 +8,7 @@
 #include "polygon/monotone_chains.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lamella {
@@ -31,7 +32,8 @@ struct Contacts {
 /// long walls aslant side by side. Where such a layer has contacts, rings whose boxes overlap are put in one
 /// group: groups may be larger than contacts ask for, never smaller.
 ///
-/// `grid`: of these chains; null where there is none.
-[[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid);
+/// `grid`: of these chains, where there is one.
+[[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains,
+                                     const std::optional<ChainGrid>& grid);
 
 } // namespace lamella

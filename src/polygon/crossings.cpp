@@ -48,20 +48,6 @@ struct Frame {
     }
 };
 
-bool share_an_end(const Segment& s, const Segment& t) noexcept {
-    return s.lo == t.lo || s.hi == t.hi || s.lo == t.hi || s.hi == t.lo;
-}
-
-bool cross(const Segment& s, const Segment& t) noexcept {
-    if (s.lo.x >= t.hi.x || t.lo.x >= s.hi.x)
-        return false; // they meet in a common vertical at most, where one of them ends
-    const auto [s_min, s_max] = std::minmax(s.lo.y, s.hi.y);
-    const auto [t_min, t_max] = std::minmax(t.lo.y, t.hi.y);
-    if (s_min >= t_max || t_min >= s_max || share_an_end(s, t))
-        return false; // a touch at most
-    return side(s, t.lo) * side(s, t.hi) < 0 && side(t, s.lo) * side(t, s.hi) < 0;
-}
-
 /// All proper crossings of a layer. A grid divides the segments into cells with a few of them; cells with
 /// many are divided again. Where most segments are long for their cell no grid parts them (many walls side by
 /// side, aslant); there a sweep finds in O(m log m) that nothing crosses, or a few segments that have a part
@@ -326,14 +312,11 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
     if (layer.points.size() > std::numeric_limits<SegmentId>::max())
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967295 points; crossings are found in smaller ones");
-    const auto all = [](std::size_t) {
-        return true;
-    };
     // Rings that touch nothing, as most do, are known for that in a small part of the time.
     if (layer.open_chains() == 0) {
         const MonotoneChains chains(layer);
         if (const std::optional<ChainGrid> grid = ChainGrid::of(chains)) {
-            const Contacts contacts = find_contacts(layer, chains, &*grid);
+            const Contacts contacts = find_contacts(layer, chains, grid);
             if (contacts.groups == 0)
                 return {};
             const auto in_contact = [&contacts](std::size_t ring) {
@@ -342,6 +325,9 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
             return CrossingSearch(layer, in_contact, keep, enough).run();
         }
     }
+    const auto all = [](std::size_t) {
+        return true;
+    };
     return CrossingSearch(layer, all, keep, enough).run();
 }
 

@@ -25,12 +25,6 @@ double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexc
     return squared(p.x - (a.x + t * dx), p.y - (a.y + t * dy));
 }
 
-bool meet(const Segment& s, const Point2& a, const Point2& b) noexcept {
-    const Segment t = segment_between(a, b);
-    const bool apart = side(s, a) * side(s, b) > 0 || side(t, s.lo) * side(t, s.hi) > 0;
-    return !apart && Box2::of(s.lo, s.hi).meets(Box2::of(a, b));
-}
-
 /// How far boxes are apart along an axis.
 double gap(double least, double most, double other_least, double other_most) noexcept {
     return std::max({other_least - most, 0.0, least - other_most});
@@ -39,28 +33,6 @@ double gap(double least, double most, double other_least, double other_most) noe
 double distance_squared(const Box2& a, const Box2& b) noexcept {
     return squared(gap(a.x0, a.x1, b.x0, b.x1), gap(a.y0, a.y1, b.y0, b.y1));
 }
-
-/// At least how far a box is from the line of a segment, of a slanting one above all, whose own box says
-/// little.
-class LineBand {
-  public:
-    explicit LineBand(const Segment& s) noexcept : through_(s.lo) {
-        const double length = std::sqrt(squared(s.hi.x - s.lo.x, s.hi.y - s.lo.y));
-        if (length > 0)
-            normal_ = {(s.lo.y - s.hi.y) / length, (s.hi.x - s.lo.x) / length};
-    }
-    [[nodiscard]] double distance_squared(const Box2& box) const noexcept {
-        const double middle = normal_.x * ((box.x0 + box.x1) / 2 - through_.x) +
-                              normal_.y * ((box.y0 + box.y1) / 2 - through_.y);
-        const double half = (std::abs(normal_.x) * box.width() + std::abs(normal_.y) * box.height()) / 2;
-        const double apart = std::max(0.0, std::abs(middle) - half);
-        return apart * apart;
-    }
-
-  private:
-    Point2 through_;
-    Point2 normal_{0, 0};
-};
 
 } // namespace
 
@@ -134,19 +106,32 @@ double EdgeTree::distance_squared(const Point2& p, double enough) const {
 double EdgeTree::distance_squared(const Segment& s, double enough) const {
     double best = far_away;
     const Box2 own = Box2::of(s.lo, s.hi);
-    const LineBand band(s);
+    const double length = std::sqrt(squared(s.hi.x - s.lo.x, s.hi.y - s.lo.y));
+    Point2 normal;
+    if (length > 0)
+        normal = {(s.lo.y - s.hi.y) / length, (s.hi.x - s.lo.x) / length};
+    // At least how far a box is, squared, from the line of the segment: of a slanting one, its own box says
+    // little.
+    const auto squared_from_line = [&](const Box2& box) {
+        const double middle =
+            normal.x * ((box.x0 + box.x1) / 2 - s.lo.x) + normal.y * ((box.y0 + box.y1) / 2 - s.lo.y);
+        const double half = (std::abs(normal.x) * box.width() + std::abs(normal.y) * box.height()) / 2;
+        const double apart = std::max(0.0, std::abs(middle) - half);
+        return apart * apart;
+    };
     if (!empty())
         search(
             0, enough,
             [&](const Box2& box) {
-                return std::max(lamella::distance_squared(own, box), band.distance_squared(box));
+                return std::max(lamella::distance_squared(own, box), squared_from_line(box));
             },
             [&](const Edge& edge) {
-                return meet(s, edge.a, edge.b) ? 0
-                                               : std::min({lamella::distance_squared(s.lo, edge.a, edge.b),
-                                                           lamella::distance_squared(s.hi, edge.a, edge.b),
-                                                           lamella::distance_squared(edge.a, s.lo, s.hi),
-                                                           lamella::distance_squared(edge.b, s.lo, s.hi)});
+                return meet(s, segment_between(edge.a, edge.b))
+                           ? 0
+                           : std::min({lamella::distance_squared(s.lo, edge.a, edge.b),
+                                       lamella::distance_squared(s.hi, edge.a, edge.b),
+                                       lamella::distance_squared(edge.a, s.lo, s.hi),
+                                       lamella::distance_squared(edge.b, s.lo, s.hi)});
             },
             best);
     return best;

@@ -3,6 +3,8 @@
 #include "polygon/overlay.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -10,16 +12,9 @@
 namespace lamella {
 
 std::string_view fill_rule_name(FillRule rule) noexcept {
-    switch (rule) {
-    case FillRule::nonzero:
-        return "nonzero";
-    case FillRule::evenodd:
-        return "evenodd";
-    case FillRule::positive:
-        return "positive";
-    default:
-        return "none";
-    }
+    constexpr std::array names{"none", "nonzero", "evenodd", "positive"};
+    assert(static_cast<std::size_t>(rule) < names.size());
+    return names[static_cast<std::size_t>(rule)];
 }
 
 Filled fill(const Layer& layer, FillRule rule) {

@@ -8,6 +8,7 @@
 #include "polygon/monotone_chains.hpp"
 #include "polygon/windings.hpp"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,12 +24,13 @@ struct WoundNesting {
 };
 
 /// The same as `nesting(layer)`, but what that begins with is there already: the chains of the layer, their
-/// grid (null where there is none), and its contacts, with a group or `none` for each ring. Rings in contact
+/// grid (where there is one), and its contacts, with a group or `none` for each ring. Rings in contact
 /// with none, and not over such that are, take little time: O(log c) for c rings, and a short way down the
 /// grid.
 ///
 /// `turns`: what each ring adds to the windings; for a layer of one operand, 1 to the first.
-[[nodiscard]] WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
-                                   const Contacts& contacts, std::span<const Windings> turns);
+[[nodiscard]] WoundNesting nesting(const Layer& layer, const MonotoneChains& chains,
+                                   const std::optional<ChainGrid>& grid, const Contacts& contacts,
+                                   std::span<const Windings> turns);
 
 } // namespace lamella

@@ -1,6 +1,7 @@
 #include "polygon/moved_rings.hpp"
 
 #include "polygon/clipping_grid.hpp"
+#include "polygon/orientation.hpp"
 #include "polygon/swallowtails.hpp"
 
 #include <algorithm>
@@ -52,6 +53,9 @@ struct Turn {
     double sine; ///< positive to the left
     double cosine;
     double mitre; ///< 1 / (1 + cosine), infinite for a fold: parallels meet at that times both normals
+
+    /// Whether sides all but run back along one another: then the turn is mostly rounding error.
+    [[nodiscard]] bool folds() const noexcept { return !(1 + cosine > 1e-6); }
 };
 
 /// Where a moved side ends.
@@ -187,6 +191,8 @@ class RingSides {
             const Point2& v = sides_[after(i)].direction;
             const double cosine = u.x * v.x + u.y * v.y;
             turns_[i] = {u.x * v.y - u.y * v.x, cosine, 1 / (1 + cosine)};
+            if (turns_[i].folds())
+                look_at_fold(i);
         }
     }
 
@@ -209,6 +215,16 @@ class RingSides {
     }
 
   private:
+    /// Of a fold the sign of the sine decides whether strips part, so it has to be right, and 1 + cosine has
+    /// no digits left.
+    void look_at_fold(std::size_t i) {
+        const std::size_t next = after(i);
+        const int side = orientation(sides_[i].from, sides_[next].from, sides_[after(next)].from);
+        Turn& turn = turns_[i];
+        turn.sine = side * std::max(std::abs(turn.sine), 0x1p-60);
+        turn.mitre = (1 - turn.cosine) / (turn.sine * turn.sine);
+    }
+
     std::vector<MovedSide> sides_;
     std::vector<Turn> turns_;
 };
@@ -250,7 +266,7 @@ class RingMover {
         cuts_.resize(sides_.size());
         for (std::size_t i = 0; i < sides_.size(); ++i) {
             const double sine = parting(i);
-            // Infinite, or not a number, for a fold.
+            // All but infinite for a fold.
             cuts_[i] = sine < 0 ? reach_ * -sine * sides_.turn(i).mitre : 0;
         }
     }
@@ -337,7 +353,7 @@ class RingMover {
         const Point2 m = distance_ * right_of(b.direction);
         if (j == after(i)) {
             const Turn& turn = sides_.turn(i);
-            if (!(1 + turn.cosine > 1e-6))
+            if (turn.folds())
                 return std::nullopt;
             return SideMeeting{b.from + turn.mitre * (n + m), a.length - cuts_[i], cuts_[i]};
         }

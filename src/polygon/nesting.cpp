@@ -34,17 +34,15 @@ class NestingSearch {
                 order_.push_back(i);
     }
 
-    /// `grid`: null where there is none.
-    WoundNesting run(const ChainGrid* grid) && {
+    WoundNesting run(const std::optional<ChainGrid>& grid) && {
         order_by_area();
         order_from_left_to_right();
-        if (grid != nullptr && grid->crowded())
-            grid = nullptr;
+        const bool by_grid = grid && !grid->crowded();
         std::vector<EdgeBelow> edges;
         std::vector<std::uint32_t> open; // an edge is not enough to know
         edges.reserve(order_.size());
         for (const std::uint32_t ring : order_) {
-            edges.push_back(grid != nullptr ? edge_below_end(ring, *grid) : EdgeBelow{.sure = false});
+            edges.push_back(by_grid ? edge_below_end(ring, *grid) : EdgeBelow{.sure = false});
             if (!edges.back().sure)
                 open.push_back(ring);
         }
@@ -170,12 +168,10 @@ Nesting nesting(const Layer& layer) {
     const MonotoneChains chains(layer);
     const std::optional<ChainGrid> grid = ChainGrid::of(chains);
     const std::vector<Windings> turns(layer.rings, Windings{1, 0});
-    return nesting(layer, chains, grid ? &*grid : nullptr,
-                   find_contacts(layer, chains, grid ? &*grid : nullptr), turns)
-        .nesting;
+    return nesting(layer, chains, grid, find_contacts(layer, chains, grid), turns).nesting;
 }
 
-WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const ChainGrid* grid,
+WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const std::optional<ChainGrid>& grid,
                      const Contacts& contacts, std::span<const Windings> turns) {
     check_size(layer);
     return NestingSearch(layer, chains, turns, contacts).run(grid);

@@ -13,6 +13,8 @@
 #include "polygon/straight_points.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -51,7 +53,7 @@ class Boundaries {
     }
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
-    /// `vanished`: for each distance, where given.
+    /// `vanished`: by the first distance, where given.
     [[nodiscard]] std::vector<Layer> moved(std::span<const double> distances, const OffsetCorners& corners,
                                            std::uint64_t* vanished = nullptr) const {
         std::vector<std::vector<bool>> gone;
@@ -62,8 +64,8 @@ class Boundaries {
         for (std::size_t k = 0; k < all.size(); ++k) {
             const Layer rings = std::move(all[k]);
             Overlaid overlaid = Overlay(rings).filled(Material(FillRule::positive), Walls::dissolved);
-            if (vanished != nullptr)
-                vanished[k] = vanished_rings(rings, overlaid.fates, gone[k], distances[k]);
+            if (vanished != nullptr && k == 0)
+                *vanished = vanished_rings(rings, overlaid.fates, gone[k], distances[k]);
             result.push_back(with_chains(std::move(overlaid.filled.layer)));
         }
         return result;
@@ -157,14 +159,9 @@ class Boundaries {
 } // namespace
 
 std::string_view offset_corner_name(OffsetCorner corner) noexcept {
-    switch (corner) {
-    case OffsetCorner::bevel:
-        return "bevel";
-    case OffsetCorner::round:
-        return "round";
-    default:
-        return "mitre";
-    }
+    constexpr std::array names{"mitre", "bevel", "round"};
+    assert(static_cast<std::size_t>(corner) < names.size());
+    return names[static_cast<std::size_t>(corner)];
 }
 
 Layer offset(const Layer& layer, double distance, const OffsetCorners& corners, std::uint64_t* vanished) {
@@ -177,14 +174,16 @@ Layer offset(const Layer& layer, double distance, const OffsetCorners& corners, 
 }
 
 std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
-                           const OffsetCorners& corners) {
+                           const OffsetCorners& corners, std::uint64_t* vanished) {
     check(distances, corners);
+    if (vanished != nullptr)
+        *vanished = 0;
     std::vector<double> others;
     std::copy_if(distances.begin(), distances.end(), std::back_inserter(others),
                  [](double distance) { return distance != 0; });
     std::vector<Layer> moved;
     if (layer.rings > 0 && !others.empty())
-        moved = Boundaries(layer).moved(others, corners);
+        moved = Boundaries(layer).moved(others, corners, distances.front() == 0 ? nullptr : vanished);
     std::vector<Layer> result;
     std::size_t next = 0;
     for (const double distance : distances)

@@ -171,8 +171,8 @@ class Filler {
 
 Overlay::Overlay(const Layer& layer, std::vector<Windings> turns)
     : layer_(layer), turns_(std::move(turns)), chains_(layer), grid_(ChainGrid::of(chains_)),
-      contacts_(find_contacts(layer, chains_, grid_ ? &*grid_ : nullptr)),
-      nest_(nesting(layer, chains_, grid_ ? &*grid_ : nullptr, contacts_, turns_)) {}
+      contacts_(find_contacts(layer, chains_, grid_)),
+      nest_(nesting(layer, chains_, grid_, contacts_, turns_)) {}
 
 bool Overlay::clean() const noexcept {
     if (contacts_.groups > 0)

@@ -4,7 +4,6 @@
 
 #include "polygon/orientation.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <set>

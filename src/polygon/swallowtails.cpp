@@ -4,7 +4,6 @@
 #include "polygon/orientation.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
 #include <utility>
 
@@ -23,22 +22,6 @@ namespace {
 //
 // A stretch may begin and end in the middle of a moved side, too: a side is two sides with a straight corner
 // between them, anywhere. So of a ring with a loop at each of its corners each loop is looked at by itself.
-
-/// Whether segments from a to b and from c to d have a point in common. None of them is a point.
-bool meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) noexcept {
-    if (!Box2::of(a, b).meets(Box2::of(c, d)))
-        return false;
-    const Segment s = segment_between(a, b);
-    const Segment t = segment_between(c, d);
-    return side(s, c) * side(s, d) <= 0 && side(t, a) * side(t, b) <= 0;
-}
-
-/// Whether each has its ends strictly on both sides of the other one.
-bool cross(const Point2& a, const Point2& b, const Point2& c, const Point2& d) noexcept {
-    if (!Box2::of(a, b).meets(Box2::of(c, d)))
-        return false;
-    return orientation(a, b, c) * orientation(a, b, d) < 0 && orientation(c, d, a) * orientation(c, d, b) < 0;
-}
 
 /// How far along the way from a to b, as a share of it, the line through c and d is.
 double share_to_line(const Point2& a, const Point2& b, const Point2& c, const Point2& d) noexcept {
@@ -126,6 +109,7 @@ class SwallowtailCutter {
     bool cut_loop_before(std::size_t i) {
         const Point2 from = left_.back().at;
         const Point2& to = ring_[i].at;
+        const Segment way = segment_between(from, to);
         double nearest = std::numeric_limits<double>::infinity();
         std::size_t crossed = 0;
         bool touches = false;
@@ -133,9 +117,10 @@ class SwallowtailCutter {
              k + 2 < left_.size(); ++k) {
             const Point2& a = left_[k].at;
             const Point2& b = left_[k + 1].at;
-            if (!meet(from, to, a, b))
+            const Segment side = segment_between(a, b);
+            if (!meet(way, side))
                 continue;
-            touches = touches || !cross(from, to, a, b);
+            touches = touches || !cross(way, side);
             if (const double share = share_to_line(from, to, a, b); share < nearest) {
                 nearest = share;
                 crossed = k;
@@ -200,7 +185,7 @@ class SwallowtailCutter {
             const std::size_t corner = corner_after(left.after);
             const Point2 from = base(split);
             const Box2 side = Box2::of(corners_[corner - 1], corners_[corner]);
-            if (side.x0 <= from.x && from.x <= side.x1 && side.y0 <= from.y && from.y <= side.y1)
+            if (side.meets(Box2::of(from)))
                 all.push_back(split);
         }
         left_ = std::move(all);
@@ -254,7 +239,8 @@ class SwallowtailCutter {
                     continue;
                 const Point2& c = polygon_[j];
                 const Point2& d = following(j);
-                if (p != c && p != d && q != c && q != d && meet(p, q, c, d))
+                if (p != c && p != d && q != c && q != d &&
+                    meet(segment_between(p, q), segment_between(c, d)))
                     return false;
             }
         }
@@ -275,7 +261,7 @@ class SwallowtailCutter {
             if (a == b || (orientation(a, b, c) == 0 && (a < b) == (c < b)))
                 return false;
             for (std::size_t j = i + 2; j < n && j + 1 < n + i; ++j)
-                if (meet(a, b, polygon_[j], following(j)))
+                if (meet(segment_between(a, b), segment_between(polygon_[j], following(j))))
                     return false;
         }
         return true;

@@ -4,12 +4,6 @@
 
 namespace lamella {
 
-namespace {
-
-constexpr std::uint8_t full = 255; // whatever gamma is
-
-} // namespace
-
 void CentreRows::cover(std::uint32_t from, std::uint32_t to) {
     if (from == to)
         return;
@@ -20,7 +14,7 @@ void CentreRows::cover(std::uint32_t from, std::uint32_t to) {
     }
     if (from > 0)
         runs_.push_back({from, 0});
-    runs_.push_back({to, full});
+    runs_.push_back({to, 255}); // full, whatever gamma is
 }
 
 DrawnRow CentreRows::draw(std::uint32_t row) {

@@ -10,10 +10,10 @@
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -218,7 +218,8 @@ class AmfReader {
 
 bool is_amf(std::string_view text) {
     constexpr std::size_t longest_preface = 1U << 16;
-    return text.substr(0, longest_preface).find("<amf") != std::string_view::npos;
+    const std::string_view begin = after_blanks(text.substr(0, longest_preface));
+    return begin.starts_with('<') && begin.find("<amf") != std::string_view::npos;
 }
 
 MeshFile read_amf(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {

@@ -1,7 +1,5 @@
 #include "read/amf_document.hpp"
 
-#include "lamella/core/error.hpp"
-
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"

@@ -1,13 +1,11 @@
 #include "lamella/read/any_file.hpp"
 
-#include "lamella/core/error.hpp"
-
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
 #include "core/memory_size.hpp"
+#include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
-#include "read/unpacked_file.hpp"
 
 #include <cstdint>
 
@@ -19,13 +17,12 @@ std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const st
                                               const MeshReadOptions& options, const Execution& execution) {
     const ByteSource source = unpacked(opened, options.max_memory, execution);
     const MeshFormatRow* const format = recognised_format(source, options);
-    const bool layers = format != nullptr && format->layers;
-    if (layers || is_zip(source.text())) {
+    if ((format != nullptr && format->read_layers != nullptr) || is_zip(source.text())) {
         try {
             return read_unpacked_layers(source, {.max_memory = options.max_memory}, execution);
-        } catch (const Error& error) {
-            if (layers || error.kind() != ErrorKind::input)
-                throw; // else it is a package of meshes
+        } catch (const NoLayers&) {
+            // Then it is a package of meshes. One whose layers are damaged is not: its meshes may be
+            // stand-ins.
         }
     }
     MeshFile file = read_unpacked_mesh(source, options, execution);
@@ -38,7 +35,7 @@ std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const st
 std::variant<MeshFile, LayerFile> read_any(const std::string& path, const MeshReadOptions& options,
                                            const Execution& execution) {
     const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    return read_opened(open_bytes(path, most, execution), path, options, execution);
+    return read_opened(open_bytes(path, execution, most), path, options, execution);
 }
 
 std::variant<MeshFile, LayerFile> read_any(std::span<const std::byte> bytes, const std::string& name,

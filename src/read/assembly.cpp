@@ -47,8 +47,10 @@ class Placer {
         limits_.add_bytes(all.instances * sizeof(MeshInstance));
         instances_.reserve(all.instances);
         reaches_.resize(objects_.size());
-        for (const AssemblyUse& root : roots)
-            put(root, {}, "", false);
+        for (const AssemblyNode& node : nodes_)
+            filled_.push_back(filled(node.uses));
+        for (const AssemblyUse* root : filled(roots))
+            put(*root, {}, "", false);
         return std::move(instances_);
     }
 
@@ -89,12 +91,19 @@ class Placer {
         return known;
     }
 
+    /// The uses that lead to a mesh: the others are skipped once, not again for each instance.
+    [[nodiscard]] std::vector<const AssemblyUse*> filled(std::span<const AssemblyUse> uses) const {
+        std::vector<const AssemblyUse*> result;
+        for (const AssemblyUse& use : uses)
+            if (totals_[use.node].instances != 0)
+                result.push_back(&use);
+        return result;
+    }
+
     // A node that was counted in one place may be used deeper down in another.
     void put(const AssemblyUse& use, const Transform& outer, const std::string& name, bool in_support,
              int depth = 0) {
         const AssemblyNode& node = nodes_[use.node];
-        if (totals_[use.node].instances == 0)
-            return; // many empty ones may be there
         if (depth > deepest)
             fail(node.place, fmt::format("is nested deeper than {}", deepest));
         const Transform placement = compose(outer, use.placement);
@@ -106,8 +115,8 @@ class Placer {
             check_reach(instance, use.place);
             instances_.push_back(std::move(instance));
         }
-        for (const AssemblyUse& inner : node.uses)
-            put(inner, placement, nearest, support, depth + 1);
+        for (const AssemblyUse* inner : filled_[use.node])
+            put(*inner, placement, nearest, support, depth + 1);
     }
 
     void check_reach(const MeshInstance& instance, const std::string& place) {
@@ -144,6 +153,7 @@ class Placer {
     ReadLimits& limits_;
     Executor& executor_;
     std::vector<Total> totals_;
+    std::vector<std::vector<const AssemblyUse*>> filled_; ///< of each node: the uses that lead to a mesh
     std::vector<std::optional<std::array<double, 3>>> reaches_; ///< largest coordinates of each mesh
     std::vector<MeshInstance> instances_;
 };

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 namespace lamella {
 
@@ -32,20 +33,12 @@ void make_layers(std::vector<RawLayer>& raw, const CommonLayerHeader& header, st
             fmt::format("the first layer, at the bottom of the part (z = {} mm), has contours; heights "
                         "are taken for the bottoms of layers",
                         raw.front().z));
-    const std::size_t begin = has_zero_layer ? 1 : 0;
-    check_part_planes(file, n - begin, bytes);
-    for (std::size_t i = begin; i < n; ++i) {
-        double bottom = 0;
-        double top = 0;
-        if (heights_are_bottoms) {
-            bottom = raw[i].z;
-            top = i + 1 < n ? raw[i + 1].z : bottom + (bottom - raw[i - 1].z);
-        } else {
-            top = raw[i].z;
-            bottom = i > 0 ? raw[i - 1].z : top - first_step;
-        }
-        add_layer(file, raw[i], i - begin, bottom + (top - bottom) / 2, bottom, top, limits);
-    }
+    const auto layers = std::span(raw).subspan(has_zero_layer ? 1 : 0);
+    check_part_planes(file, layers.size(), bytes);
+    if (heights_are_bottoms)
+        add_layers_by_bottoms(file, layers, raw[n - 1].z + (raw[n - 1].z - raw[n - 2].z), limits);
+    else
+        add_layers_by_tops(file, layers, raw[0].z - (has_zero_layer ? 0 : first_step), limits);
 }
 
 } // namespace
@@ -65,10 +58,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name,
                             const ExposureOfLabel& exposure_of, ReadLimits& limits,
                             const Execution& execution) {
     const CommonLayerHeader header = read_common_layer_header(bytes, name);
-    LayerFile file{.path = name,
-                   .format = header.binary ? "cli" : "cli-ascii",
-                   .units_mm = header.units_mm,
-                   .rounding = {.single_precision = header.binary}};
+    LayerFile file{.path = name, .format = header.binary ? "cli" : "cli-ascii", .units_mm = header.units_mm};
     CommonLayerGeometry geometry(header, name, limits);
     if (header.binary)
         read_binary_geometry(bytes, name, header, execution, geometry);
@@ -82,9 +72,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name,
     if (header.layers && *header.layers != found)
         file.warnings.push_back(
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
-    // Decimals of single precision come from that.
-    if (const double step = geometry.step_mm(); !header.binary || step == header.units_mm)
-        file.rounding.step_mm = step;
+    file.rounding = geometry.rounding(header.binary);
     geometry.say(file.warnings);
     geometry.number_parts(header, file);
     for (LayerPart& part : file.parts)

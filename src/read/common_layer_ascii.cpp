@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace lamella {
 
@@ -70,50 +70,43 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
             text.expect('/', "the part's number");
             const std::int64_t part = integer(text, "the part's number");
             text.expect(',', "the next parameter");
-            const bool polyline = command == "POLYLINE";
+            const bool hatches = command == "HATCHES";
             CommonLayerDirection direction{};
-            if (polyline) {
+            if (!hatches) {
                 direction = take_direction(text);
                 text.expect(',', "the number of points");
             }
             const std::int64_t count =
-                integer(text, polyline ? "the number of points" : "the number of hatches");
+                integer(text, hatches ? "the number of hatches" : "the number of points");
+            const std::int64_t points_each = hatches ? 2 : 1;
             // Two characters at least for each number that must follow.
-            const std::int64_t numbers = polyline ? 2 : 4;
-            if (count < 0 || count > static_cast<std::int64_t>(text.rest().size()) / (2 * numbers) + 1)
+            if (count < 0 || count > static_cast<std::int64_t>(text.rest().size()) / (4 * points_each) + 1)
                 text.fail(fmt::format("a count of {}", count),
                           fmt::format("{} bytes are left in the file", text.rest().size()));
             const auto place = [&] {
                 return fmt::format("line {}", line_at(bytes, command_at));
             };
-            if (polyline)
-                geometry.expect_points(static_cast<std::uint64_t>(count), place);
-            else
-                geometry.expect_hatch_points(2 * static_cast<std::uint64_t>(count), place);
-            for (std::int64_t i = 0; i < count; ++i) {
-                std::array<double, 4> value{};
-                for (std::size_t k = 0; k < static_cast<std::size_t>(numbers); ++k) {
+            const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
+            std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, place);
+            for (std::uint64_t i = 0; i < number_of_points; ++i) {
+                std::array<double, 2> p{};
+                for (double& value : p) {
                     text.expect(',', "the next coordinate");
-                    value[k] = text.number("a coordinate");
+                    value = text.number("a coordinate");
                 }
-                if (polyline) {
-                    geometry.add_point(value[0], value[1]);
-                } else {
-                    geometry.add_hatch_point(value[0], value[1]);
-                    geometry.add_hatch_point(value[2], value[3]);
-                }
+                geometry.add_point(points, p[0], p[1]);
             }
             text.skip_blanks();
             if (!text.done() && !text.rest().starts_with("$$"))
                 text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 12), 24)),
                           fmt::format("the count of {} says that the coordinates end here", count));
-            if (polyline)
-                geometry.end_polyline(part, direction, place);
-            else
+            if (hatches)
                 geometry.end_hatches(part, place);
+            else
+                geometry.end_polyline(part, direction, place);
         } else {
             // Extensions such as $$POWER/100.0 stand between polylines.
-            text.move_to(std::min(bytes.find_first_of("\r\n", text.at()), bytes.size()));
+            text.skip_to_command();
         }
     }
     progress.finish();

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 namespace lamella {
 
@@ -69,29 +70,6 @@ class Bytes {
     const std::string& name_;
 };
 
-/// How 16-bit coordinates are meant. The standard says unsigned; exports exist that are signed, and only the
-/// header's box tells: unsigned where it is said to be non-negative.
-class ShortNumbers {
-  public:
-    explicit ShortNumbers(const CommonLayerHeader& header)
-        : signed_(header.dimension && ((*header.dimension)[0] < 0 || (*header.dimension)[1] < 0)) {}
-
-    [[nodiscard]] double operator()(const char* from) const {
-        std::uint16_t bits = 0;
-        std::memcpy(&bits, from, sizeof bits);
-        return signed_ ? static_cast<double>(static_cast<std::int16_t>(bits)) : static_cast<double>(bits);
-    }
-
-  private:
-    bool signed_;
-};
-
-double finite_number(const Bytes& in, std::size_t at, float value, const char* what) {
-    if (!std::isfinite(value))
-        in.fail(at, fmt::format("{} that is not finite", what), "it must be a number");
-    return static_cast<double>(value);
-}
-
 } // namespace
 
 void read_binary_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
@@ -106,17 +84,13 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             begin += 1;
     }
     Bytes in(bytes, std::min(begin, bytes.size()), header.aligned, name);
-    const ShortNumbers short_number(header);
-    const auto take_point = [&](const char* from, bool is_long, std::size_t at, const auto& take) {
-        if (is_long) {
-            std::array<float, 2> p{};
-            std::memcpy(p.data(), from, sizeof p);
-            if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
-                in.fail(at, "a point that is not finite", "coordinates must be numbers");
-            take(static_cast<double>(p[0]), static_cast<double>(p[1]));
-        } else {
-            take(short_number(from), short_number(from + 2));
-        }
+    // The standard says that 16-bit coordinates are unsigned; exports exist that are signed, and only the
+    // header's box tells: unsigned where it is said to be non-negative.
+    const bool has_signs = header.dimension && ((*header.dimension)[0] < 0 || (*header.dimension)[1] < 0);
+    const auto short_number = [&](const char* from) {
+        std::uint16_t bits = 0;
+        std::memcpy(&bits, from, sizeof bits);
+        return has_signs ? static_cast<double>(static_cast<std::int16_t>(bits)) : static_cast<double>(bits);
     };
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
@@ -129,52 +103,59 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             reported = at;
         }
         const auto command = static_cast<CommonLayerCommand>(in.take<std::uint16_t>("a command"));
-        const auto in_layer = [&] {
-            if (!geometry.in_layer())
-                in.fail(at, "geometry before the first layer", "contours belong to a layer");
-        };
-        const auto parameter = [&](bool is_long, const char* what) -> std::int64_t {
-            return is_long ? std::int64_t{in.take<std::int32_t>(what)}
-                           : std::int64_t{in.take<std::uint16_t>(what)};
-        };
         const auto place = at_byte(at);
         switch (command) {
-        case CommonLayerCommand::layer_long:
-            geometry.start_layer(finite_number(in, at, in.take<float>("a layer"), "a height"), place());
+        case CommonLayerCommand::layer_long: {
+            const auto height = in.take<float>("a layer");
+            if (!std::isfinite(height))
+                in.fail(at, "a height that is not finite", "it must be a number");
+            geometry.start_layer(static_cast<double>(height), place());
             break;
+        }
         case CommonLayerCommand::layer_short:
             geometry.start_layer(in.take<std::uint16_t>("a layer"), place());
             break;
         case CommonLayerCommand::polyline_short:
-        case CommonLayerCommand::polyline_long: {
-            in_layer();
-            const bool is_long = command == CommonLayerCommand::polyline_long;
-            const std::int64_t part = parameter(is_long, "a polyline");
-            const std::int64_t stated = parameter(is_long, "a polyline");
+        case CommonLayerCommand::polyline_long:
+        case CommonLayerCommand::hatches_short:
+        case CommonLayerCommand::hatches_long: {
+            if (!geometry.in_layer())
+                in.fail(at, "geometry before the first layer", "contours belong to a layer");
+            const bool is_long =
+                command == CommonLayerCommand::polyline_long || command == CommonLayerCommand::hatches_long;
+            const bool hatches =
+                command == CommonLayerCommand::hatches_short || command == CommonLayerCommand::hatches_long;
+            const auto parameter = [&]() -> std::int64_t {
+                const char* const what = hatches ? "hatches" : "a polyline";
+                return is_long ? std::int64_t{in.take<std::int32_t>(what)}
+                               : std::int64_t{in.take<std::uint16_t>(what)};
+            };
+            const std::int64_t part = parameter();
+            const std::int64_t stated = hatches ? 0 : parameter();
             const auto direction = common_layer_direction(stated);
             if (!direction)
                 in.fail(at, fmt::format("a polyline of direction {}", stated), common_layer_directions);
-            const std::int64_t count = parameter(is_long, "a polyline");
+            const std::int64_t count = parameter();
+            const std::int64_t points_each = hatches ? 2 : 1;
             const std::size_t size = is_long ? 8 : 4;
-            const char* first = in.take_records(count, size, "points");
-            geometry.expect_points(static_cast<std::uint64_t>(count), place);
-            for (std::int64_t i = 0; i < count; ++i, first += size)
-                take_point(first, is_long, at, [&](double x, double y) { geometry.add_point(x, y); });
-            geometry.end_polyline(part, *direction, place);
-            break;
-        }
-        case CommonLayerCommand::hatches_short:
-        case CommonLayerCommand::hatches_long: {
-            in_layer();
-            const bool is_long = command == CommonLayerCommand::hatches_long;
-            const std::int64_t part = parameter(is_long, "hatches");
-            const std::int64_t count = parameter(is_long, "hatches");
-            const std::size_t size = is_long ? 8 : 4;
-            const char* first = in.take_records(count, 2 * size, "hatches");
-            geometry.expect_hatch_points(2 * static_cast<std::uint64_t>(count), place);
-            for (std::int64_t i = 0; i < 2 * count; ++i, first += size)
-                take_point(first, is_long, at, [&](double x, double y) { geometry.add_hatch_point(x, y); });
-            geometry.end_hatches(part, place);
+            const char* from = in.take_records(count, points_each * size, hatches ? "hatches" : "points");
+            const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
+            std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, place);
+            for (std::uint64_t i = 0; i < number_of_points; ++i, from += size) {
+                if (!is_long) {
+                    geometry.add_point(points, short_number(from), short_number(from + 2));
+                    continue;
+                }
+                std::array<float, 2> p{};
+                std::memcpy(p.data(), from, sizeof p);
+                if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+                    in.fail(at, "a point that is not finite", "coordinates must be numbers");
+                geometry.add_point(points, static_cast<double>(p[0]), static_cast<double>(p[1]));
+            }
+            if (hatches)
+                geometry.end_hatches(part, place);
+            else
+                geometry.end_polyline(part, *direction, place);
             break;
         }
         default:

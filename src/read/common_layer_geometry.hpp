@@ -3,6 +3,7 @@
 // The layers of a Common Layer Interface file, as the commands of its geometry section say them.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -20,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,7 +53,7 @@ class Decimals {
   private:
     static constexpr std::array steps{1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5, 0.0};
 
-    /// But for what decimals lose in binary. Of numbers beyond 2^51 it may say no.
+    /// But for what decimals lose as binary numbers. Of numbers beyond 2^51 it may say no.
     static bool is_whole(double number) noexcept {
         constexpr double no_fractions = 0x1.8p52;
         return std::abs(number - ((number + no_fractions) - no_fractions)) <= 1e-5;
@@ -77,53 +79,41 @@ class CommonLayerGeometry {
         layers_.back().place = std::move(place);
     }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
-    /// Before points of a polyline, or ends of hatches.
+    /// Makes room for ends of hatches, or else for points of a polyline, and says where to add them.
     template <class Place>
-    void expect_points(std::uint64_t count, const Place& place) {
-        limits_.make_room(layers_.back().points, count, place);
-    }
-    template <class Place>
-    void expect_hatch_points(std::uint64_t count, const Place& place) {
-        limits_.make_room(layers_.back().hatches, count, place);
-    }
-    void add_point(double x, double y) {
+    std::vector<Point2>& expect_points(bool hatches, std::uint64_t count, const Place& place) {
         RawLayer& layer = layers_.back();
+        std::vector<Point2>& points = hatches ? layer.hatches : layer.points;
+        limits_.make_room(points, count, place);
+        return points;
+    }
+    void add_point(std::vector<Point2>& to, double x, double y) {
+        const std::string& place = layers_.back().place;
         decimals_.note(x);
         decimals_.note(y);
-        layer.points.push_back({in_mm(x, layer.place) + 0.0, in_mm(y, layer.place) + 0.0});
-    }
-    void add_hatch_point(double x, double y) {
-        RawLayer& layer = layers_.back();
-        decimals_.note(x);
-        decimals_.note(y);
-        layer.hatches.push_back({in_mm(x, layer.place), in_mm(y, layer.place)});
+        to.push_back({in_mm(x, place) + 0.0, in_mm(y, place) + 0.0});
     }
     template <class Place>
     void end_hatches(std::int64_t part, const Place& place) {
-        limits_.make_room(layers_.back().hatch_ends, 1, place);
-        layers_.back().end_hatches(parts_.number_of(part, place));
+        layers_.back().end_hatches(parts_.number_of(part, place), limits_, place);
     }
 
     /// Ends a polyline of the direction given.
     template <class Place>
     void end_polyline(std::int64_t part, CommonLayerDirection direction, const Place& place) {
         RawLayer& layer = layers_.back();
-        const std::size_t begin = layer.ends.empty() ? 0 : layer.ends.back().end;
+        const std::size_t begin = layer.contour_begin();
         const bool closed = direction != CommonLayerDirection::open;
-        const bool returns = layer.points.size() > begin && layer.points.back() == layer.points[begin];
-        limits_.make_room(layer.ends, 1, place);
-        if (!layer.end_clean_contour(begin, closed, parts_.number_of(part, place))) {
-            dropped_.note(place);
-            return;
-        }
-        if (!closed)
+        const bool returns = layer.returns();
+        if (!layer.end_contour(closed, parts_.number_of(part, place), limits_, place, dropped_) || !closed)
             return;
         if (!returns)
             unclosed_.note(place);
         // Where the points run the other way, the stated direction holds.
-        const double area = twice_area(layer, begin);
+        const std::span<Point2> ring = std::span(layer.points).subspan(begin);
+        const double area = ring_area(ring);
         if (direction == CommonLayerDirection::counter_clockwise ? area < 0 : area > 0) {
-            std::reverse(layer.points.begin() + static_cast<std::ptrdiff_t>(begin), layer.points.end());
+            std::reverse(ring.begin(), ring.end());
             turned_.note(place);
         }
     }
@@ -140,8 +130,12 @@ class CommonLayerGeometry {
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
 
-    /// To what coordinates are rounded, all that there are: not every file keeps to whole units.
-    [[nodiscard]] double step_mm() const { return units_ * decimals_.step(); }
+    /// How the coordinates are rounded: not every file keeps to whole units. In single precision all other
+    /// numbers have many decimals, which say nothing.
+    [[nodiscard]] Rounding rounding(bool single_precision) const noexcept {
+        const bool known = !single_precision || decimals_.step() == 1;
+        return {known ? units_ * decimals_.step() : 0, single_precision};
+    }
 
     void say(std::vector<std::string>& warnings) const {
         unclosed_.say(warnings);
@@ -158,17 +152,6 @@ class CommonLayerGeometry {
                                     "lie within {} mm",
                                     name_, place, units, units_, farthest_mm));
         return mm;
-    }
-
-    static double twice_area(const RawLayer& layer, std::size_t begin) {
-        const Point2& o = layer.points[begin];
-        double twice = 0;
-        for (std::size_t i = begin + 2; i < layer.points.size(); ++i) {
-            const Point2& a = layer.points[i - 1];
-            const Point2& b = layer.points[i];
-            twice += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-        }
-        return twice;
     }
 
     double units_;

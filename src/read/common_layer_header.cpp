@@ -23,6 +23,14 @@ std::string_view unquoted(std::string_view text) {
     return text;
 }
 
+/// A label's line without the comment that may follow.
+std::string_view before_comment(std::string_view line) {
+    const std::size_t comment = line.find("//");
+    const bool ends =
+        comment != std::string_view::npos && line.find("//", comment + 2) != std::string_view::npos;
+    return ends ? line.substr(0, comment) : line;
+}
+
 /// The part's number in "/1,name".
 std::optional<std::int64_t> label_number(std::string_view line) {
     if (!line.starts_with('/'))
@@ -47,9 +55,8 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
             text.fail("the end of the file", "the header must end with $$HEADEREND");
         if (text.take(end_command))
             break;
-        const std::size_t line_end = std::min(bytes.find_first_of("\r\n", text.at()), bytes.size());
         if (!text.take("$$")) {
-            text.move_to(line_end); // the standard lets other characters be ignored
+            text.skip_to_command(); // the standard lets other characters be ignored
             continue;
         }
         const std::string_view command = text.take_command();
@@ -61,7 +68,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
             header.aligned = true;
         } else if (command == "UNITS") {
             text.expect('/', "the units");
-            header.units_mm = text.number("the units");
+            header.units_mm = text.last_number("the units");
             has_units = true;
             if (!(header.units_mm > 0))
                 text.fail(fmt::format("units of {} mm", header.units_mm), "they must be above 0");
@@ -80,7 +87,8 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
             if (count >= 0 && count < 1e15)
                 header.layers = static_cast<std::uint64_t>(count);
         } else if (command == "LABEL") {
-            const std::string_view line = bytes.substr(text.at(), line_end - text.at());
+            const std::size_t line_end = std::min(bytes.find_first_of("\r\n", text.at()), bytes.size());
+            const std::string_view line = before_comment(bytes.substr(text.at(), line_end - text.at()));
             const std::size_t comma = line.find(',');
             if (const auto part = label_number(line); part && comma != std::string_view::npos)
                 header.labels.try_emplace(*part, unquoted(line.substr(comma + 1)));
@@ -98,7 +106,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
                           fmt::format("{} bytes are left in the file", bytes.size() - text.at()));
             text.move_to(text.at() + static_cast<std::size_t>(length));
         } else {
-            text.move_to(line_end); // VERSION, DATE and whatever else: nothing depends on it
+            text.skip_to_command(); // VERSION, DATE and whatever else: nothing depends on it
         }
     }
     header.end = text.at();

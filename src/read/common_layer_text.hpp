@@ -43,6 +43,19 @@ class CommonLayerText {
         }
     }
 
+    /// To the next command on this line, else to the line's end. What comments hold is no command.
+    void skip_to_command() {
+        bool in_comment = false;
+        for (; !done() && !is_line_end(text_[at_]); ++at_) {
+            if (rest().starts_with("//")) {
+                in_comment = !in_comment;
+                ++at_;
+            } else if (!in_comment && rest().starts_with("$$")) {
+                return;
+            }
+        }
+    }
+
     bool take(std::string_view token) {
         if (!rest().starts_with(token))
             return false;
@@ -74,6 +87,22 @@ class CommonLayerText {
                  fmt::format("{} must be a number", what));
         }
         at_ = static_cast<std::size_t>(to - text_.data());
+        return value;
+    }
+
+    /// One that nothing follows but a blank, a comment or a command: what comes behind "1,5" or "1.5abc"
+    /// would be passed over.
+    double last_number(const char* what) {
+        skip_blanks();
+        const std::size_t begin = at_;
+        const double value = number(what);
+        const bool ends =
+            done() || is_blank(text_[at_]) || rest().starts_with("//") || rest().starts_with("$$");
+        if (!ends) {
+            at_ = begin;
+            fail(fmt::format("'{}'", printable(rest().substr(0, rest().find_first_of(" \t\r\n")), 40)),
+                 fmt::format("{} must be a number with a decimal point", what));
+        }
         return value;
     }
 

@@ -4,6 +4,7 @@
 
 #include "core/pages.hpp"
 #include "mesh/polygon_triangulation.hpp"
+#include "mesh/used_vertices.hpp"
 
 #include <fmt/format.h>
 
@@ -90,42 +91,12 @@ void cut_polygons(FaceMesh& faces, Executor& executor) {
     faces.polygons = {};
 }
 
-/// A file may have vertices that belong to no face, far away; the box of the part must not know them.
-void drop_unused(IndexedMesh& mesh, Executor& executor) {
-    PageArray<std::atomic<std::uint8_t>> used(mesh.vertices.size(), Fill::zero);
-    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i)
-            for (const std::uint32_t v : mesh.triangles[i])
-                used[v].store(1, std::memory_order_relaxed);
-    });
-    std::atomic<bool> all{true};
-    executor.for_chunks(used.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        if (std::find(used.data() + begin, used.data() + end, std::uint8_t{0}) != used.data() + end)
-            all = false;
-    });
-    if (all)
-        return;
-    std::vector<std::uint32_t> number(mesh.vertices.size());
-    std::uint32_t kept = 0;
-    for (std::size_t v = 0; v < number.size(); ++v)
-        if (used[v] != 0) {
-            number[v] = kept;
-            mesh.vertices[kept++] = mesh.vertices[v];
-        }
-    mesh.vertices.resize(kept);
-    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i)
-            for (std::uint32_t& v : mesh.triangles[i])
-                v = number[v];
-    });
-}
-
 std::uint64_t bytes_of(const FacePiece& piece) {
     return piece.vertices.size() * sizeof(Point3) + piece.triangles.size() * sizeof(Corners);
 }
 
 /// All pieces, in order. Empties them.
-FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor) {
+FaceMesh join(std::vector<FacePiece>& pieces, const std::string& source_name, Executor& executor) {
     struct Begin {
         std::uint64_t vertex = 0;
         std::uint64_t triangle = 0;
@@ -142,33 +113,31 @@ FaceMesh join(std::vector<FacePiece>& pieces, Executor& executor) {
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     if (sum.vertex > most || sum.triangle > most)
         throw Error(ErrorKind::limit,
-                    fmt::format("{} vertices and {} triangles are too many: at most {} of each", sum.vertex,
-                                sum.triangle, most));
+                    fmt::format("{}: {} vertices and {} triangles are too many: at most {} of each",
+                                source_name, sum.vertex, sum.triangle, most));
 
     FaceMesh faces;
     resize_in_huge_pages(executor, faces.mesh.vertices, sum.vertex);
     resize_in_huge_pages(executor, faces.mesh.triangles, sum.triangle);
     faces.polygons.resize(sum.polygon);
-    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t first, std::uint64_t last, unsigned) {
-        for (std::uint64_t i = first; i < last; ++i) {
-            FacePiece& piece = pieces[i];
-            const Begin& begin = begins[i];
-            for (const std::uint64_t corner : piece.relative) {
-                // One that lies before this piece has wrapped round, and wraps back.
-                piece.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
-            }
-            std::copy(piece.vertices.begin(), piece.vertices.end(),
-                      faces.mesh.vertices.begin() + static_cast<std::ptrdiff_t>(begin.vertex));
-            std::copy(piece.triangles.begin(), piece.triangles.end(),
-                      faces.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(begin.triangle));
-            for (std::size_t k = 0; k < piece.polygons.size(); ++k)
-                faces.polygons[begin.polygon + k] = {piece.polygons[k].first_triangle + begin.triangle,
-                                                     piece.polygons[k].triangles};
-            piece.vertices = {};
-            piece.triangles = {};
-            piece.polygons = {};
-            piece.relative = {};
+    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        FacePiece& piece = pieces[i];
+        const Begin& begin = begins[i];
+        for (const std::uint64_t corner : piece.relative) {
+            // One that lies before this piece has wrapped round, and wraps back.
+            piece.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
         }
+        std::copy(piece.vertices.begin(), piece.vertices.end(),
+                  faces.mesh.vertices.begin() + static_cast<std::ptrdiff_t>(begin.vertex));
+        std::copy(piece.triangles.begin(), piece.triangles.end(),
+                  faces.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(begin.triangle));
+        for (std::size_t k = 0; k < piece.polygons.size(); ++k)
+            faces.polygons[begin.polygon + k] = {piece.polygons[k].first_triangle + begin.triangle,
+                                                 piece.polygons[k].triangles};
+        piece.vertices = {};
+        piece.triangles = {};
+        piece.polygons = {};
+        piece.relative = {};
     });
     return faces;
 }
@@ -242,7 +211,8 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
             tell_nonfinite(remarks, where, file.nonfinite_triangles, file.stored_triangles);
         }
     }
-    drop_unused(mesh, executor);
+    // A file may have vertices that belong to no face, far away; the box of the part must not know them.
+    drop_unused_vertices(mesh, executor);
     file.objects.push_back({{}, Mesh(std::move(mesh))});
     file.instances.push_back({});
     return file;
@@ -273,7 +243,8 @@ MeshFile make_mesh_file(const ByteSource& source, const PieceParser<FacePiece>& 
         const std::uint64_t before = i == 0 ? 0 : ends[i - 1];
         return fmt::format("line {}", parser.line_of_triangle(pieces[i], triangle - before));
     };
-    return make_mesh_file(join(pieces, executor), source.name, first_vertex, place, remarks, executor);
+    return make_mesh_file(join(pieces, source.name, executor), source.name, first_vertex, place, remarks,
+                          executor);
 }
 
 } // namespace lamella

@@ -42,6 +42,7 @@ struct FacePiece : TextPiece {
     Occurrences thin_faces;     ///< of fewer than three corners
     Occurrences free_form;      ///< curves and surfaces that are not made of faces
     std::size_t name = nowhere; ///< where that of the first object stands
+    std::size_t rest = nowhere; ///< where more follows the last row that was asked for
 
     /// Adds the corners of a face that begins at `offset`.
     void add_face(const std::vector<std::uint32_t>& corners, std::size_t offset);

@@ -1,7 +1,5 @@
 #include "read/face_rows.hpp"
 
-#include "lamella/core/error.hpp"
-
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/coordinate_text.hpp"
@@ -10,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -218,7 +217,10 @@ class RowsReader {
         }
         if (fault_)
             refuse_text(source_, *fault_);
+        const std::size_t rest = pieces_.back().rest;
         MeshFile file = make_mesh_file(source_, *parser_, pieces_, 0, remarks_, executor_);
+        if (rest != nowhere)
+            tell_rest(rest);
         progress_.finish();
         return file;
     }
@@ -276,6 +278,7 @@ class RowsReader {
                         throw TextFault{static_cast<std::size_t>(at - begin),
                                         fmt::format("the end of the file after the {} rows of {}", rows,
                                                     rows_.counted_where)};
+                    piece.rest = static_cast<std::size_t>(at - begin);
                     at = end;
                     break;
                 }
@@ -290,6 +293,22 @@ class RowsReader {
             piece.fault = std::move(fault);
         }
         piece.end = static_cast<std::size_t>(at - begin);
+    }
+
+    /// Tells of lines beyond all rows: whoever wrote the file has counted wrong, and they are lost. `begin`:
+    /// what follows the rows that are needed.
+    void tell_rest(std::size_t begin) {
+        const char* const end = text_.data() + text_.size();
+        const char* at = text_.data() + begin;
+        for (std::uint64_t left = rows_.more_rows; at != end && left > 0; at = skip_blanks(at, end)) {
+            left -= rows_.comment != '\0' && *at == rows_.comment ? 0 : 1;
+            at = skip_to_line_end(at, end);
+        }
+        const auto place = static_cast<std::size_t>(at - text_.data());
+        if (const std::uint64_t count = count_rows(text_.substr(place), rows_.comment); count > 0)
+            remarks_.add(fmt::format("line {}: left out {} {} from here on, beyond the {} rows of {}",
+                                     line_of(source_, place), count, count == 1 ? "line" : "lines",
+                                     all_rows(), rows_.counted_where));
     }
 
     /// A line that begins in a piece is a row of it.

@@ -73,10 +73,10 @@ struct FaceRows {
 
 /// Reads the rows and makes a mesh file of them. Lines without a word are no rows.
 ///
-/// Where each row has a line to itself, as in nearly all files, they are read in parallel, and what follows
-/// the last needed row is not looked at. Where `any_lines` allows it, other texts are read word by word on
-/// one thread, up to the end of the file; and if that fails, although there are as many lines as rows, what a
-/// line has beyond its row is left out with a remark. Throws Error{input} naming the line.
+/// Where each row has a line to itself, as in nearly all files, they are read in parallel, and lines beyond
+/// those that were counted are left out with a remark. Where `any_lines` allows it, other texts are read word
+/// by word on one thread, up to the end of the file; and if that fails, although there are as many lines as
+/// rows, what a line has beyond its row is left out with a remark. Throws Error{input} naming the line.
 [[nodiscard]] MeshFile read_face_rows(const ByteSource& source, const FaceRows& rows, Remarks& remarks,
                                       ReadLimits& limits, const Execution& execution);
 

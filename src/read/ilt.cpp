@@ -6,7 +6,9 @@
 #include "container/ilt_format.hpp"
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
+#include "core/lower_case.hpp"
 #include "core/parse_number.hpp"
+#include "read/coordinate_text.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
@@ -30,7 +32,18 @@ struct Section {
     std::string name;
     std::size_t line;
     ParameterSet parameters = unknown_parameters();
+    bool pulsed = false; ///< the beam; read to be told of
 };
+
+/// A number, alone or with a unit behind a blank, such as "200.0 watt".
+std::optional<double> number_before_unit(std::string_view text) {
+    const char* const end = text.data() + text.size();
+    double number = 0;
+    const char* const stop = parse_number(text.data(), end, number);
+    if (stop == text.data() || (stop != end && !is_blank(*stop)) || !std::isfinite(number))
+        return std::nullopt;
+    return number;
+}
 
 /// Lines such as "[file.cli]" and, for that file, "LaserPower = 200.0 watt". Other lines say nothing here.
 std::vector<Section> read_parameters(std::string_view text, const std::string& name, ReadLimits& limits) {
@@ -50,22 +63,40 @@ std::vector<Section> read_parameters(std::string_view text, const std::string& n
         if (equals == std::string_view::npos || sections.empty())
             continue;
         const std::string_view key = trimmed(words.substr(0, equals));
-        ParameterSet& set = sections.back().parameters;
+        Section& section = sections.back();
+        ParameterSet& set = section.parameters;
         double* const to = key == "LaserSpeed"   ? &set.speed_mm_s
                            : key == "LaserPower" ? &set.power_w
                            : key == "FocusShift" ? &set.focus_mm
                                                  : nullptr;
-        if (to == nullptr)
+        const bool only_told = key == "PointDistance" || key == "ExposureTime";
+        if (to == nullptr && !only_told)
             continue;
         const std::string_view value = trimmed(words.substr(equals + 1));
-        double number = 0;
-        if (parse_number(value.data(), value.data() + value.size(), number) == value.data() ||
-            !std::isfinite(number))
-            throw Error(ErrorKind::input, fmt::format("{}, line {}: found '{}'; {} must be a number", name,
-                                                      line, printable(value, 40), key));
-        *to = number;
+        const std::optional<double> number = number_before_unit(value);
+        if (only_told && (value.empty() || value == "-"))
+            continue;
+        if (!number)
+            throw Error(
+                ErrorKind::input,
+                fmt::format("{}, line {}: found '{}'; {} must be a number, with a unit behind a blank", name,
+                            line, printable(value, 40), key));
+        if (only_told)
+            section.pulsed = section.pulsed || *number != 0;
+        else
+            *to = *number;
     }
     return sections;
+}
+
+/// Files that the list does not name have no parameters; what they hold is not read.
+void tell_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed,
+                   std::vector<std::string>& warnings) {
+    Oddity unlisted("Common Layer Interface files are not in the list of parameters; they were left out");
+    for (const ZipEntry& entry : zip.entries())
+        if (listed.count(&entry) == 0 && lower_case(entry.name).ends_with(".cli"))
+            unlisted.note([&] { return printable(entry.name, 80); });
+    unlisted.say(warnings);
 }
 
 /// What the name of a file, such as "modelsection_001_s1_vs.cli", says of its vectors; see docs/formats.md.
@@ -171,6 +202,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.oddities()};
     std::uint64_t bytes = 0;
     std::set<const ZipEntry*> known;
+    Oddity pulsed("files are for a pulsed beam; the distance and time of its points were left out");
     for (const Section& section : read_parameters(list.text(), list.name, limits)) {
         const ZipEntry* const entry = zip.find(section.name);
         if (entry == nullptr)
@@ -183,6 +215,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                 fmt::format("{}, line {}: found parameters of '{}' a second time; there must be one list "
                             "for each file",
                             list.name, section.line, printable(section.name, 80)));
+        if (section.pulsed)
+            pulsed.note(at_line(section.line));
         const ByteSource source = zip.read(*entry);
         bytes += source.bytes.size();
         if (!is_common_layer(source.text()))
@@ -200,6 +234,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     if (files.empty())
         throw Error(ErrorKind::input,
                     fmt::format("{}: found parameters of no file; there must be one at least", list.name));
+    pulsed.say(result.warnings);
+    tell_unlisted(zip, known, result.warnings);
     result.units_mm = files.front().units_mm;
     result.rounding = files.front().rounding;
     for (const LayerFile& file : files)

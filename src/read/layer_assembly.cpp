@@ -2,18 +2,91 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/text_place.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace lamella {
+
+namespace {
+
+/// Whether scan vectors lie in the file as a layer has them: part after part, and of each part rings, then
+/// chains, then hatches. The contours of other parts have no order.
+bool is_in_order(const RawLayer& raw, const LayerFile& file) {
+    enum : std::uint8_t { ring, chain, hatch };
+    std::tuple<std::uint32_t, std::uint8_t> last{};
+    bool ascends = true;
+    const auto follow = [&](std::uint32_t part, std::uint8_t kind) {
+        if (!file.parts[part].exposure)
+            return;
+        ascends = ascends && last <= std::tuple(part, kind);
+        last = {part, kind};
+    };
+    std::size_t contour = 0;
+    const auto follow_contours = [&](std::size_t end) {
+        for (; contour < end; ++contour)
+            follow(raw.ends[contour].part, raw.ends[contour].closed ? ring : chain);
+    };
+    std::size_t begin = 0;
+    for (const RawLayer::Hatches& hatches : raw.hatch_ends) {
+        follow_contours(hatches.behind);
+        if (hatches.end != begin)
+            follow(hatches.part, hatch);
+        begin = hatches.end;
+    }
+    follow_contours(raw.ends.size());
+    return ascends;
+}
+
+/// The order in which a machine executes vectors is of consequence, and a part has its layers to itself.
+void tell_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
+    std::size_t changed = 0;
+    double lowest = 0;
+    for (const RawLayer& raw : layers)
+        if (!is_in_order(raw, file) && changed++ == 0)
+            lowest = raw.z;
+    if (changed != 0)
+        file.warnings.push_back(fmt::format(
+            "vectors of {} layer{}, the lowest at z = {:.6g} mm, are executed in another order in "
+            "the file; they were put into that of the parts",
+            changed, changed == 1 ? "" : "s", lowest));
+}
+
+} // namespace
+
+std::string DistinctNames::of(const std::string& name) {
+    if (taken_.try_emplace(name, 1).second)
+        return name;
+    const std::string stem = name.empty() ? "part" : name;
+    std::uint64_t& number = taken_[name];
+    std::string distinct;
+    do
+        distinct = fmt::format("{} {}", stem, ++number);
+    while (!taken_.try_emplace(distinct, 1).second);
+    if (changed_++ == 0)
+        first_ = distinct;
+    return distinct;
+}
+
+void DistinctNames::say(std::vector<std::string>& warnings) const {
+    constexpr std::size_t longest = 60;
+    if (changed_ != 0)
+        warnings.push_back(fmt::format("{} the name of another one; a number was put behind it, the first is "
+                                       "now '{}'",
+                                       changed_ == 1 ? "1 part has" : fmt::format("{} parts have", changed_),
+                                       printable(first_, longest)));
+}
 
 void Oddity::say(std::vector<std::string>& warnings) const {
     if (count_ != 0)
         warnings.push_back(fmt::format("{} {} (first at {})", count_, what_, first_));
 }
 
-bool RawLayer::end_clean_contour(std::size_t begin, bool closed, std::uint32_t part) {
+bool RawLayer::keep_contour(bool closed, std::uint32_t part) {
+    const std::size_t begin = contour_begin();
     const auto contour = points.begin() + static_cast<std::ptrdiff_t>(begin);
     auto end = std::unique(contour, points.end());
     while (closed && end - contour > 1 && *(end - 1) == *contour)
@@ -23,7 +96,7 @@ bool RawLayer::end_clean_contour(std::size_t begin, bool closed, std::uint32_t p
         points.resize(begin);
         return false;
     }
-    end_contour(closed, part);
+    ends.push_back({points.size(), closed, part});
     return true;
 }
 
@@ -45,7 +118,7 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
     }
     std::vector<std::vector<Point2>> hatches(file.parts.size());
     next = 0;
-    for (const auto& [end, part] : raw.hatch_ends)
+    for (const auto& [end, part, behind] : raw.hatch_ends)
         for (; next < end; ++next)
             hatches[part].push_back({raw.hatches[next].x + 0.0, raw.hatches[next].y + 0.0});
     for (std::size_t part = 0; part < builders.size(); ++part) {
@@ -63,8 +136,28 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
     raw.hatch_ends = {};
 }
 
+void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits) {
+    tell_changed_order(layers, file);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const double top = layers[i].z;
+        add_layer(file, layers[i], i, bottom + (top - bottom) / 2, bottom, top, limits);
+        bottom = top;
+    }
+}
+
+void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits) {
+    tell_changed_order(layers, file);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const double bottom = layers[i].z;
+        const double end = i + 1 < layers.size() ? layers[i + 1].z : top;
+        add_layer(file, layers[i], i, bottom + (end - bottom) / 2, bottom, end, limits);
+    }
+}
+
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes) {
-    constexpr std::uint64_t never_too_many = std::uint64_t{1} << 20;
+    // Some two thousand small parts stacked on one another, in a file of 200 KB. So many take a gigabyte,
+    // which counts for the limit of memory.
+    constexpr std::uint64_t never_too_many = std::uint64_t{1} << 22;
     const std::uint64_t most = std::max(never_too_many, bytes);
     if (file.parts.size() > most / std::max<std::uint64_t>(planes, 1))
         throw Error(ErrorKind::input,
@@ -93,14 +186,15 @@ void sort_by_height(std::vector<RawLayer>& layers, std::vector<std::string>& war
             continue;
         }
         RawLayer& into = layers[kept];
+        const std::size_t contours = into.ends.size();
         const std::size_t points = into.points.size();
         into.points.insert(into.points.end(), layers[i].points.begin(), layers[i].points.end());
         for (const auto& [end, closed, part] : layers[i].ends)
             into.ends.push_back({points + end, closed, part});
         const std::size_t hatches = into.hatches.size();
         into.hatches.insert(into.hatches.end(), layers[i].hatches.begin(), layers[i].hatches.end());
-        for (const auto& [end, part] : layers[i].hatch_ends)
-            into.hatch_ends.push_back({hatches + end, part});
+        for (const auto& [end, part, behind] : layers[i].hatch_ends)
+            into.hatch_ends.push_back({hatches + end, part, contours + behind});
         ++joined;
     }
     if (!layers.empty())

@@ -49,6 +49,7 @@ struct RawLayer {
     struct Hatches {
         std::size_t end; ///< in `hatches`
         std::uint32_t part;
+        std::size_t behind; ///< so many contours
     };
 
     double z = 0;      ///< as the file has it
@@ -58,14 +59,34 @@ struct RawLayer {
     std::vector<Point2> hatches; ///< two points each
     std::vector<Hatches> hatch_ends;
 
-    void end_contour(bool closed, std::uint32_t part = 0) { ends.push_back({points.size(), closed, part}); }
+    /// Where the contour under construction begins, in `points`.
+    [[nodiscard]] std::size_t contour_begin() const { return ends.empty() ? 0 : ends.back().end; }
+    /// Whether its last point so far repeats its first one.
+    [[nodiscard]] bool returns() const {
+        return points.size() > contour_begin() && points.back() == points[contour_begin()];
+    }
 
-    /// Ends the contour that begins at points[begin]. Points equal to the one before are dropped, and so is a
-    /// ring's last point that repeats its first one. False when fewer than three points (of a chain: two)
-    /// were left, and none is kept then.
-    bool end_clean_contour(std::size_t begin, bool closed, std::uint32_t part = 0);
+    /// Ends it. Points equal to the one before are dropped, and so is a ring's last point that repeats its
+    /// first one. False when fewer than three points (of a chain: two) were left: then none is kept, and
+    /// `dropped` notes it.
+    template <class Place>
+    bool end_contour(bool closed, std::uint32_t part, ReadLimits& limits, const Place& where,
+                     Oddity& dropped) {
+        limits.make_room(ends, 1, where);
+        const bool kept = keep_contour(closed, part);
+        if (!kept)
+            dropped.note(where);
+        return kept;
+    }
 
-    void end_hatches(std::uint32_t part) { hatch_ends.push_back({hatches.size(), part}); }
+    template <class Place>
+    void end_hatches(std::uint32_t part, ReadLimits& limits, const Place& where) {
+        limits.make_room(hatch_ends, 1, where);
+        hatch_ends.push_back({hatches.size(), part, ends.size()});
+    }
+
+  private:
+    bool keep_contour(bool closed, std::uint32_t part);
 };
 
 /// The parts that contours and hatches are of, where each has a key in the file: numbered as they are met,
@@ -111,6 +132,20 @@ class PartNumbers {
     typename std::map<Key, std::uint32_t>::iterator last_ = numbers_.end();
 };
 
+/// Names for parts that files tell apart by keys, and that writers and commands tell apart by their names.
+class DistinctNames {
+  public:
+    /// The name, with a number behind it where another part has it already.
+    std::string of(const std::string& name);
+    /// Warns of names that were changed.
+    void say(std::vector<std::string>& warnings) const;
+
+  private:
+    std::map<std::string, std::uint64_t> taken_; ///< with the number that was put behind it last
+    std::uint64_t changed_ = 0;
+    std::string first_;
+};
+
 /// What a layer takes besides itself, even where it is empty: the list of offsets, and what owns the points.
 inline constexpr std::uint64_t of_empty_layer = 128;
 
@@ -119,8 +154,15 @@ inline constexpr std::uint64_t of_empty_layer = 128;
 void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
                ReadLimits& limits);
 
+/// Adds layers whose heights are their tops: each reaches down to the one before, the first to `bottom`, and
+/// is cut half-way up. Warns of layers whose scan vectors change their order.
+void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits);
+/// Likewise of heights that are bottoms, where the last one reaches up to `top`.
+void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits);
+
 /// Throws Error{input} when so many parts on so many planes cannot be meant in a file of so many bytes:
-/// layers take memory even where they are empty.
+/// layers take memory even where they are empty. Some millions are taken in a file of any size, since a stack
+/// of small parts is such.
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes);
 
 /// Puts heights in ascending order and joins equal ones; warns when it had to.

@@ -9,7 +9,6 @@
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/read_limits.hpp"
-#include "read/unpacked_file.hpp"
 
 #include <fmt/format.h>
 
@@ -23,22 +22,22 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                       const Execution& execution) {
     const std::string_view bytes = source.text();
     if (is_zip(bytes)) {
-        const OpcPackage package(source, options.max_memory);
-        if (is_npz(package.zip()))
-            return read_npz(package.zip(), limits, execution);
-        if (is_ilt(package.zip()))
-            return read_ilt(package.zip(), limits, execution);
+        const ZipReader package(source, options.max_memory);
+        if (is_npz(package))
+            return read_npz(package, limits, execution);
+        if (is_ilt(package))
+            return read_ilt(package, limits, execution);
         if (is_toolpath_3mf(package))
             return read_toolpath_3mf(package, limits, execution);
-        if (is_3mf(package.zip()))
+        if (is_3mf(package))
             return read_slices_3mf(package, limits, execution);
         if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = options.max_memory});
             !other->advice.empty())
-            throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, other->advice));
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: found a zip archive that holds no layers; of archives, 3MF with slice "
-                                "stacks or toolpaths, NumPy arrays and ILT are read",
-                                source.name));
+            throw NoLayers(fmt::format("{}: {}", source.name, other->advice));
+        throw NoLayers(
+            fmt::format("{}: found a zip archive that holds no layers; of archives, 3MF with slice "
+                        "stacks or toolpaths, NumPy arrays and ILT are read",
+                        source.name));
     }
     if (const MeshFormatRow* const format = layer_format_of(source))
         return format->read_layers(bytes, source.name, limits, execution);
@@ -79,7 +78,7 @@ LayerStack LayerFile::merged() const {
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
     const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    return read_unpacked_layers(unpacked(open_bytes(path, most, execution), options.max_memory, execution),
+    return read_unpacked_layers(unpacked(open_bytes(path, execution, most), options.max_memory, execution),
                                 options, execution);
 }
 

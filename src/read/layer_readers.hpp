@@ -4,11 +4,12 @@
 // function that tells it by its content, and one that reads it: that throws Error{input} which names the
 // byte, the line, or the file within an archive and the place there.
 
+#include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "container/zip_reader.hpp"
-#include "read/opc_package.hpp"
+#include "core/byte_source.hpp"
 
 #include <functional>
 #include <optional>
@@ -18,6 +19,15 @@
 namespace lamella {
 
 class ReadLimits;
+
+/// That an archive holds no layers, or none that can be placed: its meshes may be what is meant.
+struct NoLayers : Error {
+    explicit NoLayers(const std::string& text) : Error(ErrorKind::input, text) {}
+};
+
+/// Reads what has been opened, and unpacked where gzip had packed it, by the contract of read_layers.
+[[nodiscard]] LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
+                                             const Execution& execution);
 
 /// Common Layer Interface 2.0, ASCII and binary. Comments may come before its header.
 [[nodiscard]] bool is_common_layer(std::string_view bytes);
@@ -62,12 +72,12 @@ using ExposureOfLabel = std::function<std::optional<Exposure>(std::string_view l
 
 /// 3MF with slice stacks (3MF Slice Extension); whether a package has slices shows when it is read.
 [[nodiscard]] bool is_3mf(const ZipReader& zip);
-[[nodiscard]] LayerFile read_slices_3mf(const OpcPackage& package, ReadLimits& limits,
+[[nodiscard]] LayerFile read_slices_3mf(const ZipReader& package, ReadLimits& limits,
                                         const Execution& execution);
 
 /// 3MF with toolpaths (3MF Toolpath Extension 1.0): its model refers to layers of them.
-[[nodiscard]] bool is_toolpath_3mf(const OpcPackage& package);
-[[nodiscard]] LayerFile read_toolpath_3mf(const OpcPackage& package, ReadLimits& limits,
+[[nodiscard]] bool is_toolpath_3mf(const ZipReader& package);
+[[nodiscard]] LayerFile read_toolpath_3mf(const ZipReader& package, ReadLimits& limits,
                                           const Execution& execution);
 
 } // namespace lamella

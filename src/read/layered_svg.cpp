@@ -73,19 +73,14 @@ struct Group {
     RawLayer contours; ///< z as the file has it
     std::optional<double> slice_z;
     std::optional<double> height;
+    double z = 0; ///< where its layer lies
+    double bottom = 0;
+    double top = 0;
 };
 
-/// Where a group's layer lies.
-struct GroupPlace {
-    double z;
-    double bottom;
-    double top;
-    std::size_t group;
-};
-
-/// In ascending order of cuts, which need not lie as the tops of layers do. Slic3r 1.x writes the cut in its
-/// scaled units, a millionth of the millimetres; later ones the top in millimetres. Puts the groups in order.
-std::vector<GroupPlace> places_of(std::vector<Group>& groups, std::vector<std::string>& warnings) {
+/// Finds where layers lie and puts them in ascending order of cuts, which need not lie as the tops do. Slic3r
+/// 1.x writes the cut in its scaled units, a millionth of the millimetres; later ones the top in millimetres.
+void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings) {
     double highest = 0;
     bool has_slice_z = false;
     for (const Group& group : groups) {
@@ -111,18 +106,26 @@ std::vector<GroupPlace> places_of(std::vector<Group>& groups, std::vector<std::s
             return z(i) - z(i - 1);
         return n > 1 ? z(1) - z(0) : std::max(0.0, z(0));
     };
-    std::vector<GroupPlace> places(n);
     for (std::size_t i = 0; i < n; ++i) {
-        const Group& group = groups[i];
+        Group& group = groups[i];
         const double thickness = group.height.value_or(step_below(i));
-        const double top = legacy ? group.contours.z + thickness / 2 : group.contours.z;
-        const double bottom = top - thickness;
-        const double middle = bottom + thickness / 2;
-        places[i] = {legacy ? group.contours.z : group.slice_z.value_or(middle), bottom, top, i};
+        group.top = legacy ? group.contours.z + thickness / 2 : group.contours.z;
+        group.bottom = group.top - thickness;
+        const double middle = group.bottom + thickness / 2;
+        group.z = legacy ? group.contours.z : group.slice_z.value_or(middle);
+        // Heights are rounded each by itself, or somebody else's: a layer is cut within its thickness.
+        group.bottom = std::min(group.bottom, group.z);
+        group.top = std::max(group.top, group.z);
     }
-    std::stable_sort(places.begin(), places.end(),
-                     [](const GroupPlace& a, const GroupPlace& b) { return a.z < b.z; });
-    return places;
+    std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.z < b.z; });
+    // Heights and thicknesses were rounded each by itself: what is no farther from the layer below than that
+    // lies on it.
+    constexpr double rounding = 1e-3;
+    for (std::size_t i = 1; i < n; ++i) {
+        const double top_below = groups[i - 1].top;
+        if (std::abs(groups[i].bottom - top_below) <= rounding && top_below <= groups[i].z)
+            groups[i].bottom = top_below;
+    }
 }
 
 class SvgReader {
@@ -133,7 +136,8 @@ class SvgReader {
     }
 
     void start(std::string_view element, const XmlAttributes& attributes, std::size_t line) {
-        if (depth_++ == 0) {
+        const bool is_root = depth_++ == 0;
+        if (is_root) {
             if (local(element) != "svg")
                 fail(line, fmt::format("found <{}>; the document must be <svg>", printable(element, 40)));
             height_ = number(attributes, "height", line).value_or(0);
@@ -164,6 +168,8 @@ class SvgReader {
             else if (kind != "title" && kind != "desc")
                 other_.note(at_line(line));
         }
+        if ((is_root || in_layer_) && !attributes.find("transform").empty())
+            transformed_.note(at_line(line));
     }
 
     void end() {
@@ -181,12 +187,14 @@ class SvgReader {
                                     name_));
         open_.say(file_.warnings);
         other_.say(file_.warnings);
+        transformed_.say(file_.warnings);
         dropped_.say(file_.warnings);
-        const std::vector<GroupPlace> places = places_of(groups_, file_.warnings);
+        place_groups(groups_, file_.warnings);
         check_part_planes(file_, groups_.size(), bytes_);
-        for (std::size_t i = 0; i < places.size(); ++i)
-            add_layer(file_, groups_[places[i].group].contours, i, places[i].z, places[i].bottom,
-                      places[i].top, limits_);
+        for (std::size_t i = 0; i < groups_.size(); ++i) {
+            Group& group = groups_[i];
+            add_layer(file_, group.contours, i, group.z, group.bottom, group.top, limits_);
+        }
     }
 
   private:
@@ -244,16 +252,13 @@ class SvgReader {
 
     void add_points(const XmlAttributes& attributes, bool closed, std::size_t line) {
         RawLayer& layer = groups_.back().contours;
-        const std::size_t begin = layer.points.size();
         Numbers numbers(attributes.find("points"), name_, line);
         while (!numbers.done()) {
             const double x = numbers.next();
             make_room(layer.points, line);
             layer.points.push_back({x + origin_.x, numbers.next() + origin_.y});
         }
-        end_contour(begin, closed, line);
-        if (!closed)
-            open_.note(at_line(line));
+        end_contour(closed, line);
     }
 
     /// Straight outlines: M, L, H, V and Z in both cases. Slic3r turns y upside down in paths.
@@ -263,25 +268,30 @@ class SvgReader {
             return; // tool paths inside the outlines
         RawLayer& layer = groups_.back().contours;
         Numbers numbers(attributes.find("d"), name_, line);
-        std::size_t begin = layer.points.size();
         Point2 at;
+        std::optional<Point2> first; // of the contour: closing it returns there
+        const auto add = [&](const Point2& p) {
+            make_room(layer.points, line);
+            layer.points.push_back({p.x + origin_.x, height_ - p.y + origin_.y});
+        };
         char command = 'M';
         while (!numbers.done()) {
             if (const auto letter = numbers.letter())
                 command = *letter;
             if (command == 'z' || command == 'Z') {
-                end_contour(begin, true, line);
-                begin = layer.points.size();
+                end_contour(true, line);
+                at = first.value_or(at);
                 command = 'M';
                 continue;
             }
             const bool relative = command >= 'a';
+            const bool moves = command == 'M' || command == 'm';
+            if (!moves && first && layer.points.size() == layer.contour_begin())
+                add(*first); // right behind Z the next contour begins where the last one did
             switch (command) {
             case 'M':
             case 'm':
-                if (layer.points.size() != begin)
-                    end_contour(begin, false, line);
-                begin = layer.points.size();
+                end_contour(false, line);
                 [[fallthrough]];
             case 'L':
             case 'l': {
@@ -303,21 +313,21 @@ class SvgReader {
                      fmt::format("found path command '{}'; outlines of layers are straight (M, L, H, V, Z)",
                                  command));
             }
-            if (command == 'M' || command == 'm')
+            if (moves) {
+                first = at;
                 command = relative ? 'l' : 'L'; // further pairs are lines
-            make_room(layer.points, line);
-            layer.points.push_back({at.x + origin_.x, height_ - at.y + origin_.y});
+            }
+            add(at);
         }
-        if (layer.points.size() != begin)
-            end_contour(begin, false, line);
+        end_contour(false, line);
     }
 
-    void end_contour(std::size_t begin, bool closed, std::size_t line) {
+    /// Where one is under construction.
+    void end_contour(bool closed, std::size_t line) {
         RawLayer& layer = groups_.back().contours;
-        const bool empty = layer.points.size() == begin;
-        make_room(layer.ends, line);
-        if (!layer.end_clean_contour(begin, closed, part_) && !empty)
-            dropped_.note(at_line(line));
+        if (layer.points.size() != layer.contour_begin() &&
+            layer.end_contour(closed, part_, limits_, at_line(line), dropped_) && !closed)
+            open_.note(at_line(line));
     }
 
     /// For one more.
@@ -338,6 +348,7 @@ class SvgReader {
     std::vector<Group> groups_;
     Oddity open_{"contours are open"};
     Oddity other_{"elements are no outlines; they were passed over"};
+    Oddity transformed_{"elements have transforms, which were not followed"};
     Oddity dropped_{"contours had too few different points; they were dropped"};
 };
 

@@ -1,10 +1,10 @@
-#include "lamella/core/error.hpp"
-
 #include "container/json_text.hpp"
+#include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -53,7 +53,7 @@ class LayersJsonReader {
     void check_format() {
         const std::string name = text_.string();
         if (name != format_name)
-            text_.fail(fmt::format("the format '{}'", name.substr(0, 40)),
+            text_.fail(fmt::format("the format '{}'", printable(name, 40)),
                        fmt::format("of JSON files, '{}' is read", format_name));
         known_ = true;
     }
@@ -68,13 +68,15 @@ class LayersJsonReader {
         const std::string name = text_.string();
         const std::optional<PlaneRule> rule = plane_rule(name);
         if (!rule)
-            text_.fail(fmt::format("the rule '{}'", name.substr(0, 40)),
+            text_.fail(fmt::format("the rule '{}'", printable(name, 40)),
                        "planes are cut by section_above or section_below");
         file_.rule = *rule;
     }
 
-    // In front of the layers.
+    // In front of the layers: all parts have the same planes.
     void read_parts() {
+        if (!file_.parts.empty())
+            text_.fail("\"parts\" a second time", "they must come once, before the layers");
         text_.array([&] {
             std::string label;
             text_.object([&](const std::string& key) {
@@ -150,11 +152,8 @@ class LayersJsonReader {
         text_.object([&](const std::string& key) {
             if (key == "rings" || key == "chains")
                 text_.array([&] {
-                    const std::size_t begin = raw.points.size();
                     read_points(raw.points);
-                    make_room(raw.ends);
-                    if (!raw.end_clean_contour(begin, key == "rings", part))
-                        dropped_.note(at_byte(text_.at()));
+                    raw.end_contour(key == "rings", part, limits_, at_byte(text_.at()), dropped_);
                 });
             else if (key == "hatches")
                 read_hatches(raw, part);
@@ -168,8 +167,7 @@ class LayersJsonReader {
         read_points(raw.hatches);
         if ((raw.hatches.size() - begin) % 2 != 0)
             text_.fail("half a hatch line", "each must have two points");
-        make_room(raw.hatch_ends);
-        raw.end_hatches(part);
+        raw.end_hatches(part, limits_, at_byte(text_.at()));
     }
 
     /// For one more.
@@ -209,14 +207,14 @@ class LayersJsonReader {
 } // namespace
 
 bool is_json(std::string_view bytes) {
-    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n", after_byte_order_mark(bytes));
     return first != std::string_view::npos && bytes[first] == '{';
 }
 
 LayerFile read_layers_json(std::string_view bytes, const std::string& name, ReadLimits& limits,
                            const Execution& execution) {
     LayerFile file{.path = name, .format = "json", .units_mm = 1};
-    JsonText text(bytes, name);
+    JsonText text(bytes.substr(after_byte_order_mark(bytes)), name);
     LayersJsonReader(text, bytes.size(), file, limits, execution).read();
     return file;
 }

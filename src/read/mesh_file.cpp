@@ -8,7 +8,6 @@
 #include "core/byte_source.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/mesh_readers.hpp"
-#include "read/unpacked_file.hpp"
 
 #include <fmt/format.h>
 
@@ -50,7 +49,7 @@ MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, co
 }
 
 MeshInput::MeshInput(const std::string& path, std::uint64_t most_in_memory, const Execution& execution)
-    : path_(path), source_(std::make_shared<const ByteSource>(open_bytes(path, most_in_memory, execution))) {}
+    : path_(path), source_(std::make_shared<const ByteSource>(open_bytes(path, execution, most_in_memory))) {}
 
 std::uint64_t MeshInput::bytes() const noexcept {
     return source_->bytes.size();

@@ -24,6 +24,11 @@ bool by_text(const ByteSource& source, const MeshReadOptions&) {
     return recognises(source.text());
 }
 
+template <bool (*recognises)(const ZipReader&)>
+bool by_archive(const ByteSource& source, const MeshReadOptions& options) {
+    return is_zip(source.text()) && recognises(ZipReader(source, options.max_memory));
+}
+
 bool is_any_stl(const ByteSource& source, const MeshReadOptions&) {
     return is_stl(source);
 }
@@ -33,17 +38,9 @@ bool holds(const ZipReader& zip, std::string_view ending) {
                        [&](const ZipEntry& entry) { return lower_case(entry.name).ends_with(ending); });
 }
 
-bool is_archive_of_scan_vectors(const ByteSource& source, const MeshReadOptions& options) {
-    return is_zip(source.text()) && is_ilt(ZipReader(source, options.max_memory));
-}
-
 /// What may be a 3MF package.
 bool holds_model(const ZipReader& zip) {
     return holds(zip, ".rels") || holds(zip, ".model");
-}
-
-bool is_archive_of_arrays(const ByteSource& source, const MeshReadOptions& options) {
-    return is_zip(source.text()) && is_npz(ZipReader(source, options.max_memory));
 }
 
 /// Also a packed file, perhaps of another name, but no 3MF package.
@@ -58,10 +55,7 @@ bool is_plain_or_packed_amf(const ByteSource& source, const MeshReadOptions& opt
 }
 
 /// Such as a job for a resin printer.
-bool is_archive_of_pictures(const ByteSource& source, const MeshReadOptions& options) {
-    if (!is_zip(source.text()))
-        return false;
-    const ZipReader zip(source, options.max_memory);
+bool holds_pictures(const ZipReader& zip) {
     return holds(zip, ".png") && !holds_model(zip);
 }
 
@@ -81,20 +75,18 @@ constexpr std::array rows = {
     MeshFormatRow{.extension = "stl", .recognises = is_any_stl, .read = read_stl, .stream = stream_stl},
     // Zip archives.
     MeshFormatRow{.extension = "npz",
-                  .recognises = is_archive_of_arrays,
+                  .recognises = by_archive<is_npz>,
                   .goes_by_name = true,
                   .advice = "is a slice file (NumPy arrays): it holds layers already, no mesh; view, convert "
-                            "or verify it as it is",
-                  .layers = true},
+                            "or verify it as it is"},
     MeshFormatRow{.extension = "ilt",
-                  .recognises = is_archive_of_scan_vectors,
+                  .recognises = by_archive<is_ilt>,
                   .goes_by_name = true,
                   .advice =
                       "holds scan vectors (ILT): layers already, no mesh; view, convert or verify it as "
-                      "it is",
-                  .layers = true},
+                      "it is"},
     MeshFormatRow{.extension = "amf", .recognises = is_plain_or_packed_amf, .read = read_amf},
-    MeshFormatRow{.recognises = is_archive_of_pictures,
+    MeshFormatRow{.recognises = by_archive<holds_pictures>,
                   .advice = "holds pictures of layers, as for a resin printer: it is sliced already, and "
                             "neither a mesh nor contours can be read from it"},
     MeshFormatRow{.extension = "3mf", .recognises = by_text<is_zip>, .read = read_three_mf},
@@ -104,7 +96,6 @@ constexpr std::array rows = {
                   .advice =
                       "holds scan vectors (Open Vector Format): layers already, no mesh; view, convert or "
                       "verify it as it is",
-                  .layers = true,
                   .read_layers = read_ovf,
                   .layer_mark = "Open Vector Format (LVF!)"},
     // Texts, or binary behind a head of text.
@@ -122,7 +113,6 @@ constexpr std::array rows = {
                   .advice =
                       "is a slice file (SLC): it holds layers already, no mesh; view, convert or verify "
                       "it as it is",
-                  .layers = true,
                   .read_layers = read_slc,
                   .layer_mark = "SLC (-SLCVER)"},
     MeshFormatRow{.extension = "json",
@@ -130,7 +120,6 @@ constexpr std::array rows = {
                   .goes_by_name = true,
                   .advice = "is a JSON document, which may hold layers, but no mesh that is read here; view, "
                             "convert or verify layers as they are",
-                  .layers = true,
                   .read_layers = read_layers_json,
                   .layer_mark = "JSON of layers ({)"},
     MeshFormatRow{.extension = "cli",
@@ -139,7 +128,6 @@ constexpr std::array rows = {
                   .goes_by_name = true,
                   .advice = "is a slice file (Common Layer Interface): it holds layers already, no mesh; "
                             "view, convert or verify it as it is",
-                  .layers = true,
                   .read_layers = read_common_layer,
                   .layer_mark = "Common Layer Interface ($$HEADERSTART)"},
     MeshFormatRow{.extension = "svg",
@@ -147,7 +135,6 @@ constexpr std::array rows = {
                   .goes_by_name = true,
                   .advice = "is an SVG document, which may hold layers, but no mesh; view, convert or verify "
                             "layers as they are",
-                  .layers = true,
                   .read_layers = read_layered_svg,
                   .layer_mark = "layered SVG (<svg)"},
     // What is often found under the name of a mesh file, or given by mistake. Binary ones would be taken for
@@ -243,6 +230,13 @@ const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOpti
     if (named != nullptr)
         refuse(source, fmt::format("is neither a mesh file nor the slice file that its extension .{} says",
                                    extension));
+    // Whoever calls it something else does not mean its bytes for numbers.
+    if (first_row([&](const MeshFormatRow& row) {
+            return row.read != nullptr && row.extension == extension && &row != rows.data();
+        }) != nullptr)
+        refuse(source,
+               fmt::format("is neither what its extension .{} says nor another mesh file that is known",
+                           extension));
     return rows.front();
 }
 

@@ -33,7 +33,6 @@ struct MeshFormatRow {
 
     /// What the file is, and what to do about it: the end of a sentence that begins with its name.
     std::string_view advice = {};
-    bool layers = false; ///< it holds layers: a file for lamella::read_layers
     /// Reads a slice file that is no archive. `layer_mark`: its name and first bytes, for errors.
     LayerFile (*read_layers)(std::string_view bytes, const std::string& name, ReadLimits&,
                              const Execution&) = nullptr;
@@ -53,6 +52,11 @@ struct MeshFormatRow {
 /// The format to read a file with: that of its content, where that tells, else that of its name. Throws
 /// Error{input} for what is no mesh file, with advice.
 [[nodiscard]] const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOptions& options);
+
+/// Reads what has been opened, and unpacked where gzip had packed it: the contract of read_mesh, but for
+/// MeshFile::path.
+[[nodiscard]] MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& options,
+                                          const Execution& execution);
 
 /// Of slice files that are no archives, the row that the content tells; null where none does.
 [[nodiscard]] const MeshFormatRow* layer_format_of(const ByteSource& source);

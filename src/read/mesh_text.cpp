@@ -21,43 +21,6 @@ struct ElementRun {
     bool plain = true;
 };
 
-/// Cuts runs where elements begin.
-template <class Item>
-void cut_run(std::string_view run, std::size_t mesh, const MeshTextKind<Item>& kind,
-             std::vector<ElementRun>& pieces) {
-    while (run.size() > text_piece_bytes) {
-        const std::size_t cut = run.find(kind.tag, text_piece_bytes);
-        if (cut == std::string_view::npos)
-            break;
-        pieces.push_back({run.substr(0, cut), mesh});
-        run.remove_prefix(cut);
-    }
-    pieces.push_back({run, mesh});
-}
-
-/// How many elements there are, if all are plain.
-template <class Item>
-void count_elements(ElementRun& piece, const MeshTextKind<Item>& kind) {
-    const auto marks = static_cast<std::size_t>(std::count(piece.text.begin(), piece.text.end(), '<'));
-    piece.count = marks / kind.marks;
-    piece.plain = marks % kind.marks == 0 && piece.count <= piece.text.size() / kind.least;
-}
-
-/// Numbers the elements of each mesh and says how many each has; none where a piece is not plain.
-std::vector<std::optional<std::size_t>> number_elements(std::vector<ElementRun>& pieces, std::size_t meshes) {
-    std::vector<std::optional<std::size_t>> counts(meshes, 0);
-    for (ElementRun& piece : pieces) {
-        std::optional<std::size_t>& count = counts[piece.mesh];
-        if (!piece.plain)
-            count.reset();
-        if (!count)
-            continue;
-        piece.first = *count;
-        *count += piece.count;
-    }
-    return counts;
-}
-
 /// One kind of element of all meshes.
 template <class Item>
 class Elements {
@@ -67,31 +30,43 @@ class Elements {
         : kind_(kind), texts_(texts) {
         for (std::size_t i = 0; i < texts.size(); ++i)
             for (const std::string_view run : texts[i].*runs)
-                cut_run(run, i, kind, pieces_);
+                cut(run, i);
     }
 
+    /// Counts the elements of each piece, if all are plain, and numbers those of each mesh.
     void count(Executor& executor) {
-        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = begin; i < end; ++i)
-                count_elements(pieces_[i], kind_);
+        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            ElementRun& piece = pieces_[i];
+            const auto marks =
+                static_cast<std::size_t>(std::count(piece.text.begin(), piece.text.end(), '<'));
+            piece.count = marks / kind_.marks;
+            piece.plain = marks % kind_.marks == 0 && piece.count <= piece.text.size() / kind_.least;
         });
-        counts_ = number_elements(pieces_, texts_.size());
+        counts_.assign(texts_.size(), 0);
+        for (ElementRun& piece : pieces_) {
+            std::optional<std::size_t>& count = counts_[piece.mesh];
+            if (!piece.plain)
+                count.reset();
+            if (!count)
+                continue;
+            piece.first = *count;
+            *count += piece.count;
+        }
     }
 
+    /// None where a piece is not plain.
     [[nodiscard]] const std::optional<std::size_t>& count_of(std::size_t mesh) const { return counts_[mesh]; }
 
     /// Reads into `items_of(mesh)`, and hands each piece that was read to `done`.
     template <class ItemsOf, class Done>
     void read(Executor& executor, const std::vector<bool>& wanted, const ItemsOf& items_of,
               const Done& done) {
-        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = begin; i < end; ++i) {
-                ElementRun& piece = pieces_[i];
-                if (!wanted[piece.mesh])
-                    continue;
-                const std::span<Item> items = items_of(piece.mesh).subspan(piece.first, piece.count);
-                piece.plain = kind_.read(piece.text, texts_[piece.mesh], items) && done(piece.mesh, items);
-            }
+        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            ElementRun& piece = pieces_[i];
+            if (!wanted[piece.mesh])
+                return;
+            const std::span<Item> items = items_of(piece.mesh).subspan(piece.first, piece.count);
+            piece.plain = kind_.read(piece.text, texts_[piece.mesh], items) && done(piece.mesh, items);
         });
     }
 
@@ -102,6 +77,18 @@ class Elements {
     }
 
   private:
+    /// Cuts a run where elements begin.
+    void cut(std::string_view run, std::size_t mesh) {
+        while (run.size() > text_piece_bytes) {
+            const std::size_t cut = run.find(kind_.tag, text_piece_bytes);
+            if (cut == std::string_view::npos)
+                break;
+            pieces_.push_back({run.substr(0, cut), mesh});
+            run.remove_prefix(cut);
+        }
+        pieces_.push_back({run, mesh});
+    }
+
     const MeshTextKind<Item>& kind_;
     std::span<const MeshText> texts_;
     std::vector<ElementRun> pieces_;

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "container/utf8.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
@@ -32,7 +33,6 @@ class Array {
     }
 
     [[nodiscard]] std::uint64_t size() const { return shape_.front(); }
-    [[nodiscard]] const std::vector<std::uint64_t>& shape() const { return shape_; }
 
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
         throw Error(ErrorKind::input, fmt::format("{}: found {}; {}", source_.name, found, expected));
@@ -41,10 +41,6 @@ class Array {
     void expect_shape(const std::vector<std::uint64_t>& rest, const char* what) const {
         if (!std::equal(shape_.begin() + 1, shape_.end(), rest.begin(), rest.end()))
             fail("an array of another shape", what);
-    }
-    void expect_size(std::uint64_t size, std::string_view of) const {
-        if (size != this->size())
-            fail(fmt::format("{} elements", this->size()), fmt::format("there are {} {}", size, of));
     }
 
     /// A length in millimetres. `i` counts all numbers of the array.
@@ -107,17 +103,6 @@ class Array {
         return value;
     }
 
-    static void append_utf8(std::string& to, std::uint32_t c) {
-        if (c < 0x80) {
-            to += static_cast<char>(c);
-            return;
-        }
-        const unsigned tails = c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
-        to += static_cast<char>((0xF00U >> tails & 0xFFU) | (c >> (6 * tails)));
-        for (unsigned k = tails; k-- > 0;)
-            to += static_cast<char>(0x80U | ((c >> (6 * k)) & 0x3FU));
-    }
-
     // "\x93NUMPY", a version, the length of the dictionary (16 bits in version 1, then 32), the dictionary.
     void read_head() {
         constexpr std::string_view magic = "\x93NUMPY";
@@ -136,6 +121,9 @@ class Array {
         if (value(dictionary, "fortran_order").starts_with("True") && shape_.size() > 1)
             fail("an array in Fortran's order", "the last index must run fastest");
         element_ = element_size();
+        // Elements without a byte could be as many as the first number says.
+        if (std::find(shape_.begin() + 1, shape_.end(), 0U) != shape_.end())
+            fail("a shape with a 0 behind its first number", "elements must not be empty");
         std::uint64_t numbers = 1;
         for (const std::uint64_t n : shape_) {
             if (n != 0 && numbers > std::numeric_limits<std::uint64_t>::max() / n / element_)
@@ -213,31 +201,31 @@ class NpzReader {
         Executor executor(execution);
         const Array points = array("points");
         points.expect_shape({2}, "points have two coordinates");
-        const Array offsets = array("offsets");
+        const Array offsets = list("offsets");
         if (offsets.size() == 0)
             offsets.fail("no element", "there must be one more than contours");
         const std::uint64_t contours = offsets.size() - 1;
-        const Array closed = contour_array("closed", contours);
-        const Array layer = contour_array("layer", contours);
-        const Array part = contour_array("part", contours);
-        const Array z = array("z");
+        const Array closed = list("closed", contours, "contours");
+        const Array layer = list("layer", contours, "contours");
+        const Array part = list("part", contours, "contours");
+        const Array z = list("z");
         if (z.size() == 0)
             z.fail("no layer", "a slice file must have at least one");
-        const Array bottom = plane_array("bottom", z.size());
-        const Array top = plane_array("top", z.size());
-        const Array index = plane_array("index", z.size());
-        const Array labels = array("labels");
+        const Array bottom = list("bottom", z.size(), "layers");
+        const Array top = list("top", z.size(), "layers");
+        const Array index = list("index", z.size(), "layers");
+        const Array labels = list("labels");
         if (labels.size() == 0)
             labels.fail("no part", "there must be one");
         constexpr std::uint64_t most_parts = std::numeric_limits<std::uint32_t>::max();
-        if (labels.size() > most_parts || labels.size() > zip_bytes() + 1)
+        if (labels.size() > most_parts || labels.size() > zip_.unpacked() + 1)
             labels.fail(fmt::format("{} parts", labels.size()), "so many are not possible");
         limits_.make_room(file_.parts, labels.size(), [] { return std::string_view("array 'labels'"); });
         for (std::uint64_t i = 0; i < labels.size(); ++i) {
             const std::string label = labels.text(i);
             file_.parts.push_back({label, {}, labelled_exposure(label)});
         }
-        check_part_planes(file_, z.size(), zip_bytes());
+        check_part_planes(file_, z.size(), zip_.unpacked());
         read_rule();
 
         std::vector<RawLayer> raw;
@@ -262,8 +250,6 @@ class NpzReader {
     }
 
   private:
-    [[nodiscard]] std::uint64_t zip_bytes() const { return zip_.unpacked(); }
-
     [[nodiscard]] Array array(const std::string& name) const {
         const ZipEntry* entry = zip_.find(name + ".npy");
         if (entry == nullptr)
@@ -276,16 +262,17 @@ class NpzReader {
         limits_.add_bytes_at(zip_.unpacked() - unpacked, [&] { return fmt::format("array '{}'", name); });
         return result;
     }
-    [[nodiscard]] Array contour_array(const std::string& name, std::uint64_t contours) const {
+    /// An array of a single dimension.
+    [[nodiscard]] Array list(const std::string& name) const {
         Array result = array(name);
-        result.expect_shape({}, "there must be one number for each contour");
-        result.expect_size(contours, "contours");
+        result.expect_shape({}, "it must be a list");
         return result;
     }
-    [[nodiscard]] Array plane_array(const std::string& name, std::uint64_t planes) const {
-        Array result = array(name);
-        result.expect_shape({}, "there must be one number for each layer");
-        result.expect_size(planes, "layers");
+    /// One that has an element for each of something.
+    [[nodiscard]] Array list(const std::string& name, std::uint64_t size, std::string_view of) const {
+        Array result = list(name);
+        if (size != result.size())
+            result.fail(fmt::format("{} elements", result.size()), fmt::format("there are {} {}", size, of));
         return result;
     }
 
@@ -298,16 +285,13 @@ class NpzReader {
                 offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
             RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
             const auto of_part = static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1));
-            const std::size_t first = into.points.size();
             const auto place = [&] {
                 return fmt::format("contour {}", i);
             };
             limits_.make_room(into.points, end - begin, place);
-            limits_.make_room(into.ends, 1, place);
             for (std::uint64_t k = begin; k < end; ++k)
                 into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
-            if (!into.end_clean_contour(first, closed.whole(i, 1) != 0, of_part))
-                dropped_.note(place);
+            into.end_contour(closed.whole(i, 1) != 0, of_part, limits_, place, dropped_);
             begin = end;
         }
     }
@@ -315,8 +299,7 @@ class NpzReader {
     void read_rule() const {
         if (zip_.find("rule.npy") == nullptr)
             return;
-        const Array array = this->array("rule");
-        array.expect_size(1, "rule");
+        const Array array = list("rule", 1, "rule");
         const std::string name = array.text(0);
         const std::optional<PlaneRule> rule = plane_rule(name);
         if (!rule)
@@ -330,20 +313,18 @@ class NpzReader {
             return;
         const Array hatches = array("hatches");
         hatches.expect_shape({2, 2}, "hatch lines have two points");
-        const Array layer = array("hatch_layer");
-        const Array part = array("hatch_part");
-        layer.expect_size(hatches.size(), "hatch lines");
-        part.expect_size(hatches.size(), "hatch lines");
+        const Array layer = list("hatch_layer", hatches.size(), "hatch lines");
+        const Array part = list("hatch_part", hatches.size(), "hatch lines");
         for (std::uint64_t i = 0; i < hatches.size(); ++i) {
             RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
             const auto place = [&] {
                 return fmt::format("hatch line {}", i);
             };
             limits_.make_room(into.hatches, 2, place);
-            limits_.make_room(into.hatch_ends, 1, place);
             for (std::uint64_t k = 4 * i; k < 4 * i + 4; k += 2)
                 into.hatches.push_back({hatches.length(k), hatches.length(k + 1)});
-            into.end_hatches(static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1)));
+            into.end_hatches(static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1)), limits_,
+                             place);
         }
     }
 

@@ -1,5 +1,3 @@
-#include "lamella/core/error.hpp"
-
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/face_mesh.hpp"
@@ -106,7 +104,7 @@ class ObjLines : Words {
             number = std::min(number * 10 + static_cast<unsigned char>(*at_ - '0'), too_large);
         if (at_ == digits)
             return fail();
-        while (at_ != end_ && (*at_ == '/' || *at_ == '-' || is_digit(*at_)))
+        while (at_ != end_ && (*at_ == '/' || is_digit(*at_) || (*at_ == '-' && at_[-1] == '/')))
             ++at_;
         if (at_ != end_ && !is_blank(*at_) && *at_ != '\\')
             return fail();

@@ -1,5 +1,3 @@
-#include "lamella/core/error.hpp"
-
 #include "read/face_rows.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"

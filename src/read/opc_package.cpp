@@ -56,12 +56,12 @@ std::string decoded(std::string_view reference) {
 
 } // namespace
 
-std::vector<OpcRelationship> OpcPackage::relationships(std::string_view part) const {
+std::vector<OpcRelationship> opc_relationships(const ZipReader& package, std::string_view part) {
     std::vector<OpcRelationship> found;
-    const ZipEntry* const entry = zip_.find(list_of(part));
+    const ZipEntry* const entry = package.find(list_of(part));
     if (entry == nullptr)
         return found;
-    const ByteSource source = zip_.read(*entry);
+    const ByteSource source = package.read(*entry);
     XmlHandlers handlers;
     handlers.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
         if (name != XmlName{relationships_space, "Relationship"})
@@ -79,7 +79,7 @@ std::vector<OpcRelationship> OpcPackage::relationships(std::string_view part) co
                                     line, most_relationships));
         const bool external = attributes.find("TargetMode") == "External";
         found.push_back(
-            {std::string(type), external ? std::string(target) : resolve(part, target), external, line});
+            {std::string(type), external ? std::string(target) : opc_resolved(part, target), external, line});
     };
     handlers.end = [](XmlName) {
     };
@@ -88,7 +88,7 @@ std::vector<OpcRelationship> OpcPackage::relationships(std::string_view part) co
     return found;
 }
 
-std::string OpcPackage::resolve(std::string_view part, std::string_view reference) {
+std::string opc_resolved(std::string_view part, std::string_view reference) {
     std::string path = decoded(reference);
     if (!path.starts_with('/')) {
         const std::size_t slash = part.rfind('/');

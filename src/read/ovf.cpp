@@ -80,14 +80,15 @@ class JobShell {
         const auto label = labels_.find(part);
         return label == labels_.end() ? std::string() : printable(label->second, most_text);
     }
+    /// The key may name none.
+    [[nodiscard]] bool has_parameters(std::int64_t key) const { return parameters_.count(key) != 0; }
     /// Of blocks of a kind, where it has parameters.
     [[nodiscard]] std::optional<Exposure> exposure(const BlockKind& kind) const {
         const auto parameters = parameters_.find(kind.parameters);
         if (parameters == parameters_.end())
             return std::nullopt;
         namespace lpbf = ovf::block::lpbf;
-        Exposure exposure;
-        exposure.part = label(kind.part);
+        Exposure exposure; // its part is set later
         exposure.parameters = parameters->second;
         exposure.region = kind.structure == lpbf::of_support ? ScanRegion::support
                           : kind.skin == lpbf::down_skin     ? ScanRegion::downskin
@@ -136,33 +137,23 @@ class JobShell {
     }
 
     static ParameterSet read_parameters(ProtobufReader fields) {
+        struct Number {
+            std::uint32_t field;
+            double ParameterSet::*member;
+        };
+        static constexpr Number numbers[] = {{ovf::marking::power_w, &ParameterSet::power_w},
+                                             {ovf::marking::speed_mm_s, &ParameterSet::speed_mm_s},
+                                             {ovf::marking::focus_mm, &ParameterSet::focus_mm},
+                                             {ovf::marking::jump_speed_mm_s, &ParameterSet::jump_speed_mm_s},
+                                             {ovf::marking::jump_delay_us, &ParameterSet::jump_delay_us},
+                                             {ovf::marking::mark_delay_us, &ParameterSet::mark_delay_us}};
         ParameterSet set = unknown_parameters();
         while (fields.next()) {
-            switch (fields.field()) {
-            case ovf::marking::power_w:
-                set.power_w = finite_real(fields);
-                break;
-            case ovf::marking::speed_mm_s:
-                set.speed_mm_s = finite_real(fields);
-                break;
-            case ovf::marking::focus_mm:
-                set.focus_mm = finite_real(fields);
-                break;
-            case ovf::marking::jump_speed_mm_s:
-                set.jump_speed_mm_s = finite_real(fields);
-                break;
-            case ovf::marking::jump_delay_us:
-                set.jump_delay_us = finite_real(fields);
-                break;
-            case ovf::marking::mark_delay_us:
-                set.mark_delay_us = finite_real(fields);
-                break;
-            case ovf::marking::name:
+            if (fields.field() == ovf::marking::name)
                 set.name = fields.bytes();
-                break;
-            default:
-                break;
-            }
+            for (const Number& number : numbers)
+                if (fields.field() == number.field)
+                    set.*number.member = finite_real(fields);
         }
         return set;
     }
@@ -200,8 +191,7 @@ class OvfReader {
           progress_(execution, Stage::read, bytes.size()), job_(name, limits), parts_(limits) {}
 
     void read() {
-        std::uint64_t place = position_at(ovf::magic.size());
-        const Table planes = read_table(place);
+        const Table planes = read_table(position_at(ovf::magic.size()));
         job_.read(bytes_, planes.shell);
         for (const std::uint64_t plane : planes.positions)
             read_plane(plane);
@@ -210,7 +200,9 @@ class OvfReader {
                         fmt::format("{}: found no work plane; there must be one at least", name_));
         number_parts();
         make_layers();
-        for (const Oddity* oddity : {&moved_, &other_vectors_, &dropped_})
+        names_.say(file_.warnings);
+        for (const Oddity* oddity :
+             {&moved_, &other_vectors_, &repeated_blocks_, &repeated_planes_, &other_lasers_, &dropped_})
             oddity->say(file_.warnings);
         progress_.finish();
     }
@@ -233,9 +225,20 @@ class OvfReader {
         return static_cast<std::uint64_t>(position);
     }
 
+    /// The message at `place` that says where or at which height vectors lie. Any number of work planes may
+    /// name the same ones: were they read again each time, a small file would take long.
+    ProtobufReader head_at(std::uint64_t place) {
+        std::uint64_t end = place;
+        ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
+        head_bytes_ += end - place;
+        if (head_bytes_ > bytes_.size())
+            fail(place, "a table or the head of a work plane once more", "work planes must share none");
+        return fields;
+    }
+
     Table read_table(std::uint64_t place) {
         Table table;
-        ProtobufReader fields = ProtobufReader::delimited(bytes_, place, name_);
+        ProtobufReader fields = head_at(place);
         while (fields.next()) {
             const auto position = [&](std::int64_t value) {
                 if (value < 0 || static_cast<std::uint64_t>(value) >= bytes_.size())
@@ -260,11 +263,12 @@ class OvfReader {
         limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
         raw.place = fmt::format("byte {}", begin);
-        std::uint64_t place = table.shell;
-        ProtobufReader shell = ProtobufReader::delimited(bytes_, place, name_);
+        ProtobufReader shell = head_at(table.shell);
         while (shell.next()) {
             if (shell.field() == ovf::work_plane::z)
                 raw.z = finite_real(shell);
+            else if (shell.field() == ovf::work_plane::repeats && shell.integer() != 0)
+                repeated_planes_.note(at_byte(begin));
             else if (shell.type() == ProtobufType::bits_32 &&
                      (shell.field() <= ovf::work_plane::y || (shell.field() >= ovf::work_plane::x_turn &&
                                                               shell.field() <= ovf::work_plane::z_turn)) &&
@@ -287,6 +291,7 @@ class OvfReader {
         BlockKind kind;
         std::optional<ProtobufReader> lines;
         std::optional<ProtobufReader> hatches;
+        bool says_kind = false;
         while (fields.next()) {
             if (fields.field() == ovf::block::line_sequence)
                 lines = fields.message();
@@ -296,11 +301,25 @@ class OvfReader {
                 other_vectors_.note(at_byte(begin));
             else if (fields.field() == ovf::block::marking_params_key)
                 kind.parameters = fields.integer();
+            else if (fields.field() == ovf::block::laser_index && fields.integer() != 0)
+                other_lasers_.note(at_byte(begin));
+            else if (fields.field() == ovf::block::repeats && fields.integer() != 0)
+                repeated_blocks_.note(at_byte(begin));
             else if (fields.field() == ovf::block::meta_data)
                 read_meta_data(fields.message(), kind);
-            else if (fields.field() == ovf::block::lpbf_meta_data)
+            else if (fields.field() == ovf::block::lpbf_meta_data) {
+                says_kind = true;
                 read_lpbf_meta_data(fields.message(), kind);
+            }
         }
+        const bool has_parameters = job_.has_parameters(kind.parameters);
+        if (!has_parameters && kind.parameters != 0)
+            fail(begin, fmt::format("a block with parameters of the key {}", kind.parameters),
+                 "the job must have them");
+        // Without metadata the vectors tell. Where there are no parameters, lines and hatches are of one
+        // part.
+        if (!says_kind && has_parameters && lines)
+            kind.area = ovf::block::lpbf::contour;
         if (lines)
             add_line_sequence(*lines, begin, parts_.number_of(kind, at_byte(begin)), raw);
         if (hatches)
@@ -351,28 +370,30 @@ class OvfReader {
 
     void add_line_sequence(const ProtobufReader& lines, std::uint64_t begin, std::uint32_t part,
                            RawLayer& raw) {
-        const std::size_t first = raw.points.size();
         add_points(lines, begin, 2, raw.points);
-        limits_.make_room(raw.ends, 1, at_byte(begin));
-        const bool closed = raw.points.size() - first > 3 && raw.points.back() == raw.points[first];
-        if (!raw.end_clean_contour(first, closed, part))
-            dropped_.note(at_byte(begin));
+        const bool closed = raw.points.size() - raw.contour_begin() > 3 && raw.returns();
+        raw.end_contour(closed, part, limits_, at_byte(begin), dropped_);
     }
 
     void add_hatches(const ProtobufReader& hatches, std::uint64_t begin, std::uint32_t part, RawLayer& raw) {
         add_points(hatches, begin, 4, raw.hatches);
-        limits_.make_room(raw.hatch_ends, 1, at_byte(begin));
-        raw.end_hatches(part);
+        raw.end_hatches(part, limits_, at_byte(begin));
     }
 
     /// Parts by their keys, and exposures of each by those of their parameters.
     void number_parts() {
         if (parts_.empty())
             parts_.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));
+        std::map<std::int64_t, std::string> labels; // of parts that have vectors
         parts_.put(file_, layers_, [&](const BlockKind& kind) {
-            LayerPart part{job_.label(kind.part), {}, job_.exposure(kind)};
-            if (part.exposure)
+            const auto [label, is_new] = labels.try_emplace(kind.part);
+            if (is_new)
+                label->second = names_.of(job_.label(kind.part));
+            LayerPart part{label->second, {}, job_.exposure(kind)};
+            if (part.exposure) {
+                part.exposure->part = label->second;
                 part.label = part.exposure->label();
+            }
             return part;
         });
     }
@@ -381,14 +402,11 @@ class OvfReader {
     void make_layers() {
         sort_by_height(layers_, file_.warnings);
         check_part_planes(file_, layers_.size(), bytes_.size());
-        for (std::size_t i = 0; i < layers_.size(); ++i) {
-            const double top = layers_[i].z;
-            const double first_step = job_.layer_thickness() > 0 ? job_.layer_thickness()
-                                      : layers_.size() > 1       ? layers_[1].z - layers_[0].z
-                                                                 : std::max(top, 0.0);
-            const double bottom = i > 0 ? layers_[i - 1].z : top - first_step;
-            add_layer(file_, layers_[i], i, bottom + (top - bottom) / 2, bottom, top, limits_);
-        }
+        const double first = layers_.front().z;
+        const double first_step = job_.layer_thickness() > 0 ? job_.layer_thickness()
+                                  : layers_.size() > 1       ? layers_[1].z - first
+                                                             : std::max(first, 0.0);
+        add_layers_by_tops(file_, layers_, first - first_step, limits_);
     }
 
     std::string_view bytes_;
@@ -401,9 +419,14 @@ class OvfReader {
     std::vector<RawLayer> layers_;
     PartNumbers<BlockKind> parts_;
     std::uint64_t end_of_blocks_ = 0;
+    std::uint64_t head_bytes_ = 0; ///< of tables and heads of work planes, as often as they were read
     std::uint64_t reported_ = 0;
     Oddity moved_{"work planes are moved or turned; their vectors were read as they stand"};
     Oddity other_vectors_{"blocks hold other vectors than lines and hatches; they were left out"};
+    Oddity repeated_blocks_{"blocks are to be executed more than once; their vectors were read once"};
+    Oddity repeated_planes_{"work planes are to be executed more than once; their vectors were read once"};
+    Oddity other_lasers_{"blocks are for another laser than the first; which one was left out"};
+    DistinctNames names_;
     Oddity dropped_{"line sequences had too few different points; they were dropped"};
 };
 

@@ -7,6 +7,7 @@
 #include "read/ply_header.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -144,6 +145,7 @@ MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const Ply
 } // namespace
 
 bool is_ply(std::string_view text) {
+    text.remove_prefix(after_byte_order_mark(text));
     return text.starts_with("ply") && text.size() > 3 && is_blank(text[3]);
 }
 

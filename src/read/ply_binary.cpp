@@ -4,6 +4,7 @@
 
 #include "core/executor.hpp"
 #include "core/pages.hpp"
+#include "read/coordinate_text.hpp"
 #include "read/face_mesh.hpp"
 
 #include <fmt/format.h>
@@ -228,14 +229,12 @@ class FaceRows {
 
     /// To arrays that have room for all. In parallel.
     void put(FaceMesh& faces, ProgressMeter& progress) {
-        executor_.for_chunks(runs_.size() - 1, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = begin; i < end; ++i) {
-                if (even_ && corners_ == 3 && rows_.has_items_of_32_bits())
-                    put_triangles(runs_[i], runs_[i + 1], faces);
-                else
-                    put(runs_[i], runs_[i + 1], faces);
-                progress.add(static_cast<std::uint64_t>(runs_[i + 1].at - runs_[i].at));
-            }
+        executor_.for_chunks(runs_.size() - 1, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            if (even_ && corners_ == 3 && rows_.has_items_of_32_bits())
+                put_triangles(runs_[i], runs_[i + 1], faces);
+            else
+                put(runs_[i], runs_[i + 1], faces);
+            progress.add(static_cast<std::uint64_t>(runs_[i + 1].at - runs_[i].at));
         });
     }
 
@@ -412,11 +411,41 @@ class BinaryReader {
         MeshFile file = make_mesh_file(
             std::move(faces_), source_.name, 0, [this](std::uint64_t triangle) { return place(triangle); },
             remarks_, executor_);
+        tell_rest(last + 1);
         progress_.finish();
         return file;
     }
 
   private:
+    /// Tells of bytes beyond the rows of all elements: whoever wrote the file has counted wrong, and they are
+    /// lost. Of the elements from `first` on nothing is needed, so they may be cut off.
+    void tell_rest(std::size_t first) {
+        for (std::size_t i = first; i < header_.elements.size(); ++i) {
+            const PlyElement& element = header_.elements[i];
+            if (const auto row_bytes = element.row_bytes()) {
+                if (*row_bytes != 0 && element.rows > left() / *row_bytes)
+                    return;
+                at_ += *row_bytes == 0 ? 0 : *row_bytes * element.rows;
+                continue;
+            }
+            const std::vector<Step> steps = steps_of(element, 0, element.properties.size());
+            for (std::uint64_t row = 0; row < element.rows; ++row) {
+                if (row % chunk_rows == 0)
+                    executor_.check_cancelled();
+                const std::byte* const next = walk<swapped>(steps, at_, end_);
+                if (next == nullptr)
+                    return;
+                at_ = next;
+            }
+        }
+        const auto is_white = [](std::byte byte) {
+            return is_blank(static_cast<char>(byte));
+        };
+        if (!std::all_of(at_, end_, is_white))
+            remarks_.add(fmt::format("byte {}: left out {} bytes from here on, beyond the rows of the head",
+                                     at_ - begin_, left()));
+    }
+
     [[nodiscard]] std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - at_); }
 
     /// The rows of an element without lists have equal sizes; the file must have room for all of them.

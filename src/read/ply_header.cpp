@@ -47,7 +47,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 class HeaderReader {
   public:
     HeaderReader(const ByteSource& source, Remarks& remarks)
-        : source_(source), remarks_(remarks), text_(source.text()) {}
+        : source_(source), remarks_(remarks), text_(source.text()), at_(after_byte_order_mark(text_)) {}
 
     PlyHeader run() {
         next_line();
@@ -175,7 +175,7 @@ class HeaderReader {
     Remarks& remarks_;
     std::string_view text_;
     PlyHeader header_;
-    std::size_t at_ = 0;
+    std::size_t at_;
     std::uint64_t line_number_ = 0;
     std::size_t line_end_ = 0; ///< bytes of the first one, where it begins with CR
     std::string_view line_;

@@ -175,8 +175,6 @@ class SlcReader {
         if (gaps != 0)
             gaps_.note(place);
         limits_.make_room(layer.points, count, place);
-        limits_.make_room(layer.ends, 1, place);
-        const std::size_t begin = layer.points.size();
         for (std::uint32_t i = 0; i < count; ++i) {
             std::array<float, 2> p{};
             std::memcpy(p.data(), bytes_.data() + at_, sizeof p);
@@ -186,11 +184,9 @@ class SlcReader {
             layer.points.push_back(
                 {static_cast<double>(p[0]) * file_.units_mm, static_cast<double>(p[1]) * file_.units_mm});
         }
-        const bool returns = layer.points.size() - begin > 1 && layer.points.back() == layer.points[begin];
+        const bool returns = layer.returns();
         const bool closed = returns || !open_;
-        if (!layer.end_clean_contour(begin, closed))
-            dropped_.note(place);
-        else if (!returns && closed)
+        if (layer.end_contour(closed, 0, limits_, place, dropped_) && closed && !returns)
             unclosed_.note(place);
     }
 
@@ -199,11 +195,7 @@ class SlcReader {
     void place_layers() {
         sort_by_height(raw_, file_.warnings);
         file_.parts.emplace_back();
-        for (std::size_t i = 0; i < raw_.size(); ++i) {
-            const double bottom = raw_[i].z;
-            const double top = i + 1 < raw_.size() ? raw_[i + 1].z : last_top();
-            add_layer(file_, raw_[i], i, bottom + (top - bottom) / 2, bottom, top, limits_);
-        }
+        add_layers_by_bottoms(file_, raw_, last_top(), limits_);
     }
 
     double last_top() {

@@ -43,6 +43,7 @@ struct Use {
     std::uint32_t object = 0;
     Transform placement; ///< in the unit of the model
     std::size_t line = 0;
+    bool elsewhere = false; ///< of another part of the package
 };
 
 struct Object {
@@ -60,7 +61,8 @@ std::uint64_t contour_bytes(const RawLayer& raw) {
 /// One model part.
 class SliceModelReader {
   public:
-    using FindStack = std::function<std::shared_ptr<const Stack>(std::string_view path, std::uint32_t id)>;
+    /// The stack that a <sliceref> is for.
+    using FindStack = std::function<std::shared_ptr<const Stack>(const ThreeMfElement& reference)>;
 
     SliceModelReader(FindStack find, ReadLimits& limits) : find_(std::move(find)), limits_(limits) {}
 
@@ -104,7 +106,8 @@ class SliceModelReader {
             const std::string_view label = element["name"].text;
             limits_.add_bytes_at(node_bytes + sizeof(Object) + label.size(), place());
             object_ = &objects_[element["id"].index()];
-            *object_ = {std::string(label), nullptr, {}, element["type"].text == "support"};
+            const std::string_view type = element["type"].text;
+            *object_ = {std::string(label), nullptr, {}, type == "solidsupport" || type == "support"};
             if (const ThreeMfValue stack = element[XmlName{three_mf::slices, "slicestackid"}]; stack.is_there)
                 object_->stack = stack_of(stack);
         } else if (name == "component" && object_ != nullptr) {
@@ -126,7 +129,7 @@ class SliceModelReader {
                 element.fail(fmt::format("a second slice stack {}", id), "ids that differ");
             stack_->bottom = element["zbottom"].number_or(0);
         } else if (name == "sliceref" && stack_) {
-            append(*find_(element["slicepath"].text, element["slicestackid"].index()), element);
+            append(*find_(element), element);
         } else if (name == "slice" && stack_) {
             const double top = element["ztop"].number();
             if (!(top > top_of_stack()))
@@ -140,7 +143,6 @@ class SliceModelReader {
             vertices_.push_back({element["x"].number(), element["y"].number()});
         } else if (name == "polygon" && in_slice()) {
             start_ = element["startv"].index();
-            begin_ = raw().points.size();
             add_point(*start_, element);
         } else if (name == "segment" && in_slice() && start_) {
             add_point(element["v2"].index(), element);
@@ -169,9 +171,7 @@ class SliceModelReader {
         const bool closed = last_ == start_;
         if (!closed)
             open_.note(place());
-        limits_.make_room(raw().ends, 1, place());
-        if (!raw().end_clean_contour(begin_, closed))
-            dropped_.note(place());
+        raw().end_contour(closed, 0, limits_, place(), dropped_);
         start_.reset();
     }
 
@@ -196,7 +196,8 @@ class SliceModelReader {
     }
 
     static Use use(const ThreeMfElement& element) {
-        return {element["objectid"].index(), element.transform(), element.line};
+        return {element["objectid"].index(), element.transform(), element.line,
+                element[XmlName{three_mf::production, "path"}].is_there};
     }
 
     FindStack find_;
@@ -210,7 +211,6 @@ class SliceModelReader {
     std::vector<Point2> vertices_;
     std::optional<std::uint32_t> start_; ///< of the polygon under construction
     std::uint32_t last_ = 0;
-    std::size_t begin_ = 0;
     Object* object_ = nullptr;
     Oddity open_{"contours are open"};
     Oddity dropped_{"contours had too few different points; they were dropped"};
@@ -230,19 +230,22 @@ struct Placed {
 
 class PackageReader {
   public:
-    PackageReader(const OpcPackage& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
-        : package_(package), zip_(package.zip()), root_(root_model(package)), file_(file), limits_(limits),
-          executor_(execution) {}
+    PackageReader(const ZipReader& zip, LayerFile& file, ReadLimits& limits, const Execution& execution)
+        : zip_(zip), root_(root_model(zip)), file_(file), limits_(limits), executor_(execution) {}
 
     void read() {
+        if (zip_.find(root_) == nullptr)
+            throw NoLayers(fmt::format("{}: found no part '{}'; a 3MF file of layers has its model there",
+                                       zip_.name(), printable(root_, 100)));
         const std::unique_ptr<SliceModelReader> model =
-            read_model(root_, [&](std::string_view path, std::uint32_t id) { return referred(path, id); });
+            read_model(root_, [&](const ThreeMfElement& reference) { return referred(reference); });
         unit_ = model->unit();
-        for (const Use& item : model->items())
-            place(*model, item, {}, false, 0);
+        // The build of a package of meshes alone may say more than is understood here.
+        if (!model->stacks().empty())
+            for (const Use& item : model->items())
+                place(*model, item, {}, false, 0);
         if (placed_.empty())
-            throw Error(
-                ErrorKind::input,
+            throw NoLayers(
                 fmt::format("{}: found no slice stack in the build; a 3MF file of layers has one for each "
                             "object",
                             zip_.name()));
@@ -252,7 +255,7 @@ class PackageReader {
   private:
     std::unique_ptr<SliceModelReader> read_model(const std::string& part, SliceModelReader::FindStack find) {
         const std::uint64_t before = zip_.unpacked();
-        const ByteSource source = unpack_part(package_, part);
+        const ByteSource source = unpack_part(zip_, part);
         const std::uint64_t unpacked = zip_.unpacked() - before;
         limits_.add_bytes_at(unpacked, [&] { return fmt::format("part '{}'", printable(part, 100)); });
         auto model = std::make_unique<SliceModelReader>(std::move(find), limits_);
@@ -266,19 +269,18 @@ class PackageReader {
 
     /// A stack in another part, which may not refer to a third one. Its lengths are taken to be in the unit
     /// of the root, as other readers take them.
-    std::shared_ptr<const Stack> referred(std::string_view path, std::uint32_t id) {
-        const std::string part = OpcPackage::resolve(root_, path);
+    std::shared_ptr<const Stack> referred(const ThreeMfElement& reference) {
+        const std::string part = opc_resolved(root_, reference["slicepath"].text);
+        const std::uint32_t id = reference["slicestackid"].index();
         auto& model = parts_[part];
         if (!model)
-            model = read_model(part, [&](std::string_view, std::uint32_t) -> std::shared_ptr<const Stack> {
-                throw Error(ErrorKind::input,
-                            fmt::format("{}: found a reference to slices within slices that are referred to",
-                                        printable(part, 100)));
+            model = read_model(part, [](const ThreeMfElement& second) -> std::shared_ptr<const Stack> {
+                second.fail("a reference to slices within slices that are referred to", "slices");
             });
         const auto found = model->stacks().find(id);
         if (found == model->stacks().end())
-            throw Error(ErrorKind::input, fmt::format("{}: found no slice stack {} in '{}'", zip_.name(), id,
-                                                      printable(part, 100)));
+            reference.fail(fmt::format("a reference to slice stack {} of '{}'", id, printable(part, 100)),
+                           "one that is there");
         return found->second;
     }
 
@@ -286,6 +288,11 @@ class PackageReader {
                int depth) {
         constexpr int deepest = 32;
         constexpr std::size_t most = std::size_t{1} << 20;
+        // Such packages are read for their meshes.
+        if (use.elsewhere)
+            throw NoLayers(fmt::format("{}, line {}: found an object of another part; slices are read of the "
+                                       "objects of one part",
+                                       zip_.name(), use.line));
         const auto object = model.objects().find(use.object);
         if (object == model.objects().end())
             throw Error(ErrorKind::input,
@@ -314,8 +321,7 @@ class PackageReader {
                             std::abs(m[2][0]) <= tolerance && std::abs(m[2][1]) <= tolerance &&
                             std::abs(m[2][2] - 1) <= tolerance;
         if (!planar || !finite(placement))
-            throw Error(
-                ErrorKind::input,
+            throw NoLayers(
                 fmt::format("{}, line {}: found a transform that tilts slices or changes their heights; "
                             "slices may only be moved, and turned, scaled and mirrored in their plane",
                             zip_.name(), line));
@@ -428,7 +434,6 @@ class PackageReader {
         return builder.finish(0, 0, 0, 0);
     }
 
-    const OpcPackage& package_;
     const ZipReader& zip_;
     std::string root_;
     LayerFile& file_;
@@ -446,13 +451,12 @@ bool is_3mf(const ZipReader& zip) {
     return zip.find("_rels/.rels") != nullptr || zip.find(three_mf::usual_root) != nullptr;
 }
 
-LayerFile read_slices_3mf(const OpcPackage& package, ReadLimits& limits, const Execution& execution) {
-    const ZipReader& zip = package.zip();
-    LayerFile file{.path = zip.name(),
+LayerFile read_slices_3mf(const ZipReader& package, ReadLimits& limits, const Execution& execution) {
+    LayerFile file{.path = package.name(),
                    .format = "3mf",
                    .units_mm = 1,
                    .rounding = text_rounding,
-                   .warnings = zip.oddities()};
+                   .warnings = package.oddities()};
     PackageReader(package, file, limits, execution).read();
     return file;
 }

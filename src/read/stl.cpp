@@ -9,7 +9,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string_view>
 
 namespace lamella {
@@ -32,16 +37,33 @@ bool has_stl_size(const ByteSource& source) {
            size == stl_head_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(source.bytes);
 }
 
-enum class Form { binary, ascii };
+/// Whether most corners could be those of a part. Of bytes that mean something else, such as packed ones,
+/// most are not: a float can be as large as 3e38, and as small as 1e-38.
+bool has_likely_corners(std::span<const std::byte> bytes) {
+    constexpr std::size_t enough = 1000;      // triangles
+    constexpr std::size_t corners_begin = 12; // behind the normal
+    const std::size_t count = std::min((bytes.size() - stl_head_bytes) / stl_record_bytes, enough);
+    std::size_t likely = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<float, 9> corners{};
+        std::memcpy(corners.data(), bytes.data() + stl_head_bytes + i * stl_record_bytes + corners_begin,
+                    sizeof corners);
+        likely += static_cast<std::size_t>(std::count_if(corners.begin(), corners.end(), [](float value) {
+            const float size = std::abs(value);
+            return size == 0 || (size > 1e-20F && size < 1e9F);
+        }));
+    }
+    return 2 * likely >= 9 * count;
+}
 
-/// Throws Error{input} when it is neither.
-Form form_of(const ByteSource& source) {
+/// Whether it is of the binary form, else of the ASCII one. Throws Error{input} when it is neither.
+bool is_binary(const ByteSource& source) {
     const std::uint64_t size = source.bytes.size();
     const std::string_view text = source.text();
     if (has_stl_size(source))
-        return Form::binary;
+        return true;
     if (is_stl_ascii(text))
-        return Form::ascii;
+        return false;
 
     const auto fail = [&](std::string_view what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
@@ -49,7 +71,7 @@ Form form_of(const ByteSource& source) {
     const std::string_view begin = after_blanks(text);
     if (looks_like_text(text)) {
         if (begins_with_solid(text))
-            return Form::ascii; // its reader names the line where it goes wrong
+            return false; // its reader names the line where it goes wrong
         const std::string_view line = begin.substr(0, begin.find_first_of("\r\n"));
         fail(fmt::format("line {}: is a text, but no mesh file: found '{}', expected 'solid'",
                          line_at(text, text.size() - begin.size()), printable(line, 40)));
@@ -59,7 +81,12 @@ Form form_of(const ByteSource& source) {
             "is not an STL file, or cut off: found {} bytes, expected at least {} (binary) or the "
             "word 'solid' (ASCII)",
             size, stl_head_bytes));
-    return Form::binary;
+    if (!has_likely_corners(source.bytes))
+        fail(
+            fmt::format("is no mesh file that is known: were it a binary STL file, its count of {} would not "
+                        "fit its {} bytes, and most corners would be beyond any part",
+                        stl_declared_count(source.bytes), size));
+    return true;
 }
 
 } // namespace
@@ -69,19 +96,19 @@ bool is_stl(const ByteSource& source) {
 }
 
 MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
-    return form_of(source) == Form::binary ? read_stl_binary(source, options, execution)
-                                           : read_stl_ascii(source, options, execution);
+    return is_binary(source) ? read_stl_binary(source, options, execution)
+                             : read_stl_ascii(source, options, execution);
 }
 
 std::optional<std::uint64_t> stl_records(const ByteSource& source) {
-    if (form_of(source) == Form::ascii)
+    if (!is_binary(source))
         return std::nullopt;
     return stl_extent(source.bytes.size(), stl_declared_count(source.bytes)).triangles;
 }
 
 MeshFile stream_stl(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
                     const Execution& execution, const std::optional<RecordRange>& share) {
-    if (form_of(source) == Form::binary)
+    if (is_binary(source))
         return stream_stl_binary(source, sink, options, execution, share);
     if (share)
         throw Error(ErrorKind::usage,

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -290,11 +289,9 @@ TriangleSoup join(std::vector<FacetPiece>& pieces, Executor& executor) {
         count += pieces[i].triangles.size();
     }
     const auto memory = std::make_shared<PageArray<Triangle3f>>(count);
-    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), memory->data() + first[i]);
-            pieces[i].triangles = {};
-        }
+    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), memory->data() + first[i]);
+        pieces[i].triangles = {};
     });
     return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
 }

@@ -267,6 +267,8 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
     const auto [owner, corners, nonfinite] = read_records(source, stored, options, executor, progress);
     judge_nonfinite(source, nonfinite.total, nonfinite.first, stored, remarks);
+    if (nonfinite.total != 0) // the others are copied
+        ReadLimits(source.name, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
 
     MeshFile file = describe(source, stored, nonfinite.total, remarks);
     file.objects.front().mesh =

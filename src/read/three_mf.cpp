@@ -13,8 +13,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace lamella {
@@ -24,8 +24,8 @@ namespace {
 constexpr std::string_view ticket_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/printticket";
 constexpr std::size_t longest_name = 200;
 
-[[noreturn]] void refuse_package(const std::string& file, const std::string& what) {
-    throw Error(ErrorKind::input, fmt::format("{}: {}", file, what));
+[[noreturn]] void refuse_package(const ZipReader& package, const std::string& what) {
+    throw Error(ErrorKind::input, fmt::format("{}: {}", package.name(), what));
 }
 
 /// The model parts of a package: the root and all that it refers to, with their meshes.
@@ -36,13 +36,13 @@ class PartLoader {
         ThreeMfModel model;
     };
 
-    PartLoader(const OpcPackage& package, Remarks& remarks, ReadLimits& limits, Executor& executor,
+    PartLoader(const ZipReader& package, Remarks& remarks, ReadLimits& limits, Executor& executor,
                const Execution& execution)
         : package_(package), remarks_(remarks), limits_(limits), executor_(executor),
-          progress_(execution, Stage::read, bytes_of(package.zip())) {}
+          progress_(execution, Stage::read, bytes_of(package)) {}
 
     void load() {
-        if (package_.zip().find("[Content_Types].xml") == nullptr)
+        if (package_.find("[Content_Types].xml") == nullptr)
             remarks_.add("found no [Content_Types].xml in the package");
         load_parts(find_root());
         progress_.finish();
@@ -70,29 +70,26 @@ class PartLoader {
             if (relationship.type != three_mf::model_type)
                 continue;
             if (relationship.external)
-                refuse_package(package_.zip().name(),
-                               "the model lies outside of the package, expected a part of it");
+                refuse_package(package_, "the model lies outside of the package, expected a part of it");
             targets.push_back(relationship.target);
         }
         if (targets.size() > 1)
-            refuse_package(package_.zip().name(),
-                           fmt::format("the package names {} models ('{}', '{}'), expected one",
-                                       targets.size(), printable(targets[0], longest_name),
-                                       printable(targets[1], longest_name)));
+            refuse_package(package_, fmt::format("the package names {} models ('{}', '{}'), expected one",
+                                                 targets.size(), printable(targets[0], longest_name),
+                                                 printable(targets[1], longest_name)));
         if (!targets.empty()) {
-            if (package_.zip().find(targets.front()) == nullptr)
-                refuse_package(package_.zip().name(),
-                               fmt::format("the package names the model '{}', which is not in it",
-                                           printable(targets.front(), longest_name)));
+            if (package_.find(targets.front()) == nullptr)
+                refuse_package(package_, fmt::format("the package names the model '{}', which is not in it",
+                                                     printable(targets.front(), longest_name)));
             return targets.front();
         }
-        const ZipEntry* entry = package_.zip().find(three_mf::usual_root);
-        for (const ZipEntry& other : package_.zip().entries())
+        const ZipEntry* entry = package_.find(three_mf::usual_root);
+        for (const ZipEntry& other : package_.entries())
             if (entry == nullptr && other.name.ends_with(".model"))
                 entry = &other;
         if (entry == nullptr)
             refuse_package(
-                package_.zip().name(),
+                package_,
                 "is a zip archive without a model, expected a 3MF file; unpack it and slice what is in it");
         remarks_.add(fmt::format("the package does not say which part is its model; took '{}'",
                                  printable(entry->name, longest_name)));
@@ -101,15 +98,19 @@ class PartLoader {
 
     /// The relationships of a part, with a remark about what is wrong with them.
     std::vector<OpcRelationship> relationships_of(const std::string& part) {
-        std::vector<OpcRelationship> found = package_.relationships(part);
+        std::vector<OpcRelationship> found = opc_relationships(package_, part);
         std::size_t tickets = 0;
+        std::size_t astray = 0;
+        const OpcRelationship* first_astray = nullptr;
         for (const OpcRelationship& relationship : found) {
             tickets += relationship.type == ticket_type ? 1 : 0;
             if (!relationship.external && relationship.type != three_mf::model_type &&
-                package_.zip().find(relationship.target) == nullptr)
-                remarks_.add(fmt::format("the package refers to '{}', which is not in it",
-                                         printable(relationship.target, longest_name)));
+                package_.find(relationship.target) == nullptr && astray++ == 0)
+                first_astray = &relationship;
         }
+        if (first_astray != nullptr)
+            remarks_.add(fmt::format("{} references of the package lead to no part of it (the first is '{}')",
+                                     astray, printable(first_astray->target, longest_name)));
         if (tickets > 1)
             remarks_.add(fmt::format("the package has {} print tickets for one part, expected one", tickets));
         return found;
@@ -131,10 +132,11 @@ class PartLoader {
         for (ThreeMfUse* use : uses)
             if (!use->part.empty())
                 find_part(*use, others);
-        const std::vector<OpcRelationship> listed = relationships_of(root);
+        std::set<std::string> listed;
+        for (OpcRelationship& relationship : relationships_of(root))
+            listed.insert(std::move(relationship.target));
         for (const std::string& part : others) {
-            if (std::none_of(listed.begin(), listed.end(),
-                             [&](const OpcRelationship& r) { return r.target == part; }))
+            if (!listed.contains(part))
                 remarks_.add(fmt::format("the part '{}' is used without a relationship to it",
                                          printable(part, longest_name)));
             parts_.emplace_back().model.part = part;
@@ -146,10 +148,10 @@ class PartLoader {
     /// Takes down the part that an object is used from, under its name in the archive.
     void find_part(ThreeMfUse& use, std::vector<std::string>& others) {
         const ThreeMfModel& root = parts_[0].model;
-        use.part = OpcPackage::resolve(root.part, use.part);
+        use.part = opc_resolved(root.part, use.part);
         if (!part_index_.emplace(use.part, 1 + others.size()).second)
             return;
-        if (package_.zip().find(use.part) == nullptr)
+        if (package_.find(use.part) == nullptr)
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: refers to the part '{}', which is not in the package",
                                     root.source, use.line, printable(use.part, longest_name)));
@@ -158,19 +160,15 @@ class PartLoader {
 
     /// Unpacks and reads parts, in parallel: first their structure, then the numbers of all meshes.
     void load_parts_from(std::size_t first) {
-        const std::uint64_t unpacked = package_.zip().unpacked();
-        executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-            for (std::uint64_t i = first + begin; i < first + end; ++i) {
-                Part& part = parts_[i];
-                part.bytes = package_.zip().read(entry_of(part));
-                part.model = skimmed_or_parsed([&](bool skim) { return parsed(part, skim); });
-            }
+        const std::uint64_t unpacked = package_.unpacked();
+        executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            Part& part = parts_[first + i];
+            part.bytes = package_.read(*package_.find(part.model.part));
+            part.model = skimmed_or_parsed([&](bool skim) { return parsed(part, skim); });
         });
-        limits_.add_bytes(package_.zip().unpacked() - unpacked);
+        limits_.add_bytes(package_.unpacked() - unpacked);
         read_meshes(first);
     }
-
-    const ZipEntry& entry_of(const Part& part) const { return *package_.zip().find(part.model.part); }
 
     ThreeMfModel parsed(const Part& part, bool skim) {
         return read_three_mf_model(part.bytes, part.model.part, &part == &parts_[0], skim, limits_,
@@ -194,7 +192,7 @@ class PartLoader {
         }
     }
 
-    const OpcPackage& package_;
+    const ZipReader& package_;
     Remarks& remarks_;
     ReadLimits& limits_;
     Executor& executor_;
@@ -206,17 +204,17 @@ class PartLoader {
 class ThreeMfReader {
   public:
     ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
-        : package_(source, options.max_memory), name_(source.name), remarks_(source.name, options.strict),
+        : package_(source, options.max_memory), remarks_(source.name, options.strict),
           supports_(options.supports), limits_(source.name, options), executor_(execution),
           loader_(package_, remarks_, limits_, executor_, execution) {}
 
     MeshFile read() {
-        for (const std::string& oddity : package_.zip().oddities())
+        for (const std::string& oddity : package_.oddities())
             remarks_.add(oddity);
         loader_.load();
         for (const PartLoader::Part& part : parts_)
-            for (const ThreeMfModel::Remark& remark : part.model.remarks)
-                tell(remark.text, remark.offence);
+            for (const std::string& remark : part.model.remarks)
+                remarks_.add(remark);
         make_nodes();
         make_file();
         const ThreeMfModel& model = parts_.front().model;
@@ -227,14 +225,6 @@ class ThreeMfReader {
     }
 
   private:
-    /// What breaks a rule is for strict callers to refuse; a note is not.
-    void tell(const std::string& text, bool offence) {
-        if (offence)
-            remarks_.add(text);
-        else
-            remarks_.note(text);
-    }
-
     /// One node for each object of each part.
     void make_nodes() {
         std::vector<std::map<std::uint32_t, std::size_t>> numbers(parts_.size());
@@ -299,7 +289,7 @@ class ThreeMfReader {
     /// The meshes that the build reaches, and where they stand.
     void make_file() {
         if (parts_[0].model.items.empty())
-            refuse_package(name_, "holds nothing to slice: its build is empty");
+            refuse_package(package_, "holds nothing to slice: its build is empty");
         std::vector<bool> reached(nodes_.size());
         std::vector<std::size_t> open;
         for (const AssemblyUse& root : roots_)
@@ -339,27 +329,26 @@ class ThreeMfReader {
             file_.stored_triangles += source.mesh.triangles.size();
             file_.objects.push_back({source.name, Mesh(std::move(source.mesh))});
         }
-        const auto tell_count = [&](std::size_t count, std::string_view what, bool offence) {
+        if (empty != 0)
+            remarks_.add(fmt::format("{} objects have a mesh without triangles", empty));
+        if (degenerate != 0)
+            remarks_.add(fmt::format("{} triangles use a vertex twice; they bound nothing", degenerate));
+        // These break no rule, and stop no strict caller.
+        const auto note_count = [&](std::size_t count, std::string_view what) {
             if (count != 0)
-                tell(fmt::format("{} {}", count, what), offence);
+                remarks_.note(fmt::format("{} {}; they were left out", count, what));
         };
-        tell_count(empty, "objects have a mesh without triangles", true);
-        tell_count(degenerate, "triangles use a vertex twice; they bound nothing", true);
-        tell_count(not_taken,
-                   fmt::format("objects are of type {}surface, which is no solid; they were left out",
-                               supports_ ? "" : "support or "),
-                   false);
-        tell_count(not_printable_, "items of the build are marked as not to be printed; they were left out",
-                   false);
-        tell_count(unused, "objects are not in the build; they were left out", false);
-        file_.instances = place_meshes(name_, nodes_, roots_, file_.objects, limits_, executor_);
+        note_count(not_taken, fmt::format("objects are of type {}surface, which is no solid",
+                                          supports_ ? "" : "support or "));
+        note_count(not_printable_, "items of the build are marked as not to be printed");
+        note_count(unused, "objects are not in the build");
+        file_.instances = place_meshes(package_.name(), nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
-            refuse_package(name_,
+            refuse_package(package_,
                            "holds nothing to slice: no item of its build leads to a mesh that is a solid");
     }
 
-    OpcPackage package_;
-    std::string name_;
+    ZipReader package_;
     Remarks remarks_;
     bool supports_;
     ReadLimits limits_;

@@ -2,8 +2,6 @@
 
 #include "read/three_mf_model.hpp"
 
-#include "lamella/core/error.hpp"
-
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "read/decimal_text.hpp"
@@ -53,10 +51,6 @@ constexpr std::uint32_t largest_id = 0x7FFFFFFF;
 constexpr std::size_t longest_object_name = 200;
 constexpr std::size_t longest_model_title = 1000;
 constexpr std::size_t most_remarks = 50;
-
-bool is_coordinate(double value) {
-    return std::abs(value) <= farthest_coordinate;
-}
 
 /// The extensions that a <model> requires, by the prefixes that it declares.
 std::set<std::string> required_extensions(const ThreeMfElement& element,
@@ -271,9 +265,9 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
             fail(fmt::format("found object {} with neither a mesh nor components", object().id));
     }
 
-    void remark(const std::string& what, bool offence = true) {
+    void remark(const std::string& what) {
         if (document().remarks.size() < most_remarks)
-            document().remarks.push_back({fmt::format("{}: {}", here(), what), offence});
+            document().remarks.push_back(fmt::format("{}: {}", here(), what));
     }
 
     Where start_model(const ThreeMfElement& element) {
@@ -389,7 +383,7 @@ bool read_model_vertices(std::string_view run, const MeshText& text, std::span<P
                 return {};
             const int axis = *name - 'x';
             const char* const end = read_decimal(value, elements.end(), numbers[axis]);
-            return {axis, is_coordinate(numbers[axis]) ? end : nullptr};
+            return {axis, std::abs(numbers[axis]) <= farthest_coordinate ? end : nullptr};
         };
         if (!elements.take("<vertex", 3, read))
             return false;

@@ -46,13 +46,7 @@ struct ThreeMfModel {
     std::vector<ThreeMfObject> objects;
     std::vector<ThreeMfUse> items;
     std::vector<std::string> prefixes; ///< that the root element declares
-    /// What is odd, one line each, and whether it is an offence against the rules of the format or only worth
-    /// to be told.
-    struct Remark {
-        std::string text;
-        bool offence = true;
-    };
-    std::vector<Remark> remarks;
+    std::vector<std::string> remarks;  ///< what offends against the rules of the format, one line each
 };
 
 /// Reads a model part. `skim`: leave the vertices and triangles of meshes in `text`, unread, where they stand

@@ -13,6 +13,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace lamella {
 
@@ -66,11 +67,17 @@ double ThreeMfElement::unit_mm() const {
     const ThreeMfValue unit = (*this)["unit"];
     if (!unit.is_there)
         return 1;
-    const std::optional<double> known = three_mf::unit_mm(unit.text);
-    if (!known)
-        fail(fmt::format("unit '{}'", printable(unit.text, 40)),
-             "micron, millimeter, centimeter, inch, foot or meter");
-    return *known;
+    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"micron", 0.001},
+                                                                        {"millimeter", 1},
+                                                                        {"centimeter", 10},
+                                                                        {"inch", 25.4},
+                                                                        {"foot", 304.8},
+                                                                        {"meter", 1000}}};
+    for (const auto& [known, mm] : units)
+        if (known == unit.text)
+            return mm;
+    fail(fmt::format("unit '{}'", printable(unit.text, 40)),
+         "micron, millimeter, centimeter, inch, foot or meter");
 }
 
 Transform ThreeMfElement::transform() const {
@@ -106,19 +113,19 @@ void ThreeMfElement::fail(std::string_view found, std::string_view expected) con
                 fmt::format("{}, line {}: found {}, expected {}", document, line, found, expected));
 }
 
-std::string root_model(const OpcPackage& package) {
-    for (const OpcRelationship& relationship : package.relationships(""))
+std::string root_model(const ZipReader& package) {
+    for (const OpcRelationship& relationship : opc_relationships(package, ""))
         if (relationship.type == three_mf::model_type && !relationship.external)
             return relationship.target;
     return std::string(three_mf::usual_root);
 }
 
-ByteSource unpack_part(const OpcPackage& package, const std::string& name) {
-    const ZipEntry* const entry = package.zip().find(name);
+ByteSource unpack_part(const ZipReader& package, const std::string& name) {
+    const ZipEntry* const entry = package.find(name);
     if (entry == nullptr)
         throw Error(ErrorKind::input, fmt::format("{}: found no part '{}', to which the package refers",
-                                                  package.zip().name(), printable(name, 100)));
-    return package.zip().read(*entry);
+                                                  package.name(), printable(name, 100)));
+    return package.read(*entry);
 }
 
 void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,

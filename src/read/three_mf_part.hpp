@@ -63,10 +63,10 @@ struct ThreeMfElement {
 };
 
 /// The part that the package names as its model, or the usual one where it names none.
-[[nodiscard]] std::string root_model(const OpcPackage& package);
+[[nodiscard]] std::string root_model(const ZipReader& package);
 
 /// Unpacks a part. Throws Error{input} when there is none of this name.
-[[nodiscard]] ByteSource unpack_part(const OpcPackage& package, const std::string& name);
+[[nodiscard]] ByteSource unpack_part(const ZipReader& package, const std::string& name);
 
 /// Parses a part; `start` gets each element, `end` the name of each that ends.
 void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,

@@ -1,12 +1,8 @@
 #pragma once
 
-// What all files of the 3MF Core Specification share: the names that stand for it and its extensions, and its
-// units.
+// What all files of the 3MF Core Specification share: the names that stand for it and its extensions.
 
-#include <array>
-#include <optional>
 #include <string_view>
-#include <utility>
 
 namespace lamella::three_mf {
 
@@ -23,19 +19,5 @@ inline constexpr std::string_view materials = "http://schemas.microsoft.com/3dma
 inline constexpr std::string_view model_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 /// Where nearly all packages have it.
 inline constexpr std::string_view usual_root = "3D/3dmodel.model";
-
-/// The millimetres of a unit by its name, if it is one.
-[[nodiscard]] inline std::optional<double> unit_mm(std::string_view name) noexcept {
-    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"micron", 0.001},
-                                                                        {"millimeter", 1},
-                                                                        {"centimeter", 10},
-                                                                        {"inch", 25.4},
-                                                                        {"foot", 304.8},
-                                                                        {"meter", 1000}}};
-    for (const auto& [known, mm] : units)
-        if (known == name)
-            return mm;
-    return std::nullopt;
-}
 
 } // namespace lamella::three_mf

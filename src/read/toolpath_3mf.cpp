@@ -32,6 +32,12 @@ bool is_toolpath(std::string_view space) {
     return space == toolpath_3mf::space || space == toolpath_3mf::draft_space;
 }
 
+/// Of a profile or a segment: whether it names a laser, and not the first.
+bool is_other_laser(const ThreeMfElement& element) {
+    const std::string_view index = element["laserindex"].text;
+    return !index.empty() && index != "0";
+}
+
 constexpr double largest_unit = 1e12; ///< by which coordinates of 32 bits are multiplied
 
 /// What the model says of one toolpath.
@@ -40,6 +46,7 @@ struct Toolpath {
         std::size_t number = 0;           ///< in the order of the model
         std::optional<Exposure> exposure; ///< its part is set later
         bool says_kind = false;           ///< ours, which tell contours from hatches
+        bool other_laser = false;         ///< than the first
     };
     struct Listed {
         double top;
@@ -145,6 +152,7 @@ class ToolpathModelReader {
                .spot_mm = 2 * number("spotradius"),
                .mark_delay_us = own("markdelay").number_or(0),
                .jump_delay_us = own("jumpdelay").number_or(0)};
+        profile.other_laser = is_other_laser(element);
         const std::string_view region = own("region").text;
         const ThreeMfValue kind = own("kind");
         profile.says_kind = kind.is_there;
@@ -159,7 +167,7 @@ class ToolpathModelReader {
              {ScanRegion::core, ScanRegion::upskin, ScanRegion::downskin, ScanRegion::support})
             if (region == scan_region_name(known))
                 exposure.region = known;
-        if (set.speed_mm_s > 0)
+        if (set.speed_mm_s > 0 || profile.says_kind)
             profile.exposure = std::move(exposure);
         limits_.add_bytes_at(node_bytes + sizeof profile + set.name.size(), element.place());
         profile.number = toolpath_->profiles.size();
@@ -185,9 +193,9 @@ struct SegmentKind {
 class LayerReader {
   public:
     LayerReader(const std::string& document, const Model& model, const Toolpath& toolpath,
-                PartNumbers<SegmentKind>& kinds, RawLayer& raw, ReadLimits& limits)
-        : document_(document), model_(model), toolpath_(toolpath), kinds_(kinds), raw_(raw), limits_(limits),
-          unit_mm_(toolpath.unit * model.unit_mm) {}
+                PartNumbers<SegmentKind>& kinds, Oddity& other_lasers, RawLayer& raw, ReadLimits& limits)
+        : document_(document), model_(model), toolpath_(toolpath), kinds_(kinds), other_lasers_(other_lasers),
+          raw_(raw), limits_(limits), unit_mm_(toolpath.unit * model.unit_mm) {}
 
     void start(const ThreeMfElement& element) {
         if (!is_toolpath(element.name.space))
@@ -212,21 +220,20 @@ class LayerReader {
     void end(XmlName name, Oddity& dropped) {
         if (!is_toolpath(name.space) || name.local != "segment")
             return;
-        const auto place = [&] {
-            return fmt::format("{}, line {}", document_, line_);
+        const auto where = [this] {
+            return place();
         };
-        if (in_contour_) {
-            limits_.make_room(raw_.ends, 1, place);
-            if (!raw_.end_clean_contour(begin_, closed_, kind_))
-                dropped.note(place);
-        } else if (in_hatches_) {
-            limits_.make_room(raw_.hatch_ends, 1, place);
-            raw_.end_hatches(kind_);
-        }
+        if (in_contour_)
+            raw_.end_contour(closed_, kind_, limits_, where, dropped);
+        else if (in_hatches_)
+            raw_.end_hatches(kind_, limits_, where);
         in_contour_ = in_hatches_ = false;
     }
 
   private:
+    /// Of the segment.
+    [[nodiscard]] std::string place() const { return fmt::format("{}, line {}", document_, line_); }
+
     [[nodiscard]] Point2 point(const ThreeMfElement& element, std::string_view x, std::string_view y) const {
         return {element[x].whole() * unit_mm_ + 0.0, element[y].whole() * unit_mm_ + 0.0};
     }
@@ -245,7 +252,6 @@ class LayerReader {
             element.fail(fmt::format("a segment of type '{}'", printable(type, 40)),
                          "loop, polyline or hatch");
         line_ = element.line;
-        begin_ = raw_.points.size();
         const auto part = parts_.find(element["partid"].whole());
         const auto profile = profiles_.find(element["profileid"].whole());
         if (part == parts_.end() || profile == profiles_.end())
@@ -258,6 +264,8 @@ class LayerReader {
             element.fail(item == model_.items.end() ? "a segment of a part that is not in the build"
                                                     : "a segment of a profile that the model does not have",
                          "one of the model");
+        if (known->second.other_laser || is_other_laser(element))
+            other_lasers_.note([this] { return place(); });
         const bool says_kind = known->second.says_kind || !known->second.exposure;
         kind_ = kinds_.number_of({item->second.first, known->second.number, !says_kind && in_hatches_},
                                  element.place());
@@ -267,6 +275,7 @@ class LayerReader {
     const Model& model_;
     const Toolpath& toolpath_;
     PartNumbers<SegmentKind>& kinds_;
+    Oddity& other_lasers_;
     RawLayer& raw_;
     ReadLimits& limits_;
     double unit_mm_;
@@ -275,14 +284,13 @@ class LayerReader {
     bool in_contour_ = false;
     bool in_hatches_ = false;
     bool closed_ = false;
-    std::size_t begin_ = 0;
     std::size_t line_ = 0;
     std::uint32_t kind_ = 0; ///< its number
 };
 
 class ToolpathReader {
   public:
-    ToolpathReader(const OpcPackage& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
+    ToolpathReader(const ZipReader& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
         : package_(package), file_(file), limits_(limits), executor_(execution), kinds_(limits) {}
 
     void read() {
@@ -296,16 +304,17 @@ class ToolpathReader {
         file_.units_mm = toolpath.unit * model_.unit_mm;
         file_.rounding = {.step_mm = file_.units_mm};
         std::vector<RawLayer> layers;
-        std::set<std::string> known;
+        std::set<const ZipEntry*> known;
         for (const Toolpath::Listed& listed : toolpath.layers) {
-            if (!known.insert(listed.path).second)
+            const std::string part = opc_resolved(root, listed.path);
+            if (!known.insert(package_.find(part)).second)
                 throw Error(
                     ErrorKind::input,
                     fmt::format("{}, line {}: found the layer '{}' a second time; each has a part of its own",
                                 source.name, listed.line, printable(listed.path, 100)));
             limits_.make_room(layers, 1, at_line(listed.line));
             layers.emplace_back().z = listed.top * file_.units_mm;
-            read_layer(OpcPackage::resolve(root, listed.path), toolpath, layers.back());
+            read_layer(part, toolpath, layers.back());
         }
         if (layers.empty())
             throw Error(
@@ -313,6 +322,8 @@ class ToolpathReader {
                 fmt::format("{}: found a toolpath without layers; there must be one at least", source.name));
         number_parts(toolpath, layers);
         make_layers(toolpath, layers);
+        names_.say(file_.warnings);
+        other_lasers_.say(file_.warnings);
         dropped_.say(file_.warnings);
     }
 
@@ -330,7 +341,7 @@ class ToolpathReader {
         executor_.check_cancelled();
         const ByteSource source = unpack_part(package_, name);
         raw.place = source.name;
-        LayerReader reader(source.name, model_, toolpath, kinds_, raw, limits_);
+        LayerReader reader(source.name, model_, toolpath, kinds_, other_lasers_, raw, limits_);
         parse_part(
             source, [&](const ThreeMfElement& element) { reader.start(element); },
             [&](XmlName element) { reader.end(element, dropped_); }, executor_);
@@ -344,8 +355,12 @@ class ToolpathReader {
         std::vector<const Toolpath::Profile*> profiles(toolpath.profiles.size());
         for (const auto& [uuid, profile] : toolpath.profiles)
             profiles[profile.number] = &profile;
+        std::map<std::size_t, std::string> names; // of items that have vectors
         kinds_.put(file_, layers, [&](const SegmentKind& kind) {
-            return part_of(kind, labels[kind.item], *profiles[kind.profile]);
+            const auto [name, is_new] = names.try_emplace(kind.item);
+            if (is_new)
+                name->second = names_.of(labels[kind.item]);
+            return part_of(kind, name->second, *profiles[kind.profile]);
         });
         if (file_.parts.empty())
             file_.parts.push_back({labels.empty() ? std::string() : labels.front(), {}});
@@ -368,38 +383,34 @@ class ToolpathReader {
 
     void make_layers(const Toolpath& toolpath, std::vector<RawLayer>& layers) {
         sort_by_height(layers, file_.warnings);
-        check_part_planes(file_, layers.size(), package_.zip().unpacked());
-        double bottom = toolpath.bottom * file_.units_mm;
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            const double top = layers[i].z;
-            bottom = std::min(bottom, top);
-            add_layer(file_, layers[i], i, bottom + (top - bottom) / 2, bottom, top, limits_);
-            bottom = top;
-        }
+        check_part_planes(file_, layers.size(), package_.unpacked());
+        const double bottom = std::min(toolpath.bottom * file_.units_mm, layers.front().z);
+        add_layers_by_tops(file_, layers, bottom, limits_);
     }
 
-    const OpcPackage& package_;
+    const ZipReader& package_;
     LayerFile& file_;
     ReadLimits& limits_;
     Executor executor_;
     Model model_;
     PartNumbers<SegmentKind> kinds_;
+    DistinctNames names_;
+    Oddity other_lasers_{"segments are for another laser than the first; which one was left out"};
     Oddity dropped_{"contours had too few different points; they were dropped"};
 };
 
 } // namespace
 
-bool is_toolpath_3mf(const OpcPackage& package) {
-    const std::vector<OpcRelationship> all = package.relationships(root_model(package));
+bool is_toolpath_3mf(const ZipReader& package) {
+    const std::vector<OpcRelationship> all = opc_relationships(package, root_model(package));
     return std::any_of(all.begin(), all.end(), [](const OpcRelationship& relationship) {
         return relationship.type == toolpath_3mf::layer_type ||
                relationship.type == toolpath_3mf::draft_layer_type;
     });
 }
 
-LayerFile read_toolpath_3mf(const OpcPackage& package, ReadLimits& limits, const Execution& execution) {
-    LayerFile file{
-        .path = package.zip().name(), .format = "3mf-toolpath", .warnings = package.zip().oddities()};
+LayerFile read_toolpath_3mf(const ZipReader& package, ReadLimits& limits, const Execution& execution) {
+    LayerFile file{.path = package.name(), .format = "3mf-toolpath", .warnings = package.oddities()};
     ToolpathReader(package, file, limits, execution).read();
     return file;
 }

@@ -2,6 +2,7 @@
 
 #include "lamella/core/unit_circle.hpp"
 
+#include "core/orientation.hpp"
 #include "scan/seeded.hpp"
 
 #include <algorithm>
@@ -28,18 +29,20 @@ std::size_t farthest(std::span<const Point2> ring, double degrees) noexcept {
     return best;
 }
 
-/// Where the ring turns most.
+/// Where the ring turns most to the left, where its material is.
 std::size_t sharpest(std::span<const Point2> ring) noexcept {
     std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity(); // cosine of the turn
+    double least = std::numeric_limits<double>::infinity(); // -1 folds to the left, 3 to the right
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const Point2& before = ring[(i == 0 ? ring.size() : i) - 1];
         const Point2& after = ring[i + 1 == ring.size() ? 0 : i + 1];
         const Point2 u{ring[i].x - before.x, ring[i].y - before.y};
         const Point2 v{after.x - ring[i].x, after.y - ring[i].y};
         const double lengths = std::sqrt((u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y));
-        if (const double cosine = (u.x * v.x + u.y * v.y) / lengths; cosine < least) {
-            least = cosine;
+        const double cosine = (u.x * v.x + u.y * v.y) / lengths;
+        const double rank = orientation(before, ring[i], after) > 0 ? cosine : 2 - cosine;
+        if (rank < least) {
+            least = rank;
             best = i;
         }
     }

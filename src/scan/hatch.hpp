@@ -22,8 +22,8 @@ struct HatchArea {
 };
 
 /// Two points each, as Layer::hatches. The index of `within` says how far the lines are turned, and with the
-/// seed in which order islands come. Throws what HatchLines throws, and Error{limit} for more than 2^24
-/// islands or stripes.
+/// seed in which order islands come. Throws what HatchLines throws, and Error{limit} for more than 2^28
+/// stripes or islands in a row, or lines longer than 2^26 cells.
 [[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed);
 
 } // namespace lamella

@@ -5,6 +5,7 @@
 #include "lamella/polygon/offset.hpp"
 
 #include "polygon/clipping_grid.hpp"
+#include "polygon/overlay.hpp"
 #include "polygon/straight_points.hpp"
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
@@ -14,6 +15,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <utility>
 
 namespace lamella {
@@ -28,7 +31,7 @@ Layer with_head_of(const Layer& head, Layer layer) {
     return layer;
 }
 
-/// By how much the material of a layer is to be moved.
+/// By how much the material of a layer is to be moved, the least first.
 std::vector<double> distances_of(const ScanStrategy& strategy) {
     std::vector<double> distances;
     const auto want = [&](double depth) {
@@ -43,7 +46,16 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
         want(hatch_depth(contours, strategy.upskin.hatch));
     if (strategy.downskin.layers > 0)
         want(hatch_depth(contours, strategy.downskin.hatch));
+    std::sort(distances.begin(), distances.end(), std::greater<>());
     return distances;
+}
+
+/// The material of a layer, with bodies that touch united, as `offset` does it.
+Layer material_of(const Layer& layer) {
+    const Overlay overlay(layer);
+    if (overlay.clean())
+        return layer;
+    return overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
 }
 
 } // namespace
@@ -51,10 +63,10 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
 /// The material of a layer, moved inwards by several distances; each is computed once.
 struct ScanMemory::Insets {
     Insets(Layer of, std::vector<double> by)
-        : layer(std::move(of)), distances(std::move(by)), moved(offsets(layer, distances)) {
+        : layer(std::move(of)), distances(std::move(by)), moved(offsets(layer, distances, {}, &thin_rings)) {
         for (std::size_t i = 0; i < distances.size(); ++i)
             if (distances[i] == 0) // not looked at
-                moved[i] = fill(layer, FillRule::positive).layer;
+                moved[i] = material_of(layer);
     }
 
     /// Whether these are those of another layer, too.
@@ -70,6 +82,7 @@ struct ScanMemory::Insets {
 
     Layer layer;
     std::vector<double> distances;
+    std::uint64_t thin_rings = 0; ///< that nothing is left of by the least of them
     std::vector<Layer> moved;
 };
 
@@ -101,8 +114,8 @@ std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const Sc
 
 // A point may have moved by so much, and the way between its neighbours by as much to the other side.
 ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding)
-    : layer_(without_straight_points(
-          layer, std::max(ClippingGrid(layer.points.span()).unit(), 2 * moved_point(layer, rounding)))) {}
+    : layer_(without_straight_points(layer, std::max(ClippingGrid(layer.points.span()).unit(),
+                                                     2 * moved_point(layer.points.span(), rounding)))) {}
 
 void ScanLayer::share_points(const ScanLayer& other) {
     if (same_contours(layer_, other.layer_))
@@ -110,10 +123,13 @@ void ScanLayer::share_points(const ScanLayer& other) {
 }
 
 std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
-                        std::span<const ScanLayer> above, const ScanStrategy& strategy, ScanMemory* memory) {
+                        std::span<const ScanLayer> above, const ScanStrategy& strategy, ScanMemory* memory,
+                        std::uint64_t* thin_rings) {
     check_strategy(strategy);
     const Layer& layer = scanned.layer();
     const auto insets = insets_of(layer, strategy, memory);
+    if (thin_rings != nullptr)
+        *thin_rings = insets->thin_rings;
     const Skin downskin(scanned, below, strategy.downskin);
     const Skin upskin(scanned, above, strategy.upskin);
     const auto inset = [&](double depth) {
@@ -157,9 +173,10 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
 }
 
 // What is left of a part without skins, by other rules.
-std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, ScanMemory* memory) {
+std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, ScanMemory* memory,
+                                std::uint64_t* thin_rings) {
     check_strategy(strategy); // so that errors name fields of supports
-    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory);
+    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory, thin_rings);
 }
 
 } // namespace lamella

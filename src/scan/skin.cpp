@@ -4,6 +4,7 @@
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/offset.hpp"
 
+#include "contour/same_height.hpp"
 #include "polygon/box2.hpp"
 #include "polygon/subtract_common.hpp"
 #include "scan/alongside.hpp"
@@ -170,16 +171,31 @@ Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double 
     return open;
 }
 
+/// Whether of two layers one begins where the other one ends, or sooner.
+bool adjoin(const Layer& a, const Layer& b) noexcept {
+    return b.bottom <= a.top + same_height_mm && a.bottom <= b.top + same_height_mm;
+}
+
+/// Those up to the first one that lies apart from the one before it: there is no material between.
+std::span<const ScanLayer> adjoining(const ScanLayer& layer, std::span<const ScanLayer> neighbours) noexcept {
+    const ScanLayer* last = &layer;
+    std::size_t count = 0;
+    while (count < neighbours.size() && adjoin(last->layer(), neighbours[count].layer()))
+        last = &neighbours[count++];
+    return neighbours.first(count);
+}
+
 } // namespace
 
 Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule) {
     if (rule.layers == 0 || layer.layer().points.empty())
         return;
+    neighbours = adjoining(layer, neighbours.first(std::min<std::size_t>(neighbours.size(), rule.layers)));
     if (neighbours.size() < rule.layers) {
         whole_ = true;
         return;
     }
-    const Layer open = open_of(layer.layer(), neighbours.first(rule.layers), rule.narrowest);
+    const Layer open = open_of(layer.layer(), neighbours, rule.narrowest);
     if (open.rings == 0)
         return;
     std::vector<Layer> moved = offsets(open, std::array{rule.narrowest, rule.narrowest + rule.overlap});

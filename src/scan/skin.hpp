@@ -13,8 +13,9 @@ namespace lamella {
 /// Where a layer has less than `rule.layers` layers of material beside it.
 class Skin {
   public:
-    /// `neighbours`: from the nearest one on, as many as there are; fewer than the rule asks for where the
-    /// part ends.
+    /// `neighbours`: from the nearest one on, above or below, as many as there are; fewer than the rule asks
+    /// for where the part ends. It ends, too, where by their heights a neighbour lies apart from the one
+    /// before it.
     Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule);
 
     /// Whether all of the layer is skin, because the part ends there.

@@ -44,6 +44,10 @@ void check(std::string_view rule, const ParameterSet& parameters) {
     check_not_negative(rule, "jump_delay_us", parameters.jump_delay_us);
 }
 
+bool has_cells(HatchPattern pattern) noexcept {
+    return pattern != HatchPattern::lines && pattern != HatchPattern::meander;
+}
+
 void check(std::string_view rule, const HatchRule& hatch) {
     check_positive(rule, "distance", hatch.distance);
     check_finite(rule, "angle_degrees", hatch.angle_degrees);
@@ -52,8 +56,12 @@ void check(std::string_view rule, const HatchRule& hatch) {
     check_not_negative(rule, "shortest", hatch.shortest);
     check_positive(rule, "cell", hatch.cell);
     check_not_negative(rule, "overlap", hatch.overlap);
-    if (!(hatch.cell > 2 * hatch.overlap)) // of both, options set this one
+    const bool cells = has_cells(hatch.pattern);
+    if (cells && !(hatch.cell > 2 * hatch.overlap)) // of both, options set this one
         refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, twice the overlap", 2 * hatch.overlap));
+    // Otherwise every line in a cell would be shorter than `shortest`, but for rounding.
+    if (cells && !(hatch.cell > hatch.shortest))
+        refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, the shortest line", hatch.shortest));
     check(rule, hatch.parameters);
 }
 

@@ -75,22 +75,26 @@ PlaneCounts part_of(const PlaneCounts& counts, PlaneRange slab) {
 
 // ----------------------------------------------------------------------------------------------- count
 
-void PlaneCounter::add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
+PlaneRange PlaneCounter::add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
     std::unique_lock lock(mutex_);
     if (idle_.empty())
         idle_.emplace_back(ranks_.count());
     PlaneCounts counts = std::move(idle_.back());
     idle_.pop_back();
     lock.unlock();
+    PlaneRange cut{ranks_.count(), 0};
     for_ranks(mesh, ranks_, begin, end, [&](std::uint64_t, const std::array<std::uint32_t, 3>& rank) {
         const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
         const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
+        if (low < high)
+            cut = {std::min(cut.begin, low), std::max(cut.end, high)};
         const std::uint32_t middle =
             std::max(std::min(rank[0], rank[1]), std::min(std::max(rank[0], rank[1]), rank[2]));
         counts.add(low, middle, high);
     });
     lock.lock();
     idle_.push_back(std::move(counts));
+    return cut.begin < cut.end ? cut : PlaneRange{};
 }
 
 PlaneCounts PlaneCounter::total() const {

@@ -16,6 +16,7 @@
 
 #include "slicing/ranks.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -73,10 +74,11 @@ class PlaneCounter {
   public:
     explicit PlaneCounter(const Plan& plan) : ranks_(plan) {}
 
-    /// On the calling thread, O(triangles); the placement of a soup counts.
-    void add(const Mesh& mesh) { add(mesh, 0, mesh.size()); }
+    /// On the calling thread, O(triangles); the placement of a soup counts. Returns the planes from the first
+    /// one that cuts any of them to the last one.
+    PlaneRange add(const Mesh& mesh) { return add(mesh, 0, mesh.size()); }
     /// The triangles [begin, end) of it.
-    void add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end);
+    PlaneRange add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end);
     /// Of all that was added; while nobody adds any.
     [[nodiscard]] PlaneCounts total() const;
 
@@ -131,6 +133,13 @@ class SlabSurvey {
 
     std::vector<SumsBefore> before_; ///< by plane, and one more
 };
+
+/// How many points slice_to has on their way where nobody says: 56 MB for each thread, and 112 MB at least.
+/// Of layers of a million points each that is a handful, and fewer cost time: their edges are laid out anew
+/// for each group of layers on its way.
+[[nodiscard]] constexpr std::uint64_t usual_points_in_flight(unsigned threads) noexcept {
+    return (std::uint64_t{56} << 20) / sizeof(Point2) * std::max(threads, 2U);
+}
 
 /// How a slab is sliced, as far as its memory depends on it.
 struct SlabMemory {

@@ -2,6 +2,7 @@
 
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
+#include "slicing/slabs.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -45,9 +46,6 @@ SliceReport& SliceReport::operator+=(const SliceReport& other) noexcept {
 }
 
 namespace {
-
-// Some 56 MB of points for each thread.
-constexpr std::uint64_t points_in_flight_per_thread = (std::uint64_t{56} << 20) / sizeof(Point2);
 
 /// Slices with the engine, and fills in what of the report is the same for all engines.
 void slice_and_count(const Engine& engine, const LayerSink& sink, const Mesh& mesh, const Plan& plan,
@@ -98,7 +96,7 @@ void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const E
               SliceReport* report, const Engine& engine, std::uint64_t points_in_flight) {
     assert(sink);
     if (points_in_flight == 0)
-        points_in_flight = points_in_flight_per_thread * thread_count(execution);
+        points_in_flight = usual_points_in_flight(thread_count(execution));
     slice_and_count(engine, sink, mesh, plan, execution, points_in_flight, report);
 }
 

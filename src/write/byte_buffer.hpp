@@ -57,7 +57,6 @@ class ByteBuffer {
     }
 
     void clear() noexcept { size_ = 0; }
-    [[nodiscard]] std::size_t capacity() const noexcept { return bytes_.size(); }
     [[nodiscard]] std::string_view view() const noexcept { return {bytes_.data(), size_}; }
 
   private:
@@ -75,6 +74,8 @@ class ByteBuffer {
 /// Buffers that wait to be used again. For any number of threads.
 class BufferPool : public std::enable_shared_from_this<BufferPool> {
   public:
+    BufferPool() { idle_.reserve(most_idle); }
+
     /// An empty buffer, which comes back to the pool when the last pointer to it goes.
     [[nodiscard]] std::shared_ptr<ByteBuffer> take() {
         ByteBuffer buffer;
@@ -102,13 +103,7 @@ class BufferPool : public std::enable_shared_from_this<BufferPool> {
     }
 
     std::mutex mutex_;
-    std::vector<ByteBuffer> idle_ = reserved();
-
-    static std::vector<ByteBuffer> reserved() {
-        std::vector<ByteBuffer> buffers;
-        buffers.reserve(most_idle);
-        return buffers;
-    }
+    std::vector<ByteBuffer> idle_;
 };
 
 } // namespace lamella

@@ -8,6 +8,7 @@
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
 #include "write/sequential_writer.hpp"
+#include "write/written_heights.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +26,6 @@ static_assert(std::endian::native == std::endian::little, "the binary form is wr
 
 using Direction = CommonLayerDirection;
 
-constexpr Holds holds{.open_chains = true, .hatches = true};
 constexpr int first_part = 1;
 
 // The label as the format's strings have it: readers differ on quotes, commas and letters beyond ASCII.
@@ -37,6 +37,8 @@ std::string label_text(std::string_view label) {
     }
     return text;
 }
+
+constexpr Holds holds{.hatches = true, .gaps = false, .written_label = label_text};
 
 // In the order that the strictest readers ask for. No date: equal layers give equal bytes.
 std::string header(std::string_view coding, const LayerFileInfo& info, double units) {
@@ -59,6 +61,8 @@ std::string header(std::string_view coding, const LayerFileInfo& info, double un
 // Whether a ring turns left at its first point, which in normal form is its smallest: then a ring that does
 // not cross itself is an outer one.
 bool starts_convex(std::span<const Point2> ring) {
+    if (ring.size() < 2)
+        return true;
     const Point2& p = ring.front();
     const Point2& before = ring.back();
     const Point2& after = ring[1];
@@ -125,15 +129,23 @@ std::string position_text(double z, double units) {
 
 class CommonLayerWriter : public SequentialWriter {
   protected:
-    CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view head)
-        : SequentialWriter(path, info, head, holds) {
+    // `precision`: that of heights.
+    CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
+                      std::string precision)
+        : SequentialWriter(path, info, head, holds), heights_(std::move(precision)) {
         for (const PartInfo& part : info.parts)
             sequences_.push_back(part.exposure ? Sequence::kept : Sequence::nesting);
-        // Of several pieces the first has the head.
-        if (info.piece != nullptr && info.piece->before != 0)
-            return;
-        for (const PartInfo& part : info.parts)
-            note_label(part.label, label_text(part.label));
+    }
+
+    // The height of a layer, as it is written: `height_of(mm)`. What is below the first layer of a file or a
+    // piece was written before it.
+    template <class HeightOf>
+    auto checked_height(const PlanePlace& place, const HeightOf& height_of) {
+        const auto height = height_of(place.top);
+        if (heights_.empty())
+            heights_.add(static_cast<double>(height_of(place.bottom)), place.bottom, "bottom", place.index);
+        heights_.add(static_cast<double>(height), place.top, "top", place.index);
+        return height;
     }
 
     [[nodiscard]] Sequence sequence_of(int part) const {
@@ -152,14 +164,16 @@ class CommonLayerWriter : public SequentialWriter {
                     put(Listed{part, layer.index, points, closed ? direction_of(area) : Direction::open});
             });
             if (!layer.hatches.empty()) {
-                const std::vector<GridPoint> ends = grid.snap_points(layer.hatches.span(), layer.index);
-                put(Listed{part, layer.index, ends, {}});
+                const std::vector<GridPoint> ends = grid.snap_lines(layer.hatches.span(), layer.index);
+                if (!ends.empty())
+                    put(Listed{part, layer.index, ends, {}});
             }
         });
     }
 
   private:
     std::vector<Sequence> sequences_;
+    WrittenHeights heights_;
 };
 
 class AsciiWriter final : public CommonLayerWriter {
@@ -167,11 +181,14 @@ class AsciiWriter final : public CommonLayerWriter {
     AsciiWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : CommonLayerWriter(path, info,
                             header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
-                                position_text(info.bottom, options.units_mm) + '\n'),
+                                position_text(info.bottom, options.units_mm) + '\n',
+                            fmt::format("millionths of a unit of {} mm", options.units_mm)),
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
     std::string layer_head(const PlanePlace& place) override {
+        static_cast<void>(
+            checked_height(place, [this](double mm) { return std::nearbyint(mm / units_ * 1e6); }));
         return fmt::format("$$LAYER/{}\n", position_text(place.top, units_));
     }
 
@@ -236,7 +253,8 @@ class LongWriter final : public CommonLayerWriter {
     LongWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : CommonLayerWriter(path, info,
                             header("BINARY", info, options.units_mm) +
-                                layer_start(height_of(info.bottom, options.units_mm))),
+                                layer_start(height_of(info.bottom, options.units_mm)),
+                            "single precision"),
           units_(options.units_mm), floats_(1 / options.units_mm, &rounding_loss()) {}
 
   private:
@@ -247,9 +265,7 @@ class LongWriter final : public CommonLayerWriter {
     }
 
     std::string layer_head(const PlanePlace& place) override {
-        const float height = height_of(place.top, units_);
-        heights_.add(height, place.top, "top", place.index);
-        return layer_start(height);
+        return layer_start(checked_height(place, [this](double mm) { return height_of(mm, units_); }));
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
@@ -268,9 +284,12 @@ class LongWriter final : public CommonLayerWriter {
         if (layer.hatches.empty())
             return;
         char* const head = out.room(hatches_head + layer.hatches.size() * float_point_size);
-        char* const points = put_long_head(head, part, {}, layer.hatches.size() / 2, layer.index);
-        floats_.put_points(layer.hatches.span(), layer.index, points);
-        out.end_at(points + layer.hatches.size() * float_point_size);
+        char* const points = head + hatches_head;
+        const std::size_t listed = floats_.put_lines(layer.hatches.span(), layer.index, points);
+        if (listed == 0)
+            return;
+        put_long_head(head, part, {}, listed / 2, layer.index);
+        out.end_at(points + listed * float_point_size);
     }
 
     void put_polyline(int part, std::span<const Point2> contour, bool closed, std::uint64_t layer,
@@ -286,7 +305,6 @@ class LongWriter final : public CommonLayerWriter {
 
     double units_;
     FloatContours floats_;
-    FloatHeights heights_;
 };
 
 // 16-bit numbers are unsigned by the standard and signed in some readers and writers: only those that mean
@@ -300,9 +318,10 @@ constexpr std::size_t most_counted = std::numeric_limits<std::uint16_t>::max();
 class ShortWriter final : public CommonLayerWriter {
   public:
     ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : CommonLayerWriter(path, info, checked_head(info, options.units_mm)), units_(options.units_mm),
-          grid_(options.units_mm, &rounding_loss()),
-          last_height_(whole_units(info.bottom, options.units_mm)) {}
+        : CommonLayerWriter(
+              path, info, checked_head(info, options.units_mm),
+              fmt::format("units of {} mm; use smaller ones or the long form", options.units_mm)),
+          units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
     // What does not fit is better said before an hour of slicing than after it.
@@ -349,15 +368,9 @@ class ShortWriter final : public CommonLayerWriter {
     }
 
     std::string layer_head(const PlanePlace& place) override {
-        const std::int64_t height = whole_units(place.top, units_);
+        const std::int64_t height =
+            checked_height(place, [this](double mm) { return whole_units(mm, units_); });
         check_short(fmt::format("layer {}", place.index), "z", height, units_);
-        if (height <= last_height_)
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("layer {} is thinner than half a unit of {} mm; use smaller units or the long "
-                            "form",
-                            place.index, units_));
-        last_height_ = height;
         return layer_start(height);
     }
 
@@ -402,7 +415,6 @@ class ShortWriter final : public CommonLayerWriter {
 
     double units_;
     WriterGrid grid_;
-    std::int64_t last_height_;
 };
 
 } // namespace

@@ -13,8 +13,7 @@ namespace lamella {
 
 /// What is known of a printer that shows pictures.
 struct PicturePrinter {
-    std::string_view name = {};  ///< as people call it; "" for none
-    std::string_view model = {}; ///< as its files call it
+    std::string_view name = {}; ///< as people and its files call it; "" for none
     AlongXY<std::uint32_t> pixels{};
     AlongXY<double> display_mm{};
     bool portrait = false;

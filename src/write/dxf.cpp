@@ -21,8 +21,7 @@ std::string length_text(double mm) {
 class DxfWriter final : public SequentialWriter {
   public:
     DxfWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = false}),
-          several_(info.parts.size() > 1) {}
+        : SequentialWriter(path, info, head(info), {.labels = false}), several_(info.parts.size() > 1) {}
 
   private:
     // Release 12 needs neither tables nor handles. It knows no units, but readers look for $INSUNITS all the

@@ -1,35 +1,49 @@
 #include "write/exposure_keys.hpp"
 
-#include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
-#include <functional>
+#include <cstdint>
+#include <map>
+#include <string_view>
+#include <tuple>
 
 namespace lamella {
 
 namespace {
 
-bool is_alike(const Exposure& a, const Exposure& b) {
-    return a.region == b.region && a.kind == b.kind && a.contour == b.contour && a.parameters == b.parameters;
+/// What an exposure is apart from its part. Numbers count by their bits, since those that are none have no
+/// order; -0 is 0.
+auto key_of(const Exposure& exposure) {
+    const auto bits = [](auto... numbers) {
+        return std::array{std::bit_cast<std::uint64_t>(numbers + 0.0)...};
+    };
+    const auto& [name, power, speed, jump_speed, focus, spot, mark_delay, jump_delay] = exposure.parameters;
+    return std::tuple(exposure.region, exposure.kind, exposure.contour, std::string_view(name),
+                      bits(power, speed, jump_speed, focus, spot, mark_delay, jump_delay));
 }
 
-template <class T, class Alike>
-std::size_t place_of(std::vector<T>& known, const T& item, const Alike& alike) {
-    const auto found = std::find_if(known.begin(), known.end(), [&](const T& k) { return alike(k, item); });
-    if (found != known.end())
-        return static_cast<std::size_t>(found - known.begin());
-    known.push_back(item);
-    return known.size() - 1;
+/// Where an item is in a list, at the end of which it is put if it is not there; `places` has those that are.
+template <class Key, class T>
+std::size_t place_of(std::map<Key, std::size_t>& places, const Key& key, std::vector<T>& known,
+                     const T& item) {
+    const auto [place, is_new] = places.try_emplace(key, known.size());
+    if (is_new)
+        known.push_back(item);
+    return place->second;
 }
 
 } // namespace
 
 ExposureKeys::ExposureKeys(std::span<const PartInfo> all) {
+    std::map<std::string_view, std::size_t> part_places; // views of what is in `all`
+    std::map<decltype(key_of(Exposure{})), std::size_t> exposure_places;
     for (const PartInfo& part : all) {
         const std::string& label = part.exposure ? part.exposure->part : part.label;
         Key& key = keys.emplace_back();
-        key.part = place_of(parts, label, std::equal_to<>());
+        key.part = place_of(part_places, std::string_view(label), parts, label);
         if (part.exposure)
-            key.exposure = place_of(exposures, *part.exposure, is_alike);
+            key.exposure = place_of(exposure_places, key_of(*part.exposure), exposures, *part.exposure);
     }
     assert(keys.size() == all.size());
 }

@@ -13,6 +13,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -123,7 +124,10 @@ using StoredPoint = std::array<char, float_point_size>;
 
 // Removes points that rounding made equal to the one before, if there are any; returns how many stay.
 std::size_t without_repeats(std::span<StoredPoint> points, bool repeats, bool closed) {
-    const auto end = repeats ? std::unique(points.begin(), points.end()) : points.end();
+    const auto equal = [](const StoredPoint& a, const StoredPoint& b) { // == is a call for each
+        return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+    };
+    const auto end = repeats ? std::unique(points.begin(), points.end(), equal) : points.end();
     auto kept = static_cast<std::size_t>(end - points.begin());
     while (closed && kept > 1 && points[kept - 1] == points[0])
         --kept;
@@ -134,8 +138,11 @@ void check_range(const Rounded& rounded, std::uint64_t layer) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     const auto& [least, most, area, repeats] = rounded;
     if (!(least.x > -infinity && least.y > -infinity && most.x < infinity && most.y < infinity))
-        throw Error(ErrorKind::usage,
-                    fmt::format("layer {} has coordinates beyond single precision; use larger units", layer));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format(
+                "layer {} has coordinates beyond single precision; move the part nearer to the origin",
+                layer));
 }
 
 // Twice how far a coordinate can have moved, in what is written.
@@ -178,6 +185,8 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
     const bool lost = count < (closed ? 3U : 2U);
     if (is_noticed(last_place(rounded) / 2))
         loss_->add({largest_move(contour, per_mm_), contour.size() - count, lost}, layer);
+    else if (lost && loss_ != nullptr)
+        loss_->add({.lost = true}, layer);
     if (lost)
         return {};
     if (!closed)
@@ -190,22 +199,20 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
     return {count + 1, rounded.area_mm2};
 }
 
-void FloatContours::put_points(std::span<const Point2> points, std::uint64_t layer, char* out) const {
+std::size_t FloatContours::put_lines(std::span<const Point2> points, std::uint64_t layer, char* out) const {
     if (points.empty())
-        return;
+        return 0;
     const Rounded rounded = round_points(points, per_mm_, out);
     check_range(rounded, layer);
     if (is_noticed(last_place(rounded) / 2))
         loss_->add({.moved_mm = largest_move(points, per_mm_)}, layer);
-}
-
-void FloatHeights::add(float height, double mm, std::string_view end, std::uint64_t layer) {
-    if (!(height > last_))
-        throw Error(ErrorKind::usage,
-                    fmt::format("layer {} is so thin that its {}, z = {} mm, is that of the layer "
-                                "before in single precision",
-                                layer, end, mm));
-    last_ = height;
+    if (!rounded.repeats)
+        return points.size();
+    const std::span stored(reinterpret_cast<StoredPoint*>(out), points.size());
+    const std::size_t kept = without_lost_lines(stored);
+    if (loss_ != nullptr && kept != stored.size())
+        loss_->add({.lost_lines = (stored.size() - kept) / 2}, layer);
+    return kept;
 }
 
 } // namespace lamella

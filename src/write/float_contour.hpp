@@ -8,9 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
-#include <string_view>
 
 namespace lamella {
 
@@ -38,8 +36,9 @@ class FloatContours {
     /// Throws Error{usage}, naming the layer, for coordinates beyond single precision.
     FloatContour put(std::span<const Point2> contour, bool closed, std::uint64_t layer, char* out) const;
 
-    /// Writes points that are no contour, each for itself. The same error.
-    void put_points(std::span<const Point2> points, std::uint64_t layer, char* out) const;
+    /// Writes lines, two points each; lines that shrink to a point are left out. Returns the points of those
+    /// that stay. The same error.
+    std::size_t put_lines(std::span<const Point2> points, std::uint64_t layer, char* out) const;
 
   private:
     /// Whether anybody could miss what a move by so much, in what is written, loses.
@@ -47,17 +46,6 @@ class FloatContours {
 
     double per_mm_;
     RoundingLoss* loss_;
-};
-
-/// Heights of layers in single precision, which must ascend.
-class FloatHeights {
-  public:
-    /// Takes the next one, which stands for `mm`. Throws Error{usage}, naming the layer and its `end`, "top"
-    /// or "bottom", where it is not above the one before.
-    void add(float height, double mm, std::string_view end, std::uint64_t layer);
-
-  private:
-    float last_ = -std::numeric_limits<float>::infinity();
 };
 
 } // namespace lamella

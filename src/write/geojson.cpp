@@ -41,7 +41,7 @@ void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& o
 class GeoJsonWriter final : public SequentialWriter {
   public:
     GeoJsonWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = false}) {
+        : SequentialWriter(path, info, head(info), {.written_label = quotable}) {
         for (const PartInfo& part : info.parts)
             labels_.push_back(json_quoted(part.label));
     }

@@ -56,8 +56,8 @@ double grid_area(std::span<const GridPoint> ring) noexcept {
 }
 
 WriterGrid::WriterGrid(double step_mm, RoundingLoss* loss)
-    : step_(step_mm), per_step_(1 / step_mm),
-      loss_(step_mm / 2 > RoundingLoss::unnoticed_mm ? loss : nullptr) {}
+    : step_(step_mm), per_step_(1 / step_mm), loss_(loss),
+      noticed_(loss != nullptr && step_mm / 2 > RoundingLoss::unnoticed_mm) {}
 
 void WriterGrid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const {
     std::size_t beyond = 0;
@@ -73,9 +73,11 @@ void WriterGrid::round(std::span<const Point2> points, std::uint64_t layer, Grid
         out[i] = {whole(x), whole(y)};
     }
     if (beyond != 0)
-        throw Error(ErrorKind::usage,
-                    fmt::format("layer {} has coordinates beyond 2^51 steps of {} mm; use larger units",
-                                layer, step_));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("layer {} has coordinates beyond 2^51 steps of {} mm; move the part nearer to the "
+                        "origin, or use larger units where the format has units",
+                        layer, step_));
 }
 
 double WriterGrid::largest_move(std::span<const Point2> points, const GridPoint* rounded) const {
@@ -93,13 +95,13 @@ std::span<const GridPoint> WriterGrid::snap(std::span<const Point2> contour, boo
     GridPoint* const points = scratch.data();
     round(contour, layer, points);
 
-    const double moved = loss_ != nullptr ? largest_move(contour, points) : 0;
+    const double moved = noticed_ ? largest_move(contour, points) : 0;
 
     GridPoint* end = std::unique(points, points + contour.size());
     while (closed && end - points > 1 && end[-1] == points[0])
         --end;
     const bool lost = end - points < (closed ? 3 : 2);
-    if (loss_ != nullptr)
+    if (noticed_ || (lost && loss_ != nullptr))
         loss_->add({moved, contour.size() - static_cast<std::size_t>(end - points), lost}, layer);
     if (lost)
         return {};
@@ -112,8 +114,17 @@ std::span<const GridPoint> WriterGrid::snap(std::span<const Point2> contour, boo
 std::vector<GridPoint> WriterGrid::snap_points(std::span<const Point2> points, std::uint64_t layer) const {
     std::vector<GridPoint> snapped(points.size());
     round(points, layer, snapped.data());
-    if (loss_ != nullptr)
+    if (noticed_)
         loss_->add({.moved_mm = largest_move(points, snapped.data())}, layer);
+    return snapped;
+}
+
+std::vector<GridPoint> WriterGrid::snap_lines(std::span<const Point2> points, std::uint64_t layer) const {
+    std::vector<GridPoint> snapped = snap_points(points, layer);
+    const std::size_t kept = without_lost_lines(std::span(snapped));
+    if (loss_ != nullptr && kept != snapped.size())
+        loss_->add({.lost_lines = (snapped.size() - kept) / 2}, layer);
+    snapped.resize(kept);
     return snapped;
 }
 

@@ -47,6 +47,10 @@ class WriterGrid {
     std::span<const GridPoint> snap(std::span<const Point2> contour, bool closed, double area,
                                     std::uint64_t layer, std::vector<GridPoint>& scratch) const;
 
+    /// The nearest points for lines, two each; lines that shrink to a point are left out. The same error.
+    [[nodiscard]] std::vector<GridPoint> snap_lines(std::span<const Point2> points,
+                                                    std::uint64_t layer) const;
+
     /// The nearest points, each for itself. The same error.
     [[nodiscard]] std::vector<GridPoint> snap_points(std::span<const Point2> points,
                                                      std::uint64_t layer) const;
@@ -58,7 +62,8 @@ class WriterGrid {
 
     double step_;
     double per_step_;
-    RoundingLoss* loss_; ///< null where nobody would miss anything
+    RoundingLoss* loss_; ///< may be null
+    bool noticed_;       ///< whether anybody could miss what a move loses
 };
 
 } // namespace lamella

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <map>
 #include <set>
@@ -41,7 +42,13 @@ std::string code_of(const Exposure& exposure) {
 
 /// What parts without an exposure have; a machine does nothing with it.
 Exposure no_exposure(const std::string& part) {
-    return {.part = part, .parameters = {.name = {}, .power_w = 0, .speed_mm_s = 0, .focus_mm = 0}};
+    return {.part = part, .parameters = unknown_parameters()};
+}
+
+/// Of a set of parameters what the list of files has a place for.
+ParameterSet kept_in_list(ParameterSet set) {
+    set.jump_speed_mm_s = set.spot_mm = set.mark_delay_us = set.jump_delay_us = 0;
+    return set;
 }
 
 /// One file of the archive.
@@ -54,39 +61,42 @@ struct Section {
 
 /// Vectors of a part that have name and parameters in common share a file. Files of a part have its number,
 /// and another one where they would have the name of one before.
-class Sections {
-  public:
-    void add(std::size_t part, const Exposure& exposure) {
-        const std::string code = code_of(exposure);
-        for (const std::size_t i : of_part_[exposure.part])
-            if (sections_[i].code == code && sections_[i].parameters == exposure.parameters) {
-                sections_[i].parts.push_back(part);
-                return;
-            }
-        const auto [number, is_new] = numbers_.try_emplace(exposure.part, next_);
-        next_ += is_new ? 1 : 0;
-        std::string name = name_of(number->second, code);
-        if (!names_.insert(name).second) {
-            name = name_of(next_++, code);
-            names_.insert(name);
-        }
-        of_part_[exposure.part].push_back(sections_.size());
-        sections_.push_back({std::move(name), code, exposure.parameters, {part}});
-    }
-
-    [[nodiscard]] std::vector<Section> take() { return std::move(sections_); }
-
-  private:
-    static std::string name_of(std::size_t number, const std::string& code) {
+std::vector<Section> sections_of(const std::vector<PartInfo>& parts) {
+    const auto name_of = [](std::size_t number, const std::string& code) {
         return fmt::format("modelsection_{:03}_{}.cli", number, code);
+    };
+    struct FilesOfPart {
+        std::size_t number = 0;
+        std::vector<std::size_t> sections = {};
+    };
+    std::vector<Section> sections;
+    std::map<std::string, FilesOfPart> known;
+    std::set<std::string> names;
+    std::size_t next = 1;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        const Exposure exposure = parts[part].exposure.value_or(no_exposure(parts[part].label));
+        const std::string code = code_of(exposure);
+        FilesOfPart& files = known[exposure.part];
+        if (files.sections.empty())
+            files.number = next++;
+        const auto same = std::find_if(files.sections.begin(), files.sections.end(), [&](std::size_t i) {
+            return sections[i].code == code && sections[i].parameters == exposure.parameters;
+        });
+        if (same != files.sections.end()) {
+            sections[*same].parts.push_back(part);
+            continue;
+        }
+        std::string name = name_of(files.number, code);
+        if (!names.insert(name).second) {
+            name = name_of(next++, code);
+            names.insert(name);
+        }
+        files.sections.push_back(sections.size());
+        sections.push_back({std::move(name), code, exposure.parameters, {part}});
     }
-
-    std::vector<Section> sections_;
-    std::map<std::string, std::vector<std::size_t>> of_part_;
-    std::map<std::string, std::size_t> numbers_;
-    std::set<std::string> names_;
-    std::size_t next_ = 1;
-};
+    assert(!sections.empty());
+    return sections;
+}
 
 /// Five lines for each file, as readers count them. Distance and time of points are for beams that are
 /// pulsed; ours are not. The sign of a millionth is one byte of Latin-1.
@@ -105,22 +115,19 @@ std::string parameters_text(const std::vector<Section>& sections) {
 class IltWriter final : public OrderedWriter {
   public:
     IltWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : OrderedWriter(info, {.open_chains = true, .hatches = true, .parameters = true}), zip_(path) {
-        Sections sections;
-        for (std::size_t part = 0; part < info.parts.size(); ++part) {
-            const PartInfo& known = info.parts[part];
-            sections.add(part, known.exposure.value_or(no_exposure(known.label)));
-        }
-        sections_ = sections.take();
-        assert(!sections_.empty());
+        : OrderedWriter(info, {.hatches = true,
+                               .gaps = false,
+                               .parameters = true,
+                               .kept = kept_in_list,
+                               .not_kept = "jump speeds, delays and spots"}),
+          zip_(path), sections_(sections_of(info.parts)), entries_(sections_.size()) {
         zip_.add(ilt_parameters, parameters_text(sections_));
         zip_.begin(sections_.front().name, ZipMethod::stored);
-        entries_.resize(sections_.size());
         for (std::size_t i = 0; i < sections_.size(); ++i)
             open(i, info, options);
     }
 
-    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+    std::uint64_t bytes() const noexcept override { return zip_.bytes() + waiting_; }
 
     std::vector<std::string> warnings() const override {
         std::vector<std::string> lines = OrderedWriter::warnings();
@@ -160,6 +167,7 @@ class IltWriter final : public OrderedWriter {
         for (const Entry& entry : entries_)
             entry.writer->finish();
         zip_.end();
+        waiting_ = 0;
         for (std::size_t i = 1; i < sections_.size(); ++i) {
             zip_.begin(sections_[i].name, ZipMethod::stored);
             std::string bytes;
@@ -179,13 +187,19 @@ class IltWriter final : public OrderedWriter {
         entry.piece = {0, info.layers, [this, section](std::string_view bytes) {
                            put(section, bytes);
                        }};
-        LayerFileInfo part_info = info;
-        part_info.piece = &entry.piece;
-        part_info.parts.clear();
+        LayerFileInfo part_info{.box = info.box,
+                                .layers = info.layers,
+                                .bottom = info.bottom,
+                                .parts = {},
+                                .rule = info.rule,
+                                .piece = &entry.piece};
         for (const std::size_t part : sections_[section].parts) {
             PartInfo known = info.parts[part];
-            if (known.exposure)
+            known.support = false; // the warning is of the whole archive
+            if (known.exposure) {
                 known.label = known.exposure->label();
+                known.exposure->parameters = unknown_parameters(); // they are in the list
+            }
             part_info.parts.push_back(std::move(known));
         }
         entry.writer = open_common_layer_binary({}, part_info, options);
@@ -205,12 +219,14 @@ class IltWriter final : public OrderedWriter {
         else
             waiting.push_back({store_.size(), bytes.size()});
         store_.add(bytes);
+        waiting_ += bytes.size();
     }
 
     ZipWriter zip_;
     std::vector<Section> sections_;
     std::vector<Entry> entries_; ///< of sections_; their pieces stay where they are
     ByteStore store_{most_in_memory};
+    std::uint64_t waiting_ = 0; ///< bytes in it that are not in the archive
 };
 
 } // namespace

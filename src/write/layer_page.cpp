@@ -333,17 +333,16 @@ class PageWriter final : public LayerPageWriter {
     }
 
     [[nodiscard]] std::string head(const LayerFileInfo& info, const PageOptions& options) const {
-        std::string parts;
-        for (const PartInfo& part : info.parts)
-            parts += fmt::format(R"({}{{"label":{},"box":{}{}}})", parts.empty() ? "" : ",",
-                                 page_quoted(part.label), page_box(part.box),
-                                 part.exposure ? R"(,"exposure":)" + exposure_json(*part.exposure) : "");
+        const auto part_json = [](const PartInfo& part) {
+            return fmt::format(R"({{"label":{},"box":{}{}}})", page_quoted(part.label), page_box(part.box),
+                               part.exposure ? R"(,"exposure":)" + exposure_json(*part.exposure) : "");
+        };
         return fmt::format(
             R"({{"kind":"layers","version":1,"title":{},"layers":{},"step_mm":{},"origin":[{},{}],)"
-            R"("box":{},"bottom":{},"budget_bytes":{},"layer_points":{},"parts":[{}]}})",
+            R"("box":{},"bottom":{},"budget_bytes":{},"layer_points":{},"parts":{}}})",
             page_quoted(options.title), info.layers, page_number(grid_.step_mm), grid_.origin.x,
             grid_.origin.y, page_box(info.box), page_number(info.bottom), options.budget_bytes,
-            options.layer_points, parts);
+            options.layer_points, json_list(info.parts, part_json));
     }
 
     void write(const PlaneFacts& facts, const std::vector<Picture>& pictures) {

@@ -1,7 +1,6 @@
 #include "lamella/contour/measure.hpp"
 
 #include "core/atomic_directory.hpp"
-#include "core/atomic_file.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
@@ -11,10 +10,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 namespace lamella {
 
@@ -61,8 +58,10 @@ struct MeasuredRing {
 class LayeredSvgWriter final : public SequentialWriter {
   public:
     LayeredSvgWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = false}),
+        : SequentialWriter(path, info, head(info), {.written_label = quotable}),
           origin_(steps_below(info.box.min)) {
+        if (info.parts.size() == 1 && info.parts.front().label == PartInfo{}.label)
+            return;
         for (const PartInfo& part : info.parts)
             part_heads_.push_back(fmt::format("    <g data-lamella-part=\"{}\" data-lamella-label=\"{}\">\n",
                                               part_heads_.size() + 1, xml_escaped(part.label)));
@@ -98,10 +97,10 @@ class LayeredSvgWriter final : public SequentialWriter {
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for (std::size_t part = 0; part < parts.size(); ++part) {
-            if (parts.size() > 1)
+            if (!part_heads_.empty())
                 out.append(part_heads_[part]);
             format_part(parts[part], out);
-            if (parts.size() > 1)
+            if (!part_heads_.empty())
                 out.append("    </g>\n");
         }
         out.append("  </g>\n");
@@ -144,7 +143,8 @@ class LayeredSvgWriter final : public SequentialWriter {
     std::string tail() override { return "</svg>\n"; }
 
     GridPoint origin_;
-    std::vector<std::string> part_heads_; ///< used where there are several
+    /// Empty for a single part that nobody gave a name: then it needs no group of its own.
+    std::vector<std::string> part_heads_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 
@@ -154,36 +154,24 @@ constexpr std::string_view picture_mark =
 
 bool is_our_picture(const fs::path& path) {
     const std::string name = path.filename().string();
-    constexpr std::string_view prefix = "layer_";
-    constexpr std::string_view suffix = ".svg";
-    if (!name.starts_with(prefix) || !name.ends_with(suffix) ||
-        !fs::is_regular_file(fs::symlink_status(path)))
-        return false;
-    std::string begin(picture_mark.size(), '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-    return file && begin == picture_mark;
+    return name.starts_with("layer_") && name.ends_with(".svg") && begins_with_mark(path, picture_mark);
 }
 
 class SvgLayersWriter final : public OrderedWriter {
   public:
     SvgLayersWriter(const std::string& path, const LayerFileInfo& info)
-        : OrderedWriter(info, {.open_chains = true, .hatches = false}, Ascending::z_and_index),
-          directory_(path, is_our_picture), head_(head(info)) {}
+        : OrderedWriter(info, {.supports = true}, Ascending::z_and_index), directory_(path, is_our_picture),
+          head_(head(info)) {}
 
-    std::uint64_t bytes() const noexcept override { return bytes_.load(std::memory_order_relaxed); }
+    std::uint64_t bytes() const noexcept override { return directory_.bytes(); }
 
   private:
     // Each layer has a file of its own, so it is written here and not in order.
     Write formatted(std::span<const Layer> parts) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
         format(parts, *text);
-        const fs::path path = directory_.working_path() / fmt::format("layer_{:05}.svg", parts.front().index);
-        AtomicFile file(path.string());
-        file.append(text->view());
-        file.commit();
-        return [this, size = text->view().size()](const PlanePlace&) {
-            bytes_.fetch_add(size, std::memory_order_relaxed);
+        directory_.write(fmt::format("layer_{:05}.svg", parts.front().index), text->view());
+        return [](const PlanePlace&) {
         };
     }
 
@@ -241,7 +229,6 @@ class SvgLayersWriter final : public OrderedWriter {
     AtomicDirectory directory_;
     std::string head_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
-    std::atomic<std::uint64_t> bytes_{0};
 };
 
 } // namespace

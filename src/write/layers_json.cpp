@@ -28,7 +28,7 @@ void put_numbers(std::span<const Point2> points, ByteBuffer& out) {
 class LayersJsonWriter final : public SequentialWriter {
   public:
     LayersJsonWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.open_chains = true, .hatches = true}) {}
+        : SequentialWriter(path, info, head(info), {.hatches = true, .written_label = quotable}) {}
 
   private:
     static std::string head(const LayerFileInfo& info) {

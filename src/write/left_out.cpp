@@ -1,18 +1,47 @@
 #include "write/left_out.hpp"
 
+#include "container/text_place.hpp"
+
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <utility>
 
 namespace lamella {
 
-LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts)
-    : holds_(holds), unexposed_(static_cast<std::uint64_t>(std::count_if(
-                         parts.begin(), parts.end(), [](const PartInfo& part) { return !part.exposure; }))) {}
+namespace {
+
+constexpr std::size_t longest_label = 60; ///< of those that warnings name
+
+std::string parts_in_words(std::uint64_t count) {
+    return count == 1 ? "1 part" : fmt::format("{} parts", count);
+}
+
+} // namespace
+
+LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
+    for (const PartInfo& part : parts) {
+        const bool known = part.exposure && !(part.exposure->parameters == unknown_parameters());
+        ++(known ? known_ : unknown_);
+        if (known && holds.kept != nullptr &&
+            !(holds.kept(part.exposure->parameters) == part.exposure->parameters))
+            ++changed_parts_;
+        if (part.support && !part.exposure)
+            ++supports_;
+        if (part.label != PartInfo{}.label && labelled_++ == 0)
+            first_labelled_ = part.label;
+        if (holds.written_label == nullptr)
+            continue;
+        if (std::string written = holds.written_label(part.label);
+            written != part.label && changed_labels_++ == 0) {
+            first_label_ = part.label;
+            first_written_ = std::move(written);
+        }
+    }
+}
 
 PlaneExtras extras_of(std::span<const Layer> parts) {
     const double z = parts.front().z;
-    PlaneExtras extras{{0, z}, {0, z}};
+    PlaneExtras extras{{0, z}, {0, z}, {0, z}};
     for (const Layer& layer : parts) {
         extras.open_chains.count += layer.open_chains();
         extras.hatches.count += layer.hatches.size() / 2;
@@ -26,15 +55,7 @@ void LeftOut::note(const PlaneExtras& plane) {
     };
     add(noted_.open_chains, plane.open_chains);
     add(noted_.hatches, plane.hatches);
-}
-
-void LeftOut::note_label(std::string_view label, std::string_view written) {
-    if (label == written)
-        return;
-    if (changed_labels_++ == 0) {
-        first_label_ = label;
-        first_written_ = written;
-    }
+    add(noted_.gaps, plane.gaps);
 }
 
 std::vector<std::string> LeftOut::warnings() const {
@@ -47,16 +68,36 @@ std::vector<std::string> LeftOut::warnings() const {
     };
     say(holds_.open_chains, noted_.open_chains, "open contour was", "open contours were");
     say(holds_.hatches, noted_.hatches, "hatch line was", "hatch lines were");
+    say(holds_.gaps, noted_.gaps, "gap or overlap of layers was", "gaps or overlaps of layers were");
     if (changed_labels_ != 0)
         lines.push_back(
             fmt::format("{} changed, the first from \"{}\" to \"{}\": the format has no place for "
-                        "some of the characters",
+                        "some of its characters, or for its length",
                         changed_labels_ == 1 ? "1 label was" : fmt::format("{} labels were", changed_labels_),
-                        first_label_, first_written_));
-    if (holds_.parameters && unexposed_ != 0)
+                        printable(first_label_, longest_label), printable(first_written_, longest_label)));
+    if (!holds_.labels && labelled_ != 0)
+        lines.push_back(fmt::format("{} not written, the first \"{}\": the format has no place for labels",
+                                    labelled_ == 1 ? "1 label was" : fmt::format("{} labels were", labelled_),
+                                    printable(first_labelled_, longest_label)));
+    if (!holds_.supports && supports_ != 0)
+        lines.push_back(fmt::format("{}: the format has no place for that; 3mf has",
+                                    supports_ == 1 ? "1 part is a support"
+                                                   : fmt::format("{} parts are supports", supports_)));
+    if (!holds_.parameters && known_ != 0)
+        lines.push_back(fmt::format(
+            "parameters of scan vectors, such as power and speed, were left out for {}: the format has no "
+            "place for such; ilt, ovf and 3mf-toolpath have",
+            parts_in_words(known_)));
+    if (changed_parts_ != 0)
         lines.push_back(
-            fmt::format("{} no scan vectors: contours were written without parameters",
-                        unexposed_ == 1 ? "1 part has" : fmt::format("{} parts have", unexposed_)));
+            fmt::format("of the parameters of scan vectors, {} were left out for {}: the format has no "
+                        "place for such",
+                        holds_.not_kept, parts_in_words(changed_parts_)));
+    if (holds_.parameters && unknown_ != 0)
+        lines.push_back(
+            fmt::format("{} no parameters of scan vectors, such as power and speed, and {} written without",
+                        unknown_ == 1 ? "1 part has" : fmt::format("{} parts have", unknown_),
+                        unknown_ == 1 ? "was" : "were"));
     return lines;
 }
 

@@ -119,14 +119,10 @@ NumberBytes mesh_numbers(const CoarseMesh& mesh) {
     return out;
 }
 
-std::string shells_json(const std::vector<Shell>& shells) {
-    std::string text;
-    for (const Shell& shell : shells)
-        text += fmt::format(R"({}{{"kind":"{}","triangles":{},"volume_mm3":{},"box":{},"inside":{}}})",
-                            text.empty() ? "" : ",", shell_kind_name(shell.kind), shell.triangles,
-                            page_number(shell.volume_mm3), page_box(shell.box),
-                            shell.inside ? std::to_string(*shell.inside) : "null");
-    return '[' + text + ']';
+std::string shell_json(const Shell& shell) {
+    return fmt::format(R"({{"kind":"{}","triangles":{},"volume_mm3":{},"box":{},"inside":{}}})",
+                       shell_kind_name(shell.kind), shell.triangles, page_number(shell.volume_mm3),
+                       page_box(shell.box), shell.inside ? std::to_string(*shell.inside) : "null");
 }
 
 } // namespace
@@ -159,11 +155,12 @@ void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Dia
     AtomicFile file(path);
     file.append(frame.head);
     file.append(json_element(
-        "head", fmt::format(R"({{"kind":"mesh","version":1,"title":{},"box":{},"step_mm":{},"triangles":{},)"
-                            R"("shown":{},"shells":{},"shell_count":{}}})",
-                            page_quoted(options.title), page_box(box),
-                            page_number(Cubes(box, halvings).edge_mm()), mesh.triangles.size(),
-                            small.triangles.size(), shells_json(diagnosis.shells), diagnosis.counts.shells)));
+        "head",
+        fmt::format(R"({{"kind":"mesh","version":1,"title":{},"box":{},"step_mm":{},"triangles":{},)"
+                    R"("shown":{},"shells":{},"shell_count":{}}})",
+                    page_quoted(options.title), page_box(box), page_number(Cubes(box, halvings).edge_mm()),
+                    mesh.triangles.size(), small.triangles.size(), json_list(diagnosis.shells, shell_json),
+                    diagnosis.counts.shells)));
     file.append(data_element(deflated(mesh_numbers(small).view())));
     file.append(json_element("notes", notes_json(notes)));
     file.append(frame.tail);

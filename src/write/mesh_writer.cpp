@@ -196,7 +196,9 @@ void write_ply(const std::string& path, const IndexedMesh& mesh) {
 
 void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name) {
     AtomicFile file(path);
-    file.append(fmt::format("# written by Lamella, millimetres\no {}\n", one_line(name)));
+    std::string line = one_line(name);
+    std::replace(line.begin(), line.end(), '\\', '/'); // at its end it would go on to the next line
+    file.append(fmt::format("# written by Lamella, millimetres\no {}\n", line));
     constexpr std::size_t longest_line = 80;
     append_blocks(file, mesh.vertices.size(), longest_line, [&](char* at, std::size_t i) {
         return put_rest_of_line(put_text(at, "v"), coordinates(mesh.vertices[i]));

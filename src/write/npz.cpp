@@ -3,16 +3,15 @@
 // last.
 
 #include "container/inflate.hpp"
-#include "container/text_place.hpp"
 #include "container/zip_writer.hpp"
 #include "write/layer_writers.hpp"
 #include "write/ordered_writer.hpp"
+#include "write/quoted.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -58,15 +57,20 @@ std::u32string characters(std::string_view text) {
     return result;
 }
 
+/// In the tables: end, layer, part, and whether it is closed.
+constexpr std::uint64_t bytes_of_contour = 3 * sizeof(std::int64_t) + 1;
+/// Four coordinates, layer and part.
+constexpr std::uint64_t bytes_of_hatch = 4 * sizeof(double) + 2 * sizeof(std::int64_t);
+
 class NpzWriter final : public OrderedWriter {
   public:
     NpzWriter(const std::string& path, const LayerFileInfo& info)
-        : OrderedWriter(info, {.open_chains = true, .hatches = true}), labels_(info.parts), rule_(info.rule),
-          zip_(path, Overwriting::yes) {
+        : OrderedWriter(info, {.hatches = true, .written_label = printable_label}), labels_(info.parts),
+          rule_(info.rule), zip_(path, Overwriting::yes) {
         zip_.begin_headed("points.npy", head_size);
     }
 
-    std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
+    std::uint64_t bytes() const noexcept override { return zip_.bytes() + waiting_; }
 
   private:
     Write formatted(std::span<const Layer> parts) override {
@@ -81,12 +85,14 @@ class NpzWriter final : public OrderedWriter {
                 for (std::size_t i = 1; i < layer.offsets.size(); ++i)
                     offsets_.push_back(points_ + static_cast<std::int64_t>(layer.offsets[i]));
                 points_ += static_cast<std::int64_t>(layer.points.size());
+                waiting_ += layer.contours() * bytes_of_contour + layer.hatches.size() / 2 * bytes_of_hatch;
                 counts_.push_back({layer.contours(), layer.rings, layer.hatches});
             }
         };
     }
 
     void end_file() override {
+        waiting_ = 0;
         zip_.end_headed(npy_head("<f8", fmt::format("{}, 2", points_), head_size));
         add_numbers<std::int64_t>("offsets", "<i8", offsets_);
         add_contour_numbers<char>("closed", "|b1", [](const Contour& c) -> char { return c.closed ? 1 : 0; });
@@ -177,9 +183,8 @@ class NpzWriter final : public OrderedWriter {
 
     void add_labels() {
         std::vector<std::u32string> labels;
-        constexpr std::size_t most_bytes = 4096;
         for (const PartInfo& part : labels_)
-            labels.push_back(characters(printable(part.label, most_bytes)));
+            labels.push_back(characters(printable_label(part.label)));
         add_texts("labels", std::move(labels));
     }
 
@@ -206,9 +211,8 @@ class NpzWriter final : public OrderedWriter {
         }
         if (layers.empty())
             return;
-        constexpr std::uint64_t bytes_of_line = 32;
         Array array(zip_, "hatches", "<f8", fmt::format("{}, 2, 2", layers.size()),
-                    layers.size() * bytes_of_line);
+                    std::uint64_t{layers.size()} * 4 * sizeof(double));
         for (const PartPlane& counts : counts_)
             array.add(bytes_in(counts.hatches.span()));
         array.end();
@@ -230,6 +234,7 @@ class NpzWriter final : public OrderedWriter {
     std::vector<PartPlane> counts_; ///< of all parts of the first plane, then of the second ...
     std::vector<std::int64_t> offsets_{0};
     std::int64_t points_ = 0;
+    std::uint64_t waiting_ = 0; ///< bytes that contours and hatches take at the end
 };
 
 } // namespace

@@ -12,7 +12,7 @@ PlanePlace plane_place(std::span<const Layer> parts) {
 }
 
 PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)
-    : before_(info.piece != nullptr ? info.piece->before : 0),
+    : is_piece_(info.piece != nullptr), before_(info.piece != nullptr ? info.piece->before : 0),
       announced_(info.piece != nullptr ? info.piece->layers : info.layers), parts_(info.parts.size()),
       ascending_(ascending) {}
 
@@ -43,6 +43,7 @@ void PlaneOrder::end() const {
 std::function<void()> OrderedWriter::prepare(std::span<const Layer> parts) {
     order_.check_parts(parts.size());
     return [this, write = formatted(parts), extras = extras_of(parts), place = plane_place(parts)]() mutable {
+        extras.gaps.count = order_.adjoins(place) ? 0 : 1;
         order_.next(place);
         left_out_.note(extras);
         write(place);

@@ -4,15 +4,16 @@
 
 #include "lamella/write/layer_writer.hpp"
 
+#include "contour/same_height.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/left_out.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -47,10 +48,16 @@ class PlaneOrder {
     void next(PlanePlace& plane);
     /// Throws Error{usage} when there were more or fewer planes than announced.
     void end() const;
+    /// Whether a plane's layer begins where that of the last one ends. Of a piece of a file
+    /// this is for the writer of all pieces.
+    [[nodiscard]] bool adjoins(const PlanePlace& plane) const noexcept {
+        return is_piece_ || count_ == 0 || std::abs(plane.bottom - last_.top) <= same_height_mm;
+    }
     /// Planes so far.
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   private:
+    bool is_piece_;
     std::uint64_t before_; ///< planes of the file that other pieces of it have
     std::uint64_t announced_;
     std::size_t parts_;
@@ -71,7 +78,8 @@ class OrderedWriter : public LayerWriter {
     using Write = std::function<void(const PlanePlace& place)>;
 
     OrderedWriter(const LayerFileInfo& info, Holds holds, Ascending ascending = Ascending::z)
-        : order_(info, ascending), left_out_(holds, info.parts) {}
+        : order_(info, ascending),
+          left_out_(holds, tells_of_parts(info) ? std::span(info.parts) : std::span<const PartInfo>()) {}
 
     /// Called from any threads.
     [[nodiscard]] virtual Write formatted(std::span<const Layer> parts) = 0;
@@ -80,14 +88,15 @@ class OrderedWriter : public LayerWriter {
 
     /// For the members that round.
     [[nodiscard]] RoundingLoss& rounding_loss() noexcept { return left_out_.rounding(); }
-    /// To be called where a label cannot be written as it is.
-    void note_label(std::string_view label, std::string_view written) {
-        left_out_.note_label(label, written);
-    }
     /// For what is formatted.
     [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }
 
   private:
+    /// Whether this writer warns about parts: of several pieces of a file only the first one does.
+    static bool tells_of_parts(const LayerFileInfo& info) noexcept {
+        return info.piece == nullptr || info.piece->before == 0;
+    }
+
     PlaneOrder order_;
     LeftOut left_out_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();

@@ -4,25 +4,27 @@
 
 #include "container/ovf_format.hpp"
 #include "container/protobuf.hpp"
-#include "container/text_place.hpp"
 #include "core/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/exposure_keys.hpp"
 #include "write/float_contour.hpp"
 #include "write/layer_writers.hpp"
 #include "write/ordered_writer.hpp"
+#include "write/quoted.hpp"
+#include "write/written_heights.hpp"
 
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace lamella {
 
 namespace {
 
-constexpr std::size_t most_text = 4096; ///< bytes of a label or name
 constexpr std::size_t position_size = sizeof(std::int64_t);
 
 /// The name of the parameters: contours further inwards have their number in it, for which there is no other
@@ -41,7 +43,7 @@ ProtobufMessage marking_params(const Exposure& exposure) {
     message.real(ovf::marking::jump_speed_mm_s, parameters.jump_speed_mm_s);
     message.real(ovf::marking::jump_delay_us, parameters.jump_delay_us);
     message.real(ovf::marking::mark_delay_us, parameters.mark_delay_us);
-    message.text(ovf::marking::name, printable(name_of_parameters(exposure), most_text));
+    message.text(ovf::marking::name, printable_label(name_of_parameters(exposure)));
     return message;
 }
 
@@ -87,7 +89,7 @@ void put_keys(const ExposureKeys& keys, double layer_thickness, ProtobufMessage&
     key = 1;
     for (const std::string& label : keys.parts) {
         ProtobufMessage part;
-        part.text(ovf::part::name, printable(label, most_text));
+        part.text(ovf::part::name, printable_label(label));
         part.message(ovf::part::strategy, strategy);
         job.entry(ovf::job::parts, key++, part);
     }
@@ -113,11 +115,9 @@ class BlockWriter {
         const std::size_t listed = floats_.put(contour, closed, layer_, points).points;
         if (listed == 0)
             return;
-        if (listed != expected) {
-            char* const moved = begin + head_size(ovf::block::line_sequence, listed, of_block);
-            std::memmove(moved, points, listed * float_point_size);
-            put_head(begin, ovf::block::line_sequence, listed, of_block);
-        }
+        if (!closed)
+            keep_open(points, listed);
+        put_head_again(begin, ovf::block::line_sequence, points, listed, of_block);
         end(begin, ovf::block::line_sequence, listed, of_block);
     }
 
@@ -125,11 +125,27 @@ class BlockWriter {
         if (hatches.empty())
             return;
         char* const begin = room(hatches.size(), of_block);
-        floats_.put_points(hatches, layer_, put_head(begin, ovf::block::hatches, hatches.size(), of_block));
-        end(begin, ovf::block::hatches, hatches.size(), of_block);
+        char* const points = put_head(begin, ovf::block::hatches, hatches.size(), of_block);
+        const std::size_t listed = floats_.put_lines(hatches, layer_, points);
+        if (listed == 0)
+            return;
+        put_head_again(begin, ovf::block::hatches, points, listed, of_block);
+        end(begin, ovf::block::hatches, listed, of_block);
     }
 
   private:
+    /// More than three points of which the last is the first are a ring for those who read them: the ends of
+    /// a chain are kept apart by one unit in the last place.
+    static void keep_open(char* points, std::size_t count) {
+        char* const last = points + (count - 1) * float_point_size;
+        if (count <= 3 || std::memcmp(points, last, float_point_size) != 0)
+            return;
+        float x = 0;
+        std::memcpy(&x, last, sizeof x);
+        x = std::nextafter(x, x < 0 ? 0.0F : std::numeric_limits<float>::infinity());
+        std::memcpy(last, &x, sizeof x);
+    }
+
     char* room(std::size_t points, std::string_view of_block) {
         constexpr std::size_t most_head = 5 * most_varint;
         return blocks_.bytes->room(most_head + (points + 1) * float_point_size + of_block.size());
@@ -151,6 +167,15 @@ class BlockWriter {
         return put_varint(put_varint(out, protobuf_tag(ovf::block::points, bytes)), list);
     }
 
+    /// For fewer points than the head that is there says: these move to where the new one ends.
+    static void put_head_again(char* begin, std::uint32_t kind, const char* points, std::size_t count,
+                               std::string_view of_block) {
+        char* const moved = begin + head_size(kind, count, of_block);
+        if (moved != points)
+            std::memmove(moved, points, count * float_point_size);
+        put_head(begin, kind, count, of_block);
+    }
+
     static std::size_t head_size(std::uint32_t kind, std::size_t points, std::string_view of_block) {
         char text[5 * most_varint];
         return static_cast<std::size_t>(put_head(text, kind, points, of_block) - text);
@@ -167,11 +192,22 @@ class BlockWriter {
     Blocks& blocks_;
 };
 
+ParameterSet without_spot(ParameterSet set) {
+    set.spot_mm = 0;
+    return set;
+}
+
 class OvfWriter final : public OrderedWriter {
   public:
     OvfWriter(const std::string& path, const LayerFileInfo& info)
-        : OrderedWriter(info, {.open_chains = true, .hatches = true, .parameters = true}), box_(info.box),
-          keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)), file_(path, Overwriting::yes) {
+        : OrderedWriter(info, {.hatches = true,
+                               .gaps = false,
+                               .parameters = true,
+                               .written_label = printable_label,
+                               .kept = without_spot,
+                               .not_kept = "spots"}),
+          box_(info.box), keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)),
+          file_(path, Overwriting::yes) {
         file_.append(ovf::magic);
         file_.append(bytes_of(std::int64_t{0}));
     }
@@ -189,9 +225,11 @@ class OvfWriter final : public OrderedWriter {
             writer.put_hatches(layer.hatches.span(), ends_of_blocks_[part]);
         }
         return [this, blocks](const PlanePlace& place) {
-            heights_.add(static_cast<float>(place.top), place.top, "top", place.index);
-            if (place.position == 0)
+            if (place.position == 0) {
+                heights_.add(static_cast<float>(place.bottom), place.bottom, "bottom", place.index);
                 layer_thickness_ = place.top - place.bottom;
+            }
+            heights_.add(static_cast<float>(place.top), place.top, "top", place.index);
             append_plane(*blocks, place.top);
         };
     }
@@ -252,7 +290,7 @@ class OvfWriter final : public OrderedWriter {
     AtomicFile file_;
     FloatContours floats_{1, &rounding_loss()};
     std::vector<std::uint64_t> planes_; ///< where they begin
-    FloatHeights heights_;
+    WrittenHeights heights_{"single precision"};
     double layer_thickness_ = 0;
 };
 

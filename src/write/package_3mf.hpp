@@ -29,7 +29,7 @@ struct Piece {
 /// A package under construction.
 class PackageWriter : public OrderedWriter {
   public:
-    [[nodiscard]] std::uint64_t bytes() const noexcept final { return zip_.bytes(); }
+    [[nodiscard]] std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
 
   protected:
     /// Begins it with what it says of its parts: relationships, the model, and `more_types`, which are

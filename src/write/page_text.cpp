@@ -20,18 +20,6 @@ constexpr std::string_view place_of_data = "<!--lamella-data-->";
 /// In the order of Tone.
 constexpr std::array<std::string_view, 4> tone_names{"plain", "good", "warning", "bad"};
 
-/// [a,b,c] of what `tell` makes of each.
-template <class Range, class Tell>
-std::string list(const Range& range, const Tell& tell) {
-    std::string text = "[";
-    for (const auto& item : range) {
-        if (text.size() > 1)
-            text += ',';
-        text += tell(item);
-    }
-    return text + ']';
-}
-
 std::string point_json(const Point3& p) {
     return fmt::format("[{},{},{}]", page_number(p.x), page_number(p.y), page_number(p.z));
 }
@@ -43,12 +31,12 @@ std::string fact_json(const PageFact& fact) {
 
 std::string section_json(const PageSection& section) {
     return fmt::format(R"({{"title":{},"facts":{}}})", page_quoted(section.title),
-                       list(section.facts, fact_json));
+                       json_list(section.facts, fact_json));
 }
 
 std::string place_json(const PagePlace& place) {
     return fmt::format(R"({{"kind":{},"text":{},"closed":{},"points":{}}})", page_quoted(place.kind),
-                       page_quoted(place.text), place.closed, list(place.points, point_json));
+                       page_quoted(place.text), place.closed, json_list(place.points, point_json));
 }
 
 } // namespace
@@ -84,8 +72,8 @@ std::string exposure_json(const Exposure& exposure) {
 }
 
 std::string notes_json(const PageNotes& notes) {
-    return fmt::format(R"({{"sections":{},"places":{}}})", list(notes.sections, section_json),
-                       list(notes.places, place_json));
+    return fmt::format(R"({{"sections":{},"places":{}}})", json_list(notes.sections, section_json),
+                       json_list(notes.places, place_json));
 }
 
 std::string json_element(std::string_view id, std::string_view json) {

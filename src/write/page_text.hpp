@@ -21,6 +21,18 @@ struct PageFrame {
 };
 [[nodiscard]] PageFrame page_frame(const PageOptions& options);
 
+/// [a,b,c] of what `tell` makes of each.
+template <class Range, class Tell>
+std::string json_list(const Range& range, const Tell& tell) {
+    std::string text = "[";
+    for (const auto& item : range) {
+        if (text.size() > 1)
+            text += ',';
+        text += tell(item);
+    }
+    return text + ']';
+}
+
 /// The shortest text that reads back to the same number; null where it is not finite.
 [[nodiscard]] std::string page_number(double value);
 /// [[x,y,z],[x,y,z]], null for an empty box.

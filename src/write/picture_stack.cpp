@@ -1,6 +1,5 @@
 #include "container/zip_writer.hpp"
 #include "core/atomic_directory.hpp"
-#include "core/atomic_file.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
 #include "write/layer_writers.hpp"
@@ -9,9 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -57,17 +55,10 @@ class Manifest {
     std::string text_;
 };
 
-bool begins_with_mark(const fs::path& path) {
-    std::string begin(manifest_mark.size(), '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-    return file && begin == manifest_mark;
-}
-
 /// Of an entry of a folder that is there already.
 bool is_ours(const fs::path& path) {
     if (!fs::is_regular_file(fs::symlink_status(path)) ||
-        !begins_with_mark(path.parent_path() / manifest_name))
+        !begins_with_mark(path.parent_path() / manifest_name, manifest_mark))
         return false;
     const std::string name = path.filename().string();
     const std::string number = path.stem().string();
@@ -76,95 +67,61 @@ bool is_ours(const fs::path& path) {
             std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; }));
 }
 
-class PictureStackWriter : public OrderedWriter {
-  protected:
-    PictureStackWriter(const LayerFileInfo& info, const LayerWriteOptions& options)
-        : OrderedWriter(info, {.open_chains = false, .hatches = false}, Ascending::z_and_index),
+class PictureStackWriter final : public OrderedWriter {
+  public:
+    PictureStackWriter(const std::string& path, bool in_folder, const LayerFileInfo& info,
+                       const LayerWriteOptions& options)
+        : OrderedWriter(info, {.open_chains = false, .supports = true}, Ascending::z_and_index),
           display_(display_for(info.box, options.picture, {})),
-          pictures_(display_.grid(info.box), options.picture.raster), manifest_(display_, pictures_) {}
+          pictures_(display_.grid(info.box), options.picture.raster), manifest_(display_, pictures_) {
+        if (in_folder)
+            folder_.emplace(path, is_ours);
+        else
+            archive_.emplace(path);
+    }
 
-    /// Called as soon as there is a picture, from any threads.
-    virtual void made(std::uint64_t index, const LayerPicture& picture) = 0;
-    /// Called in order.
-    virtual void add(std::uint64_t index, const LayerPicture& picture) = 0;
-    virtual void end(const std::string& manifest) = 0;
+    std::uint64_t bytes() const noexcept override { return folder_ ? folder_->bytes() : archive_->bytes(); }
 
   private:
-    Write formatted(std::span<const Layer> parts) final {
+    Write formatted(std::span<const Layer> parts) override {
         LayerPicture picture = pictures_.picture(parts);
-        made(parts.front().index, picture);
+        // In a folder each layer has a file of its own, so it is written here and not in order.
+        if (folder_)
+            folder_->write(picture_name(parts.front().index), picture.file->view());
         return [this, picture = std::move(picture)](const PlanePlace& place) {
-            add(place.index, picture);
+            if (archive_)
+                archive_->add_ready(picture_name(place.index), ZipMethod::stored, picture.in_zip());
             manifest_.add(place, picture.covered);
         };
     }
 
-    void end_file() final { end(manifest_.text()); }
+    void end_file() override {
+        if (folder_) {
+            folder_->write(std::string(manifest_name), manifest_.text());
+            folder_->commit();
+        } else {
+            archive_->add(manifest_name, manifest_.text(), ZipMethod::deflated);
+            archive_->finish();
+        }
+    }
 
     Display display_;
     LayerPictures pictures_;
     Manifest manifest_;
-};
-
-class PictureFolderWriter final : public PictureStackWriter {
-  public:
-    PictureFolderWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : PictureStackWriter(info, options), directory_(path, is_ours) {}
-
-    std::uint64_t bytes() const noexcept override { return bytes_.load(std::memory_order_relaxed); }
-
-  private:
-    // Each layer has a file of its own, so it is written here and not in order.
-    void made(std::uint64_t index, const LayerPicture& picture) override {
-        write(directory_.working_path() / picture_name(index), picture.file->view());
-    }
-    void add(std::uint64_t, const LayerPicture&) override {}
-    void end(const std::string& manifest) override {
-        write(directory_.working_path() / manifest_name, manifest);
-        directory_.commit();
-    }
-
-    void write(const fs::path& path, std::string_view bytes) {
-        AtomicFile file(path.string());
-        file.append(bytes);
-        file.commit();
-        bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
-    }
-
-    AtomicDirectory directory_;
-    std::atomic<std::uint64_t> bytes_{0};
-};
-
-class PictureArchiveWriter final : public PictureStackWriter {
-  public:
-    PictureArchiveWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : PictureStackWriter(info, options), archive_(path) {}
-
-    std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
-
-  private:
-    void made(std::uint64_t, const LayerPicture&) override {}
-    void add(std::uint64_t index, const LayerPicture& picture) override {
-        archive_.add_ready(picture_name(index), ZipMethod::stored, picture.in_zip());
-    }
-    void end(const std::string& manifest) override {
-        archive_.add(manifest_name, manifest, ZipMethod::deflated);
-        archive_.finish();
-    }
-
-    ZipWriter archive_;
+    std::optional<AtomicDirectory> folder_; ///< or
+    std::optional<ZipWriter> archive_;
 };
 
 } // namespace
 
 std::unique_ptr<LayerWriter> open_picture_folder(const std::string& path, const LayerFileInfo& info,
                                                  const LayerWriteOptions& options) {
-    return std::make_unique<PictureFolderWriter>(path, info, options);
+    return std::make_unique<PictureStackWriter>(path, true, info, options);
 }
 
 std::unique_ptr<LayerWriter> open_picture_archive(const std::string& path, const LayerFileInfo& info,
                                                   const LayerWriteOptions& options) {
-    return std::make_unique<PictureArchiveWriter>(path, info, options);
+    return std::make_unique<PictureStackWriter>(path, false, info, options);
 }
 
 } // namespace lamella

@@ -19,7 +19,7 @@ struct Escape {
 
 std::string escaped(std::string_view text, std::initializer_list<Escape> escapes) {
     std::string result;
-    for (const char c : printable(text, longest_quote)) {
+    for (const char c : quotable(text)) {
         const Escape* const found = std::find_if(escapes.begin(), escapes.end(),
                                                  [&](const Escape& escape) { return escape.character == c; });
         if (found == escapes.end())
@@ -31,6 +31,15 @@ std::string escaped(std::string_view text, std::initializer_list<Escape> escapes
 }
 
 } // namespace
+
+std::string quotable(std::string_view text) {
+    return printable(text, longest_quote);
+}
+
+std::string printable_label(std::string_view text) {
+    constexpr std::size_t longest = 4096;
+    return printable(text, longest);
+}
 
 std::string json_quoted(std::string_view text) {
     return '"' + escaped(text, {{'"', "\\\""}, {'\\', "\\\\"}}) + '"';

@@ -313,15 +313,12 @@ void RunDeflater::put(std::span<const PixelRun> row) {
     count_ = count;
 }
 
-void RunDeflater::begin_stream() {
-    stream_.clear();
-    stream_.append(std::string_view("\x78\x01", 2)); // Deflate, window of 32 KB, the fastest kind
-    begun_ = true;
-}
-
 void RunDeflater::write_block(bool last) {
-    if (!begun_)
-        begin_stream();
+    if (!begun_) {
+        stream_.clear();
+        stream_.append(std::string_view("\x78\x01", 2)); // Deflate, window of 32 KB, the fastest kind
+        begun_ = true;
+    }
     std::array<std::uint64_t, symbols> frequencies{};
     frequencies[end_of_block] = 1;
     const std::span<const Run> runs(runs_.data(), run_count_);

@@ -82,7 +82,6 @@ class RunDeflater {
         if (run_count_ == most_runs)
             write_block(false);
     }
-    void begin_stream();
     void write_block(bool last);
 
     static constexpr std::uint64_t most_unreduced = 1 << 24;

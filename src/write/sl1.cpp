@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/zip_writer.hpp"
+#include "contour/same_height.hpp"
 #include "raster/relief.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
@@ -26,7 +27,6 @@ namespace {
 // The displays are those of Prusa's printers; the exposures are Prusa's for its Orange Tough resin in layers
 // of 0.05 mm.
 constexpr PicturePrinter original_sl1{.name = "SL1",
-                                      .model = "SL1",
                                       .pixels = {2560, 1440},
                                       .display_mm = {120.96, 68.04},
                                       .portrait = true,
@@ -37,7 +37,6 @@ constexpr PicturePrinter original_sl1{.name = "SL1",
                                       .small_pause_s = 5,
                                       .large_pause_s = 8};
 constexpr PicturePrinter speed_sl1s{.name = "SL1S",
-                                    .model = "SL1S",
                                     .pixels = {2560, 1620},
                                     .display_mm = {128, 81},
                                     .portrait = true,
@@ -100,7 +99,7 @@ class Sl1Writer final : public OrderedWriter {
   public:
     Sl1Writer(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options,
               const PicturePrinter& printer)
-        : OrderedWriter(info, {.open_chains = false, .hatches = false}), printer_(printer),
+        : OrderedWriter(info, {.open_chains = false, .supports = true}), printer_(printer),
           display_(display_for(info.box, options.picture, printer)),
           pictures_(display_.grid(info.box), options.picture.raster),
           relief_(info.box, relief_side, relief_side),
@@ -116,7 +115,7 @@ class Sl1Writer final : public OrderedWriter {
         return
             [this, picture = pictures_.picture(parts), seen = relief_.spans(parts)](const PlanePlace& place) {
                 relief_.add(seen);
-                count(place.position, picture.covered * display_.pixel_mm2(), place.top - place.bottom);
+                count(place, picture.covered * display_.pixel_mm2());
                 archive_.add_ready(fmt::format("{}{:05}.png", job_, place.position), ZipMethod::stored,
                                    picture.in_zip());
             };
@@ -138,22 +137,30 @@ class Sl1Writer final : public OrderedWriter {
         }
     }
 
-    void count(std::uint64_t position, double area_mm2, double thickness) {
-        if (position == 0)
+    /// The printer has one layer height, but for the first layer, and puts each layer on the one before it.
+    void count(const PlanePlace& place, double area_mm2) {
+        const double thickness = place.top - place.bottom;
+        if (place.position == 0)
             first_thickness_ = thickness;
-        if (position <= 1)
+        if (place.position <= 1)
             thickness_ = thickness;
-        // Heights are products of a decimal fraction and differ in their last digits.
-        if (std::abs(thickness - thickness_) > 1e-6)
+        if (std::abs(thickness - thickness_) > same_height_mm)
             throw Error(
                 ErrorKind::usage,
                 fmt::format("an SL1 job has one layer height, but for the first layer: layer {} is {:.6g} "
                             "mm thick, the one before {:.6g} mm",
-                            position, thickness, thickness_));
+                            place.position, thickness, thickness_));
+        if (place.position > 0 && std::abs(place.bottom - top_) > same_height_mm)
+            throw Error(ErrorKind::usage,
+                        fmt::format("layers of an SL1 job lie on one another: layer {} begins at {:.6g} mm, "
+                                    "the one before ends at {:.6g} mm",
+                                    place.position, place.bottom, top_));
+        top_ = place.top;
         volume_mm3_ += area_mm2 * thickness;
         const bool large = area_mm2 > printer_.large_area * display_.width_mm() * display_.height_mm();
         ++(large ? large_layers_ : small_layers_);
-        const double faded = position < first_layers ? 0 : static_cast<double>(position - first_layers + 1);
+        const double faded =
+            place.position < first_layers ? 0 : static_cast<double>(place.position - first_layers + 1);
         const double to_normal = std::min(1.0, faded / (fade_layers_ + 1.0));
         time_s_ += first_s_ + to_normal * (normal_s_ - first_s_) +
                    (large ? printer_.large_pause_s : printer_.small_pause_s);
@@ -175,7 +182,7 @@ class Sl1Writer final : public OrderedWriter {
                 {"numSlow", fmt::to_string(large_layers_)},
                 {"printProfile", ""},
                 {"printTime", fmt::format("{:.6f}", time_s_)},
-                {"printerModel", std::string(printer_.model)},
+                {"printerModel", std::string(printer_.name)},
                 {"printerProfile", fmt::format("Original Prusa {}", printer_.name)},
                 {"printerVariant", "default"},
                 {"prusaSlicerVersion", "Lamella"},
@@ -205,7 +212,7 @@ class Sl1Writer final : public OrderedWriter {
                 {"initial_exposure_time", number(first_s_)},
                 {"initial_layer_height", number(first_thickness_)},
                 {"layer_height", number(thickness_)},
-                {"printer_model", std::string(printer_.model)},
+                {"printer_model", std::string(printer_.name)},
                 {"printer_technology", "SLA"},
                 {"printer_variant", "default"},
                 {"slow_tilt_time", number(printer_.large_pause_s)}};
@@ -222,6 +229,7 @@ class Sl1Writer final : public OrderedWriter {
     std::string job_;
     double first_thickness_ = 0;
     double thickness_ = 0; ///< of the second layer, once there is one
+    double top_ = 0;       ///< of the layer before
     double volume_mm3_ = 0;
     double time_s_ = 0;
     std::uint64_t small_layers_ = 0;

@@ -4,6 +4,7 @@
 #include "write/float_contour.hpp"
 #include "write/layer_writers.hpp"
 #include "write/sequential_writer.hpp"
+#include "write/written_heights.hpp"
 
 #include <fmt/format.h>
 
@@ -24,8 +25,8 @@ float single(double mm) {
 class SlcWriter final : public SequentialWriter {
   public:
     SlcWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, header(info), {.open_chains = false, .hatches = false}),
-          bottom_(info.bottom), top_(info.bottom) {}
+        : SequentialWriter(path, info, header(info), {.open_chains = false, .gaps = false, .labels = false}),
+          bottom_(info.bottom) {}
 
   private:
     // One line with a blank at its end: readers that split at blanks would take the line's end to the last
@@ -57,8 +58,7 @@ class SlcWriter final : public SequentialWriter {
             bytes = sampling_table(place.bottom, place.top - place.bottom);
         heights_.add(single(place.bottom), place.bottom, "bottom", place.index);
         bytes += bytes_of(single(place.bottom));
-        top_ = place.top;
-        empty_ = false;
+        last_ = place;
         return bytes;
     }
 
@@ -86,8 +86,10 @@ class SlcWriter final : public SequentialWriter {
     }
 
     std::string tail() override {
-        std::string bytes = empty_ ? sampling_table(bottom_, 0) : std::string();
-        bytes += bytes_of(single(top_));
+        if (heights_.empty())
+            return sampling_table(bottom_, 0) + bytes_of(single(bottom_)) + bytes_of(no_more_layers);
+        heights_.add(single(last_.top), last_.top, "top", last_.index);
+        std::string bytes = bytes_of(single(last_.top));
         bytes += bytes_of(no_more_layers);
         return bytes;
     }
@@ -105,9 +107,8 @@ class SlcWriter final : public SequentialWriter {
 
     FloatContours floats_{1.0, &rounding_loss()};
     double bottom_;
-    double top_;
-    FloatHeights heights_;
-    bool empty_ = true;
+    PlanePlace last_;
+    WrittenHeights heights_{"single precision"};
 };
 
 } // namespace

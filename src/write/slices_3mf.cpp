@@ -3,7 +3,6 @@
 // prepared and only joined to the others in order.
 
 #include "lamella/contour/measure.hpp"
-#include "lamella/core/error.hpp"
 
 #include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
@@ -11,9 +10,11 @@
 #include "write/layer_writers.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"
+#include "write/written_heights.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -82,13 +83,20 @@ void put_slice(const Layer& layer, const WriterGrid& grid, ByteBuffer& out) {
 class Slices3mfWriter final : public package_3mf::PackageWriter {
   public:
     Slices3mfWriter(const std::string& path, const LayerFileInfo& info)
-        : PackageWriter(path, info, {.open_chains = false, .hatches = false}), info_(info),
-          later_(info.parts.size() - 1), last_top_(info.bottom) {
+        : PackageWriter(path, info,
+                        {.open_chains = false, .gaps = false, .written_label = quotable, .supports = true}),
+          info_(info), later_(info.parts.size() - 1) {
+        heights_.add(in_text(info.bottom), info.bottom, "bottom", 0);
         zip().begin("3D/3dmodel.model", ZipMethod::deflated);
         append(std::string(model_begin) + stack_begin(0));
     }
 
+    std::uint64_t bytes() const noexcept override { return PackageWriter::bytes() + waiting_; }
+
   private:
+    /// A height as nine decimals tell it.
+    static double in_text(double mm) { return std::nearbyint(mm * 1e9); }
+
     static constexpr std::string_view stack_end = "</s:slicestack>\n";
 
     Write formatted(std::span<const Layer> parts) override {
@@ -100,19 +108,17 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
             pieces->push_back(compressed(text->view()));
         }
         return [this, pieces](const PlanePlace& place) {
-            if (!(place.top > last_top_))
-                throw Error(ErrorKind::usage,
-                            fmt::format("layer {} ends at z = {} mm, where the one below it does; the tops "
-                                        "of slices must ascend",
-                                        place.index, place.top));
-            last_top_ = place.top;
+            heights_.add(in_text(place.top), place.top, "top", place.index);
             zip().append(pieces->front().in_zip());
-            for (std::size_t part = 1; part < pieces->size(); ++part)
+            for (std::size_t part = 1; part < pieces->size(); ++part) {
+                waiting_ += (*pieces)[part].bytes.size();
                 later_[part - 1].push_back(std::move((*pieces)[part]));
+            }
         };
     }
 
     void end_file() override {
+        waiting_ = 0;
         append(stack_end);
         for (std::size_t part = 1; part <= later_.size(); ++part) {
             append(stack_begin(part));
@@ -125,8 +131,8 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
             const PartInfo& known = info_.parts[part];
             append(fmt::format("<object id=\"{}\" type=\"{}\" name=\"{}\" s:slicestackid=\"{}\" "
                                "s:meshresolution=\"lowres\">\n{}</object>\n",
-                               object_id(part), known.support ? "support" : "model", xml_escaped(known.label),
-                               stack_id(part),
+                               object_id(part), known.support ? "solidsupport" : "model",
+                               xml_escaped(known.label), stack_id(part),
                                package_3mf::box_mesh(known.box.empty() ? info_.box : known.box)));
             items += fmt::format("<item objectid=\"{}\"/>\n", object_id(part));
         }
@@ -148,7 +154,8 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     WriterGrid grid_{text_step_mm, &rounding_loss()};
     /// The stacks of all parts but the first, which wait for the end of the first one.
     std::vector<std::vector<package_3mf::Piece>> later_;
-    double last_top_;
+    std::uint64_t waiting_ = 0; ///< bytes of these
+    WrittenHeights heights_{"billionths of a millimetre"};
 };
 
 } // namespace

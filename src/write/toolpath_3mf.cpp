@@ -13,6 +13,7 @@
 #include "write/layer_writers.hpp"
 #include "write/package_3mf.hpp"
 #include "write/quoted.hpp"
+#include "write/written_heights.hpp"
 
 #include <fmt/format.h>
 
@@ -89,18 +90,20 @@ std::string profile_text(const std::string& uuid, const std::string& name, const
 class Toolpath3mfWriter final : public package_3mf::PackageWriter {
   public:
     Toolpath3mfWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : PackageWriter(path, info, {.open_chains = true, .hatches = true, .parameters = true},
+        : PackageWriter(path, info,
+                        {.hatches = true, .gaps = false, .parameters = true, .written_label = quotable},
                         "<Default Extension=\"xml\" ContentType=\"application/xml\"/>"),
           info_(info), keys_(info.parts), units_(options.units_mm), grid_(options.units_mm, &rounding_loss()),
-          bottom_(whole_height(info.bottom)), last_top_(bottom_) {
-        const std::string file = head_text(info);
-        uuid_ = uuid_of("toolpath " + file);
+          bottom_(whole_height(info.bottom)),
+          heights_(fmt::format("units of {} mm; use smaller ones", options.units_mm)) {
+        heights_.add(static_cast<double>(bottom_), info.bottom, "bottom", 0);
+        uuid_ = uuid_of("toolpath " + head_text(info));
         for (std::size_t part = 0; part < keys_.parts.size(); ++part)
-            item_uuids_.push_back(uuid_of(fmt::format("item {} {}", part, file)));
+            item_uuids_.push_back(uuid_of(fmt::format("item {} {}", part, uuid_)));
         const bool any_bare = std::any_of(info.parts.begin(), info.parts.end(),
                                           [](const PartInfo& part) { return !part.exposure; });
         for (std::size_t i = 0; i < keys_.exposures.size() + (any_bare ? 1 : 0); ++i)
-            profile_uuids_.push_back(uuid_of(fmt::format("profile {} {}", i, file)));
+            profile_uuids_.push_back(uuid_of(fmt::format("profile {} {}", i, uuid_)));
         layer_begin_ = layer_begin();
     }
 
@@ -112,13 +115,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         piece->bytes += deflate_end;
         return [this, piece](const PlanePlace& place) {
             const std::int64_t height = whole_height(place.top);
-            if (height <= last_top_)
-                throw Error(
-                    ErrorKind::usage,
-                    fmt::format("layer {} ends at z = {} mm, which is not above the one below it in units "
-                                "of {} mm; use smaller units",
-                                place.index, place.top, units_));
-            last_top_ = height;
+            heights_.add(static_cast<double>(height), place.top, "top", place.index);
             const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", place.position + 1);
             zip().add_ready(name, ZipMethod::deflated, piece->in_zip());
             layers_ += fmt::format("<tp:toolpathlayer ztop=\"{}\" path=\"/{}\"/>\n", height, name);
@@ -176,9 +173,9 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
                     put_segment(closed ? "loop" : "polyline", refers, points, {"<point x=\"", "\" y=\""},
                                 layer, out);
             }
-            if (!layer.hatches.empty())
-                put_segment("hatch", refers, grid_.snap_points(layer.hatches.span(), layer.index),
-                            {"<hatch x1=\"", "\" y1=\"", "\" x2=\"", "\" y2=\""}, layer, out);
+            if (const auto lines = grid_.snap_lines(layer.hatches.span(), layer.index); !lines.empty())
+                put_segment("hatch", refers, lines, {"<hatch x1=\"", "\" y1=\"", "\" x2=\"", "\" y2=\""},
+                            layer, out);
         }
         out.append("</segments>\n</layer>\n");
     }
@@ -227,6 +224,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
     [[nodiscard]] std::string model() const {
+        const std::vector<Box3> boxes = boxes_of_parts();
         std::string objects;
         std::string items;
         for (std::size_t i = 0; i < keys_.parts.size(); ++i) {
@@ -234,7 +232,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
             objects +=
                 fmt::format("<object id=\"{}\" p:UUID=\"{}\" type=\"model\" name=\"{}\">\n{}</object>\n", id,
                             uuid_of("object " + item_uuids_[i]), xml_escaped(keys_.parts[i]),
-                            package_3mf::box_mesh(box_of(i)));
+                            package_3mf::box_mesh(boxes[i].empty() ? info_.box : boxes[i]));
             items += fmt::format("<item objectid=\"{}\" p:UUID=\"{}\"/>\n", id, item_uuids_[i]);
         }
         return fmt::format(
@@ -250,12 +248,11 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
             profiles(), bottom_, layers_, objects, uuid_of("build " + uuid_), items);
     }
 
-    [[nodiscard]] Box3 box_of(std::size_t part) const {
-        Box3 box;
+    [[nodiscard]] std::vector<Box3> boxes_of_parts() const {
+        std::vector<Box3> boxes(keys_.parts.size());
         for (std::size_t i = 0; i < keys_.keys.size(); ++i)
-            if (keys_.keys[i].part == part)
-                box.add(info_.parts[i].box);
-        return box.empty() ? info_.box : box;
+            boxes[keys_.keys[i].part].add(info_.parts[i].box);
+        return boxes;
     }
 
     LayerFileInfo info_;
@@ -269,7 +266,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     std::string layers_;    ///< of the model
     std::string relations_; ///< likewise
     std::int64_t bottom_;
-    std::int64_t last_top_;
+    WrittenHeights heights_;
 };
 
 } // namespace

@@ -26,6 +26,7 @@ struct ScanFormat {
     const char* name;
     std::function<double(double)> coordinate; ///< as the format keeps it
     std::function<ParameterSet(const ParameterSet&)> parameters;
+    const char* not_kept; ///< of these, in words
 };
 
 double single(double v) {
@@ -46,7 +47,8 @@ const std::vector<ScanFormat>& scan_formats() {
                                      .spot_mm = 0,
                                      .mark_delay_us = 0,
                                      .jump_delay_us = 0};
-             }},
+             },
+         .not_kept = "jump speeds, delays and spots"},
         {.name = "ovf",
          .coordinate = single,
          .parameters =
@@ -59,13 +61,12 @@ const std::vector<ScanFormat>& scan_formats() {
                                      .spot_mm = 0,
                                      .mark_delay_us = single(set.mark_delay_us),
                                      .jump_delay_us = single(set.jump_delay_us)};
-             }},
+             },
+         .not_kept = "spots"},
         {.name = "3mf-toolpath",
          .coordinate = [](double v) { return std::nearbyint(v * 1000) * 0.001 + 0.0; },
-         .parameters =
-             [](const ParameterSet& set) {
-                 return set;
-             }},
+         .parameters = [](const ParameterSet& set) { return set; },
+         .not_kept = ""},
     };
     return formats;
 }
@@ -171,13 +172,30 @@ void expect_points(std::span<const Point2> found, std::span<const Point2> expect
     }
 }
 
+/// Of what becomes of parameters in files.
+std::vector<std::string> expected_warnings(const ScanFormat& format, const Job& job) {
+    std::size_t known = 0;
+    for (const PartInfo& part : job.info.parts)
+        known += part.exposure ? 1 : 0;
+    std::vector<std::string> expected;
+    if (format.not_kept[0] != 0)
+        expected.push_back("of the parameters of scan vectors, " + std::string(format.not_kept) +
+                           " were left out for " + std::to_string(known) +
+                           " parts: the format has no place for such");
+    if (known < job.info.parts.size())
+        expected.push_back(
+            "1 part has no parameters of scan vectors, such as power and speed, and was written "
+            "without");
+    return expected;
+}
+
 TEST(ScanFormats, GiveBackVectorsInTheirOrderAndWhatIsSaidOfThem) {
     const Job job = scanned();
     ASSERT_EQ(job.parts.size(), 6U + 3U + 6U);
     for (const ScanFormat& format : scan_formats()) {
         std::vector<std::string> warnings;
         const LayerFile back = read(written(format.name, job, &warnings));
-        EXPECT_TRUE(warnings.empty()) << warnings.front();
+        EXPECT_EQ(warnings, expected_warnings(format, job)) << format.name;
         EXPECT_TRUE(back.warnings.empty()) << back.warnings.front();
         EXPECT_EQ(back.format, format.name);
         ASSERT_EQ(back.parts.size(), job.parts.size()) << format.name;
@@ -208,6 +226,20 @@ TEST(ScanFormats, GiveBackVectorsInTheirOrderAndWhatIsSaidOfThem) {
     }
 }
 
+TEST(ScanFormats, AreSilentOfWhatTheyNeverHad) {
+    const Job job = scanned();
+    for (const ScanFormat& format : scan_formats()) {
+        const LayerFile back = read(written(format.name, job));
+        // What was read has lost it already.
+        Job again{job.info, job.parts};
+        for (std::size_t i = 0; i < back.parts.size(); ++i)
+            again.info.parts[i].exposure = back.parts[i].exposure;
+        std::vector<std::string> warnings;
+        static_cast<void>(written(format.name, again, &warnings));
+        EXPECT_EQ(warnings, std::vector<std::string>{}) << format.name;
+    }
+}
+
 TEST(ScanFormats, SayWhichPartsHaveNoParameters) {
     Job job = scanned();
     job.info.parts[2].exposure.reset();
@@ -215,8 +247,7 @@ TEST(ScanFormats, SayWhichPartsHaveNoParameters) {
     for (const ScanFormat& format : scan_formats()) {
         std::vector<std::string> warnings;
         const LayerFile back = read(written(format.name, job, &warnings));
-        ASSERT_EQ(warnings.size(), 1U) << format.name;
-        EXPECT_TRUE(warnings.front().starts_with("1 part has no scan vectors")) << warnings.front();
+        EXPECT_EQ(warnings, expected_warnings(format, job)) << format.name;
         EXPECT_EQ(std::count_if(back.parts.begin(), back.parts.end(),
                                 [](const LayerPart& part) { return !part.exposure; }),
                   1)
@@ -247,6 +278,59 @@ TEST(ScanFormats, AreWrittenAgainAsTheyWereRead) {
                     std::equal(a.hatches.begin(), a.hatches.end(), b.hatches.begin(), b.hatches.end()))
                     << format.name;
             }
+    }
+}
+
+/// One layer of one exposure, which has what `add` adds.
+Job job_of(const Exposure& exposure, const std::function<void(LayerBuilder&)>& add) {
+    LayerBuilder builder;
+    add(builder);
+    Job job;
+    job.info = {.box = {{0, 0, 0}, {9, 9, 1}}, .layers = 1, .bottom = 0, .parts = {}};
+    job.info.parts.push_back({exposure.label(), {}, exposure});
+    job.parts.push_back({builder.finish_as_added(0, 0.5, 0, 1)});
+    return job;
+}
+
+TEST(ScanFormats, KeepNamesOfVectorsWithoutParameters) {
+    // As those that come from formats that have nothing but labels.
+    const Exposure exposure{.part = "bracket",
+                            .region = ScanRegion::upskin,
+                            .kind = VectorKind::contour,
+                            .contour = 2,
+                            .parameters = unknown_parameters()};
+    const Job job = job_of(exposure, [](LayerBuilder& builder) {
+        for (const Point2& p : {Point2{1, 1}, Point2{5, 1}, Point2{5, 5}})
+            builder.add_point(p);
+        builder.end_contour(true);
+    });
+    for (const ScanFormat& format : scan_formats()) {
+        const LayerFile back = read(written(format.name, job));
+        ASSERT_EQ(back.parts.size(), 1U);
+        EXPECT_EQ(back.parts[0].label, "bracket upskin contour 2") << format.name;
+        ASSERT_TRUE(back.parts[0].exposure) << format.name;
+        EXPECT_EQ(back.parts[0].exposure->part, "bracket") << format.name;
+        EXPECT_EQ(back.parts[0].exposure->parameters.speed_mm_s, 0) << format.name;
+    }
+}
+
+TEST(ScanFormats, LeaveChainsOpenWhoseEndsRoundingMakesEqual) {
+    for (const double apart : {1e-12, 0.0}) {
+        for (const double x : {0.0, 1.0, -1.0}) {
+            const Exposure exposure{.contour = 1, .parameters = {}};
+            const Job job = job_of(exposure, [&](LayerBuilder& builder) {
+                for (const Point2& p :
+                     {Point2{x, 1}, Point2{5, 1}, Point2{5, 5}, Point2{1, 5}, Point2{x + apart, 1}})
+                    builder.add_point(p);
+                builder.end_contour(false);
+            });
+            for (const ScanFormat& format : scan_formats()) {
+                const Layer layer = read(written(format.name, job)).parts.at(0).layers.at(0);
+                EXPECT_EQ(layer.rings, 0U) << format.name;
+                ASSERT_EQ(layer.points.size(), 5U) << format.name;
+                EXPECT_NEAR(layer.points[4].x, x, 1e-6) << format.name;
+            }
+        }
     }
 }
 

@@ -2,13 +2,14 @@
 
 import json
 import os
+import resource
 import signal
 import socket
 import subprocess
 import time
 from pathlib import Path
 
-from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main
+from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main, open_box
 
 
 class Batch(ProgramTest):
@@ -56,6 +57,25 @@ class Batch(ProgramTest):
         self.assertEqual(outcomes[0], outcomes[1])
         self.assertEqual(outcomes[0], outcomes[2])
 
+    def test_warnings_name_the_file_and_tell_of_steps_that_leave_nothing(self):
+        self.boxes("parts", 2)
+        self.write("parts/box01.stl", binary_stl(box_triangles(9, 9, 9)) + b"more")
+        records = self.batch(0, "parts", "-o", "out", "--format", "cli", "--min-area", "20")
+        self.assertEqual(len(records[0]["warnings"]), 1)
+        self.assertIn("parts/box00.stl: no contour is left in any of 30 layers", records[0]["warnings"][0])
+        self.assertEqual(records[1]["warnings"],
+                         ["parts/box01.stl: byte 684: left out 4 bytes that follow the 12 triangles of the count"])
+
+    def test_hidden_files_and_linked_folders_are_left_out_of_a_folder(self):
+        names = self.boxes("parts", 1)
+        self.boxes("elsewhere", 1)
+        self.boxes("parts/.hidden", 1)
+        self.write("parts/.hidden.stl", binary_stl(box_triangles(1, 2, 3)))
+        self.path("parts/linked").symlink_to("../elsewhere")
+        self.assertEqual([r["path"] for r in self.batch(0, "parts", "--stats", "out")], names)
+        self.write("list.txt", "parts/.hidden.stl\nparts/linked/box00.stl\n")
+        self.assertEqual(len(self.batch(0, "list.txt", "--stats", "out")), 2)
+
     def test_files_that_fail_hold_up_nobody(self):
         self.boxes("parts", 4)
         self.write("parts/box00a.stl", b"no mesh at all")
@@ -97,6 +117,13 @@ class Batch(ProgramTest):
         self.write("a/#odd\nname.stl", binary_stl(box_triangles(1, 1, 1)))
         records = self.batch(0, "-", "-o", "out", "--format", "svg", stdin=b"a/#odd\nname.stl\0")
         self.assertEqual([r["output"] for r in records], ["out/#odd\nname.svg"])
+        records = self.batch(0, "-", "-o", "out", "--format", "svg", stdin=b"\xef\xbb\xbfa/box00.stl\n")
+        self.assertEqual([r["path"] for r in records], ["a/box00.stl"])  # as lists of Windows begin
+
+    def test_a_line_that_is_longer_than_any_path(self):
+        self.write("list", "# parts\n" + 8000 * "in/p.stl " + "\n")
+        self.fail_with(3, "^lamella: error: list: line 2 is longer than any path; expected one path a line$",
+                       "slice", "--batch", "list", "-o", "out", "--format", "cli")
 
     def test_names_of_results_never_collide(self):
         self.boxes("a", 1)
@@ -128,6 +155,23 @@ class Batch(ProgramTest):
         self.fail_with(2, r"would overwrite the input parts/layers/box00\.3mf", "slice", "--batch", "parts", "-o", "parts",
                        "--format", "3mf")
 
+    def test_results_replace_neither_the_list_nor_the_configuration(self):
+        self.box("list.stl")
+        self.write("list.json", "list.stl\n")
+        self.fail_with(2, "list.json: this output would overwrite the input list.json", "slice", "--batch", "list.json",
+                       "-o", "{name}.json")
+        self.write("list", "list.stl\n")
+        self.write("list.toml", "layer-height = 0.5\n")
+        self.fail_with(2, "list.toml: this output would overwrite the input list.toml", "slice", "--batch", "list",
+                       "--config", "list.toml", "--stats", "{name}.toml")
+
+    def test_a_file_whose_statistics_cannot_be_written_has_an_output(self):
+        self.boxes("parts", 1)
+        self.path("stats/box00.json").mkdir(parents=True)
+        record, = self.batch(7, "parts", "-o", "out", "--format", "cli", "--stats", "stats")
+        self.assertEqual((record["error"]["kind"], record["output"]), ("output", "out/box00.cli"))
+        self.assertTrue(self.path("out/box00.cli").exists())
+
     def test_options_come_from_a_configuration_file_as_well(self):
         self.boxes("parts", 1)
         self.write("machine.toml", "layer-height = 0.5\njobs = 2\nformat = \"svg\"\n")
@@ -140,6 +184,7 @@ class Batch(ProgramTest):
         self.fail_with(2, "contradict", "slice", "--batch", "parts", "parts/box00.stl", "-o", "out", "--format", "cli")
         self.fail_with(2, "contradict", "slice", "--batch", "parts", "-o", "-", "--format", "cli")
         self.fail_with(2, r"\{nam\}.*none of", "slice", "--batch", "parts", "-o", "out/{nam}.cli")
+        self.fail_with(2, r'"\{name" is none of', "slice", "--batch", "parts", "-o", "out/{name")
         self.fail_with(2, "--jobs goes with --batch", "slice", "parts/box00.stl", "-o", "x.cli", "--jobs", "2")
         self.fail_with(2, r"parts/box00\.stl: has the name of a mesh; expected a folder", "slice", "--batch", "parts/box00.stl",
                        "-o", "out", "--format", "cli")
@@ -207,9 +252,12 @@ class Workers(ProgramTest):
                 os.mkfifo(self.path(f"in/{name}.stl"))
             else:
                 self.write(f"in/{name}.stl", binary_stl(box_triangles(1, 1, 1)))
-        self.write("list", "".join(f"in/{name}.stl\n" for name in files))
+        return self.start_list(files, *arguments)
+
+    def start_list(self, names, *arguments, **keywords):
+        self.write("list", "".join(f"in/{name}.stl\n" for name in names))
         process = subprocess.Popen([PROGRAM, "slice", "--batch", "list", "-o", "out", "--format", "cli", *arguments],
-                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **keywords)
         self.addCleanup(process.kill)
         return process
 
@@ -256,6 +304,25 @@ class Workers(ProgramTest):
             self.doCleanups()
             self.setUp()
 
+    def test_small_files_that_go_together_are_told_apart(self):
+        names = [f"box{i:02}" for i in range(50)]
+        self.path("in").mkdir()
+        for name in names:
+            self.write(f"in/{name}.stl", binary_stl(box_triangles(1, 1, 100_000 if name == "box05" else 1)))
+        process = self.start_list(names, "--jobs", "1")
+        before = self.path("out/box04.cli")
+        for _ in range(2):  # with those beside it, and by itself
+            written = before.stat().st_mtime_ns if before.exists() else None
+            while process.poll() is None and (not before.exists() or before.stat().st_mtime_ns == written):
+                time.sleep(0.005)
+            time.sleep(0.1)
+            for worker in self.workers(process) if process.poll() is None else []:
+                os.kill(worker, signal.SIGKILL)
+        records, _ = self.end_of(process)
+        self.assertEqual(process.returncode, 7)
+        self.assertEqual([r["path"] for r in records], [f"in/{name}.stl" for name in names])
+        self.assertEqual([r["path"] for r in records if not r["ok"]], ["in/box05.stl"])
+
     def test_one_that_is_stuck_is_ended_by_its_timeout(self):
         process = self.start(["box1", "pipe1", "box2", "pipe2", "box3"], "--jobs", "1", "--timeout", "0.3")
         records, _ = self.end_of(process)
@@ -279,6 +346,112 @@ class Workers(ProgramTest):
                 self.assert_gone(workers)
             self.doCleanups()
             self.setUp()
+
+    def test_what_was_done_is_told_of_a_batch_that_is_stopped(self):
+        self.path("in").mkdir()
+        names = [f"box{i:02}" for i in range(50)]
+        for name in names:
+            self.write(f"in/{name}.stl", binary_stl(box_triangles(1, 1, 1 if name < "box05" else 2_000)))
+        process = self.start_list(names, "--jobs", "1")
+        while not self.path("out/box04.cli").exists():
+            self.assertIsNone(process.poll())
+            time.sleep(0.005)
+        process.send_signal(signal.SIGTERM)
+        records, _ = self.end_of(process)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual([r["path"] for r in records][:5], [f"in/{name}.stl" for name in names[:5]])
+
+    def soon(self, attempt):
+        """One of a few attempts has to succeed: a program that is stopped waits for its workers for a part of a second, which
+        is not enough where others keep the processors busy."""
+        for _ in range(5):
+            if attempt():
+                return
+            self.doCleanups()
+            self.setUp()
+        self.fail("results were lost each time")
+
+    def test_results_behind_one_that_never_comes_are_told_of_a_batch_that_is_stopped(self):
+        def attempt():
+            process = self.start(["pipe", "box1", "box2"], "--jobs", "2")
+            while not self.path("out/box2.cli").exists():
+                self.assertIsNone(process.poll())
+                time.sleep(0.005)
+            process.send_signal(signal.SIGINT)
+            records, err = self.end_of(process)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual([r for r in records if not r["ok"]], [])
+            return ([r["path"] for r in records] == ["in/box1.stl", "in/box2.stl"]
+                    and "3 files: 2 sliced, 1 not begun or cancelled" in err)
+
+        self.soon(attempt)
+
+    def test_a_signal_that_workers_get_as_well_loses_no_result(self):
+        # As Ctrl-C in a terminal, and the end of a service.
+        def attempt(number):
+            self.path("in").mkdir()
+            names = [f"box{i:03}" for i in range(900)]
+            for name in names:
+                self.write(f"in/{name}.stl", binary_stl(box_triangles(1, 1, 10)))
+            os.mkfifo(self.path("in/pipe.stl"))  # so that it does not end by itself
+            process = self.start_list([*names, "pipe"], "--jobs", "3", start_new_session=True)
+            while not self.path("out/box100.cli").exists():
+                self.assertIsNone(process.poll())
+                time.sleep(0.002)
+            os.killpg(process.pid, number)
+            records, _ = self.end_of(process)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual([r for r in records if not r["ok"]], [])
+            told = [r["output"] for r in records]
+            written = sorted(f"out/{p.name}" for p in self.path("out").iterdir())
+            self.assertLessEqual(set(told), set(written))
+            return told == written
+
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            with self.subTest(number):
+                self.soon(lambda: attempt(number))
+            self.doCleanups()
+            self.setUp()
+
+    def test_a_batch_that_is_stopped_while_workers_are_started_tells_its_results(self):
+        def attempt():
+            names = [f"box{i:03}" for i in range(400)]
+            self.path("in").mkdir()
+            for name in names:
+                self.write(f"in/{name}.stl", binary_stl(box_triangles(1, 1, 1)))
+            os.mkfifo(self.path("in/pipe.stl"))
+            process = self.start_list([*names, "pipe"], "--jobs", "200")
+            while not list(self.path("out").glob("*.cli")):
+                self.assertIsNone(process.poll())
+                time.sleep(0.002)
+            process.send_signal(signal.SIGINT)
+            records, err = self.end_of(process)
+            self.assertEqual(process.returncode, 130)
+            return len(records) > 0 and "401 files" in err
+
+        self.soon(attempt)
+
+    def test_a_batch_goes_on_with_fewer_workers_where_no_more_can_be_started(self):
+        names = [f"box{i:02}" for i in range(60)]
+        self.path("in").mkdir()
+        for name in names:
+            self.write(f"in/{name}.stl", binary_stl(box_triangles(1, 1, 1)))
+        self.write("list", "".join(f"in/{name}.stl\n" for name in names))
+        result = self.succeed("slice", "--batch", "list", "-o", "out", "--format", "cli", "--jobs", "40",
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20)))
+        self.assertEqual(len(result.out.splitlines()), len(names))
+
+    def test_results_fit_a_message_whatever_names_and_texts_there_are(self):
+        deep = "/".join(["in"] + 31 * [120 * "\u0001"])
+        self.path(deep).mkdir(parents=True)
+        self.write(f"{deep}/open.stl", binary_stl(open_box(1, 1, 1)))
+        self.write(f"{deep}/wrong.stl", b"no mesh")
+        self.write("list", "\0".join(f"{deep}/{name}.stl" for name in ["open", "wrong"]))
+        result = self.run_program("slice", "--batch", "list", "-o", "out", "--format", "cli")
+        records = [json.loads(line) for line in result.out.splitlines()]
+        self.assertEqual([r["ok"] for r in records], [True, False], result.err)
+        self.assertEqual([r["path"] for r in records], [f"{deep}/open.stl", f"{deep}/wrong.stl"])
+        self.assertEqual(records[0]["warnings"], ["there are warnings, too long to be told here"])
 
     def test_workers_end_with_a_program_that_is_killed(self):
         process = self.start(["pipe1", "pipe2"], "--jobs", "2")

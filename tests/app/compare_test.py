@@ -1,5 +1,7 @@
 """lamella compare: how far two slice files are from each other."""
 
+import json
+
 from program import ProgramTest, main
 
 
@@ -78,6 +80,31 @@ class Compare(ProgramTest):
                                      r"\S+ mm at \1 mm in the first and at .* in the middle")
         self.slice("part.json", "--layers", "2:5")
         self.assertNotIn("different heights", self.differ("torus.json", "part.json").err)
+
+    def test_hatch_lines_heights_and_parameters_are_compared(self):
+        scan = ["--scan", "--hatch-distance", "0.5"]
+        self.write("strong.toml", "[parameters.hatch]\npower_w = 333\n")
+        self.slice("job.ovf", *scan)
+        self.assertIn("agree", self.succeed("compare", "job.ovf", "job.ovf").text)
+        self.slice("turned.ovf", *scan, "--hatch-angle", "1")
+        found = self.differ("job.ovf", "turned.ovf", "--json").json()
+        self.assertEqual((found["agree"], found["same"], found["parameters"]), (False, 0, []))
+        self.assertRegex(self.differ("job.ovf", "turned.ovf").text, "hatch lines")
+        self.slice("strong.ovf", *scan, "--strategy", "strong.toml")
+        result = self.differ("job.ovf", "strong.ovf")
+        self.assertIn("part core hatch: power_w 200 against 333", result.text)
+        found = self.differ("job.ovf", "strong.ovf", "--json").json()
+        self.assertEqual(found["differing"], 0)
+        self.assertEqual(found["parameters"], [{"part": "part core hatch", "parameter": "power_w", "first": 200, "second": 333}])
+        for name in ("job.cli", "job.ilt", "job.json"):  # have no place for all of them
+            self.slice(name, *scan)
+            self.succeed("compare", "job.ovf", name)
+        other = json.loads(self.bytes_of("torus.json"))
+        other["layers"][-1]["top"] += 0.25
+        self.write("thicker.json", json.dumps(other))
+        found = self.differ("torus.json", "thicker.json", "--json").json()
+        self.assertEqual([d["height_distance_mm"] for d in found["differences"]], [0.25])
+        self.assertIn("bottom or top 0.25 mm apart", self.differ("torus.json", "thicker.json").text)
 
     def test_what_cannot_be(self):
         self.fail_with(3, "missing.cli", "compare", "torus.json", "missing.cli")

@@ -61,6 +61,25 @@ class Completion(ProgramTest):
         self.assertEqual(self.complete("make", "ro"), ["rook"])
         self.assertIn("sweep", self.complete("slice", "--engine", ""))
         self.assertEqual(self.complete("help", "ver"), ["verify"])
+        self.assertEqual(self.complete("strategy", ""), ["show", "check"])
+        self.assertEqual(self.complete("strategy", "check", ""), [])  # files, which bash finds by itself
+
+    @unittest.skipIf(shutil.which("fish") is None, "fish is not installed")
+    def test_fish_offers_what_fits(self):
+        script = self.write("script", self.succeed("completion", "fish").out)
+        self.write("s.toml", b"")
+
+        def complete(words):
+            done = subprocess.run(["fish", "--no-config", "-c", f"source {script}; complete -C 'lamella {words}'"],
+                                  capture_output=True, timeout=60, cwd=script.parent)
+            return [line.split("\t")[0] for line in done.stdout.decode().splitlines()]
+
+        self.assertEqual(complete("make ro"), ["rook"])
+        self.assertEqual(complete("help ver"), ["verify"])
+        self.assertEqual(sorted(complete("strategy ")), ["check", "show"])
+        self.assertIn("s.toml", complete("strategy check "))
+        self.assertNotIn("show", complete("strategy check "))
+        self.assertIn("s.toml", complete("info "))
 
     @unittest.skipIf(shutil.which("mandoc") is None, "mandoc is not installed")
     def test_the_man_page_is_well_formed(self):

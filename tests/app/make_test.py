@@ -107,6 +107,14 @@ class Make(ProgramTest):
         self.assertEqual(result.out, self.bytes_of("box.stl"))
         self.assertIn("12 triangles", result.err)
 
+    def test_the_extension_says_the_format_in_capitals_as_well(self):
+        self.succeed("make", "box", "-o", "box.PLY")
+        self.assertTrue(self.bytes_of("box.PLY").startswith(b"ply"))
+        self.succeed("make", "lattice", "--cells", "1", "-o", "lattice.OBJ")
+        self.assertIn(b"\nf ", self.bytes_of("lattice.OBJ"))
+        for name in ["box.stl.gz", "box.GZ", "box.3MF"]:
+            self.fail_with(2, "are written as", "make", "box", "-o", name)
+
     def test_options_that_a_body_does_not_have(self):
         self.fail_with(2, "--holes.*box.*size", "make", "box", "--holes", "9")
         self.fail_with(2, "--size.*rook.*--scale", "make", "rook", "--size", "9")
@@ -115,7 +123,8 @@ class Make(ProgramTest):
         self.fail_with(2, "holes", "make", "sheet", "--holes", "10")
         self.fail_with(2, "segments", "make", "sheet", "--segments", "2")
         self.fail_with(2, "too many", "make", "sheet", "--holes", "99999999999")
-        self.fail_with(2, "one length", "make", "sphere", "--size", "1,2,3")
+        self.fail_with(2, "one length$", "make", "sphere", "--size", "1,2,3")
+        self.fail_with(2, "one length, or three", "make", "box", "--size", "1,2")
         self.fail_with(2, "lamella: error: ", "make", "box", "--size", "0")
         self.fail_with(2, "lamella: error: ", "make", "box", "--size", "-1,1,1")
         self.fail_with(2, "lamella: error: ", "make", "torus", "--thickness", "100")

@@ -94,14 +94,16 @@ class Memory(ProgramTest):
             self.check("lattice.stl", "--layer-height", "0.5", name=name, threads=[2])
 
     def test_of_placed_parts(self):
-        self.check(self.lattice(), "--rotate", "10,20,30", "--unit", "cm", "--layer-height", "5", threads=[1, 2])
+        for options in [[], ["--shuffle", 5]]:
+            self.check(self.lattice("lattice.stl", *options), "--rotate", "10,20,30", "--unit", "cm", "--layer-height", "5",
+                       threads=[1, 2])
         self.check("lattice.stl", "--slice-at", "top", "--layers", "20:60", threads=[2])
 
     def test_of_plates(self):
-        self.lattice()
         self.succeed("make", "sphere", "--detail", 6, "-o", "sphere.stl")
-        self.check("lattice.stl", "--copies", 2, "sphere.stl", "--translate", "0,0,3", "--layer-height", "0.5",
-                   threads=[1, 2])
+        for options in [[], ["--shuffle", 5]]:
+            self.check(self.lattice("lattice.stl", *options), "--copies", 2, "sphere.stl", "--translate", "0,0,3",
+                       "--layer-height", "0.5", threads=[1, 2])
 
     def test_a_mesh_that_fits_with_layers_that_do_not(self):
         self.succeed("make", "sheet", "--holes", 25, "-o", "sheet.stl")
@@ -139,7 +141,9 @@ class Memory(ProgramTest):
         self.lattice()
         self.fail_with(5, r"above the 1\.0 kB of --max-memory", "slice", "lattice.stl", "-o", "a.cli", "--max-memory", "1K")
         self.fail_with(5, r"the layer at z = .* alone is cut from .* triangles.*--max-memory", "slice", "lattice.stl",
-                       "-o", "a.cli", "--max-memory", "1M")
+                       "-o", "a.cli", "--threads", "2", "--max-memory", "46700K")
+        self.fail_with(5, r"287 layers and --threads 2 take .* above the 1\.0 MB of --max-memory", "slice", "lattice.stl",
+                       "-o", "a.cli", "--threads", "2", "--max-memory", "1M")
 
     def test_wishes_that_need_the_whole_mesh(self):
         self.lattice()
@@ -160,25 +164,41 @@ class Memory(ProgramTest):
             self.path("a.cli").unlink()
 
     def test_a_disk_that_is_full(self):
-        self.lattice()
+        self.lattice("shuffled.stl", "--shuffle", 5)
 
         def small_files():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, 1 << 16))
         result = self.fail_with(6, r"spill: cannot hold [0-9.]+ MB of temporary data: .*TMPDIR", "slice",
-                                "lattice.stl", "--stats", "-", "--max-memory", "52M", "--threads", 2, env=self.environment,
+                                "shuffled.stl", "--stats", "-", "--max-memory", "52M", "--threads", 2, env=self.environment,
                                 preexec_fn=small_files)
         self.assertIn("--max-memory", result.err)
 
     def test_no_folder_for_temporary_data(self):
-        self.lattice()
-        self.fail_with(6, "/nowhere: cannot hold", "slice", "lattice.stl", "-o", "a.cli", "--max-memory", "52M",
+        self.lattice("shuffled.stl", "--shuffle", 5)
+        self.fail_with(6, "/nowhere: cannot hold", "slice", "shuffled.stl", "-o", "a.cli", "--max-memory", "52M",
                        "--threads", 2, env=dict(os.environ, TMPDIR="/nowhere"))
 
+    def test_no_temporary_data_where_triangles_lie_together_that_the_same_planes_cut(self):
+        self.lattice("large.stl", "--cells", 10)
+        bytes_ = bytearray(self.bytes_of("large.stl"))
+        for at in range(84 + 12, len(bytes_), 50 * 9973):
+            bytes_[at:at + 4] = struct.pack("<f", float("nan"))
+        self.write("damaged.stl", bytes(bytes_))
+        for name, *options in [("large.stl",), ("large.stl", "--copies", 2), ("large.stl", "--rotate-z", 30, "--layers", "50:400"),
+                               ("large.stl", "--scan", "--layer-height", 0.5), ("damaged.stl",)]:
+            self.environment["TMPDIR"] = str(self.spill)
+            whole = self.slice(name, *options, "-o", "whole.cli")
+            self.environment["TMPDIR"] = "/nowhere"
+            slabs = self.slice(name, *options, "-o", "slabs.cli", "--max-memory", "120M", "--threads", 2)
+            self.assertGreater(slabs["slabs"], 1)
+            self.assertEqual(self.bytes_of("slabs.cli"), self.bytes_of("whole.cli"))
+            self.assertEqual(slabs["volume_mm3"], whole["volume_mm3"])
+
     def test_a_run_that_is_stopped_leaves_nothing(self):
-        self.lattice()
+        self.lattice("shuffled.stl", "--shuffle", 5)
         for number, code in [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)]:
             for stage in ["read", "slice"]:
-                process = subprocess.Popen([PROGRAM, "slice", "lattice.stl", "-o", "a.svg", "--layer-height", "0.001",
+                process = subprocess.Popen([PROGRAM, "slice", "shuffled.stl", "-o", "a.svg", "--layer-height", "0.001",
                                             "--max-memory", "80M", "--threads", "2", "--progress", "json"],
                                            cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL,
                                            stderr=subprocess.PIPE)

@@ -58,6 +58,7 @@ class Strategy(ProgramTest):
         self.check('[hatch]\n\ndistance = "wide"\n', r's\.toml:3: hatch\.distance is "wide", but has to be a number')
         self.check("[contours]\ncount = 1.5\n", r"s\.toml:2: contours\.count is 1\.5, but has to be a whole number")
         self.check("[contours]\ncount = -1\n", r"s\.toml:2: contours\.count is -1, but has to be a whole number")
+        self.check("[contours]\ncount = 1.0\n", r"s\.toml:2: contours\.count is 1, but has to be a whole number, 0 or more, written without a point")
         self.check("[contours]\ncount = 101\n", r"s\.toml:2: contours\.count is 101, but has to be at most 100")
         self.check('[contours]\nbefore_hatch = "no"\n', r's\.toml:2: contours\.before_hatch is "no", but has to be true or false')
         self.check('[hatch]\npattern = "stripe"\n', r's\.toml:2: hatch\.pattern is "stripe", .*did you mean stripes\?')
@@ -90,10 +91,33 @@ class Scan(ProgramTest):
     def stats(self, *options):
         return self.succeed("slice", "part.stl", "--layer-height", "1", "--stats", "-", *options).json()
 
+    @staticmethod
+    def without_parameters(name, parts):
+        return (f"lamella: warning: {name}: parameters of scan vectors, such as power and speed, were left out for {parts} parts: "
+                "the format has no place for such; ilt, ovf and 3mf-toolpath have\n")
+
+    def parameters_left_out(self, name, parts):
+        """What writing a job of so many parts says of the parameters that its format has no place for."""
+        if name.endswith((".json", ".cli")):
+            return self.without_parameters(name, parts)
+        lost = {"ilt": "jump speeds, delays and spots", "ovf": "spots"}.get(name.rpartition(".")[2])
+        return "" if lost is None else (f"lamella: warning: {name}: of the parameters of scan vectors, {lost} were left out for {parts} "
+                                        "parts: the format has no place for such\n")
+
+    def test_powers_and_speeds_are_not_lost_in_silence(self):
+        slicing = ["slice", "part.stl", "--layer-height", "1", "--scan"]
+        self.succeed(*slicing, "-o", "job.ilt")
+        self.fail_with(4, "parameters of scan vectors", "convert", "job.ilt", "x.json", "--strict")
+        self.fail_with(4, "parameters of scan vectors", *slicing, "--strict", "-o", "x.cli")
+        self.succeed(*slicing, "-o", "job.cli")
+        for name in ("back.ilt", "back.ovf"):
+            result = self.succeed("convert", "job.cli", name)
+            self.assertRegex(result.err, r"^lamella: warning: \S+: \d parts have no parameters of scan vectors, such as power")
+
     def test_a_job_of_vectors_is_read_back(self):
         result = self.succeed("slice", "part.stl", "--label", "bracket", "--layer-height", "1", "-o", "job.cli", "--scan", *HATCHED)
         self.assertRegex(result.text, r"(?m)^scan     [\d,]+ vectors, [\d.]+ mm marked, [\d.]+ mm jumped, [\d.]+ s, [\d.]+ J$")
-        self.assertEqual(result.err, "")
+        self.assertEqual(result.err, self.without_parameters("job.cli", 5))
         info = self.succeed("info", "job.cli").text
         self.assertIn("bracket core contour 1", info)
         self.succeed("convert", "job.cli", "job.json")
@@ -130,7 +154,7 @@ class Scan(ProgramTest):
             self.assertAlmostEqual(sum(layer["scan"][key] for layer in stats["layers"]), scan[key])
             self.assertGreater(scan[key], 0)
         # Contours of 9.9 and 9.7 mm by 5.9 and 5.7 mm, at 120 W and 500 mm/s.
-        contours = self.stats("--scan", "--contours", "2", "--shortest", "100")["scan"]
+        contours = self.stats("--scan", "--contours", "2", "--pattern", "lines", "--shortest", "100")["scan"]
         self.assertAlmostEqual(contours["marked_mm"], 4 * 2 * (9.9 + 5.9 + 9.7 + 5.7), places=6)
         self.assertAlmostEqual(contours["energy_j"], contours["marked_mm"] / 500 * 120, places=6)
 
@@ -179,7 +203,7 @@ class Scan(ProgramTest):
         for name in ("job.json", "job.cli", "job.ilt", "job.ovf", "job.3mf"):
             chosen = ["--format", "3mf-toolpath"] if name == "job.3mf" else []
             result = self.succeed("slice", "plate.3mf", "--include", "support", "-o", name, *chosen, *options, "--stats", "stats.json")
-            self.assertEqual(result.err, "")
+            self.assertEqual(result.err, self.parameters_left_out(name, 6))
             self.succeed("convert", name, "back.json")
             self.assertEqual([part["label"] for part in json.loads(self.bytes_of("back.json"))["parts"]], labels)
         stats = json.loads(self.bytes_of("stats.json"))["scan"]
@@ -204,6 +228,19 @@ class Scan(ProgramTest):
         sliced, scanned = (json.loads(self.bytes_of(name))["parts"] for name in ("sliced.json", "scanned.json"))
         self.assertEqual([part["label"] for part in scanned], [part["label"] for part in sliced])
         self.assertIn("foot support hatch", [part["label"] for part in scanned])
+
+    def test_names_of_vectors_without_parameters_are_kept(self):
+        self.succeed("slice", "part.stl", "--label", "bracket", "-o", "job.npz", "--layer-height", "1", "--scan", *HATCHED)
+        self.succeed("convert", "job.npz", "job.json")
+        for name in ("back.ovf", "back.ilt", "back.3mf"):
+            chosen = ["--format", "3mf-toolpath"] if name == "back.3mf" else []
+            self.succeed("convert", "job.npz", name, *chosen)
+            self.succeed("convert", name, "back.json")
+            job, back = (json.loads(self.bytes_of(file)) for file in ("job.json", "back.json"))
+            # A part without vectors has no place in these.
+            used = [part for i, part in enumerate(job["parts"])
+                    if any(any(map(layer["parts"][i].get, ("rings", "chains", "hatches"))) for layer in job["layers"])]
+            self.assertEqual(back["parts"], job["parts"] if name == "back.ilt" else used, name)
 
     def test_any_file_can_be_said_to_be_a_support(self):
         self.succeed("slice", "part.stl", "part.stl", "--support", "--translate", "20,0,0", "--label", "foot", "-o", "job.json",
@@ -297,11 +334,63 @@ class Scan(ProgramTest):
         self.succeed("slice", "open.stl", "-o", "open.json", "--layer-height", "1")
         self.assertRegex(self.succeed("scan", "open.json", "-o", "open.cli").err, "5 open contours left out")
 
+    def test_walls_that_are_too_thin_are_counted(self):
+        self.write("wall.stl", binary_stl(box_triangles(0.08, 6, 4)))
+        slicing = ["slice", "part.stl", "wall.stl", "--translate", "20,0,0", "--layer-height", "1"]
+        thin = "4 rings on 4 layers, the lowest at z = 0.5 mm, are thinner than the beam's offsets: they have no vectors"
+        result = self.succeed(*slicing, "--scan", "-o", "job.json", "--stats", "stats.json")
+        self.assertIn(f"lamella: warning: part.stl: {thin}\n", result.err)
+        scan = json.loads(self.bytes_of("stats.json"))["scan"]
+        self.assertEqual((scan["thin_rings"], scan["thin_layers"]), (4, 4))
+        self.fail_with(4, thin, *slicing, "--scan", "-o", "x.ilt", "--strict")
+        self.succeed(*slicing, "-o", "layers.npz")
+        result = self.succeed("scan", "layers.npz", "-o", "again.json", "--stats", "stats.json")
+        self.assertIn(f"layers.npz: {thin}", result.err)
+        self.assertEqual(json.loads(self.bytes_of("stats.json"))["scan"]["thin_rings"], 4)
+        self.fail_with(4, thin, "scan", "layers.npz", "-o", "x.ilt", "--strict")
+        self.path("parts").mkdir()
+        self.path("wall.stl").rename(self.path("parts/wall.stl"))
+        record = self.succeed("slice", "--batch", "parts", "-o", "out", "--format", "ilt", "--layer-height", "1", "--scan").json()
+        self.assertEqual(len([warning for warning in record["warnings"] if thin in warning]), 1)
+
+    def test_layers_that_are_inside_out_are_told(self):
+        self.write("inverted.stl", binary_stl([t[::-1] for t in box_triangles(5, 5, 3)]))
+        self.succeed("slice", "inverted.stl", "-o", "layers.npz", "--layer-height", "1")
+        result = self.succeed("scan", "layers.npz", "-o", "job.json")
+        self.assertRegex(result.err, r"layers\.npz: inside out in 3 of 3 layers, first at z = 0\.5 mm")
+        self.fail_with(4, "inside out", "scan", "layers.npz", "-o", "x.json", "--strict")
+
+    def test_what_a_file_of_vectors_holds_is_told(self):
+        stats = self.stats("--scan", *HATCHED)["scan"]
+        for name in ("job.ovf", "job.json"):
+            self.succeed("slice", "part.stl", "-o", name, "--layer-height", "1", "--scan", *HATCHED)
+            info = self.succeed("info", name, "--json").json()
+            self.assertNotIn("volume_mm3", info)
+            for key in ("contour_vectors", "hatch_vectors"):
+                self.assertEqual(info[key], stats[key])
+            for key in ("marked_mm", "jumped_mm"):
+                self.assertAlmostEqual(info[key] / stats[key], 1, places=4)
+            if name == "job.ovf":
+                self.assertAlmostEqual(info["build_seconds"] / stats["build_seconds"], 1, places=4)
+            else:  # which has no place for speeds
+                self.assertIsNone(info["build_seconds"])
+                self.assertIsNone(info["energy_j"])
+            text = self.succeed("info", name).text
+            self.assertIn("hatch vectors", text)
+            self.assertNotIn("volume", text)
+
+    def test_steps_are_for_contours(self):
+        self.succeed("slice", "part.stl", "-o", "job.ovf", "--layer-height", "1", "--scan")
+        for step in (["--offset", "0.1"], ["--fill", "nonzero"], ["--simplify", "0.1"], ["--min-area", "1"], ["--largest-only"]):
+            self.fail_with(2, "job.ovf: holds scan vectors .* before lamella scan", "convert", "job.ovf", "x.cli", *step)
+            self.fail_with(2, "job.ovf: holds scan vectors .* before lamella scan", "view", "job.ovf", "-o", "x.html", *step)
+        self.succeed("convert", "job.ovf", "job.ilt")
+
     def test_jobs_of_machines_keep_what_is_exposed(self):
         for name, other in (("job.ilt", "job.ovf"), ("job.ovf", "job.ilt")):
             options = ["--layer-height", "1", "--scan", *HATCHED, "--skin-layers", "1"]
-            self.assertEqual(self.succeed("slice", "part.stl", "-o", name, *options).err, "")
-            self.succeed("convert", name, f"from_{other}", "--strict")
+            self.assertEqual(self.succeed("slice", "part.stl", "-o", name, *options).err, self.parameters_left_out(name, 5))
+            self.succeed("convert", name, f"from_{other}", *(["--strict"] if other == "job.ovf" else []))
             self.succeed("convert", f"from_{other}", "again.json")
             self.succeed("convert", name, "once.json")
             again, once = (json.loads(self.bytes_of(f"{kind}.json")) for kind in ("again", "once"))

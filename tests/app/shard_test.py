@@ -5,7 +5,7 @@ import os
 import shutil
 import subprocess
 
-from program import PROGRAM, SOURCE, ProgramTest, main
+from program import PROGRAM, SOURCE, ProgramTest, binary_stl, box_triangles, main, open_box
 
 CLUSTER = SOURCE / "examples" / "cluster"
 
@@ -50,6 +50,21 @@ class Shard(ProgramTest):
             if name != "svg":  # its coordinates count from a corner of the box, which a merged file has anew
                 self.assertEqual(whole["layers"], merged["layers"], name)
             self.succeed("compare", f"whole.{name}", f"merged.{name}")
+
+    def test_copies_have_no_points_that_moving_made_equal(self):
+        # Two boxes, one on the other: a plane just below their border leaves points that differ in their last digits.
+        low = box_triangles(1, 1, 1)
+        high = [tuple((x, y, z + 1) for x, y, z in triangle) for triangle in low]
+        self.write("part.stl", binary_stl(low + high))
+        options = ["--layer-height", 1 / 6, "--slice-at", "bottom", "--copies", 2, "--spacing", 6]
+        self.succeed("slice", "part.stl", "-o", "whole.json", *options)
+        whole = json.loads(self.bytes_of("whole.json"))["layers"]
+        for layer in whole:
+            for numbers in (ring for part in layer["parts"] for ring in part["rings"]):
+                ring = list(zip(numbers[::2], numbers[1::2]))
+                self.assertTrue(all(p != q for p, q in zip(ring, ring[1:] + ring[:1])), ring)
+        self.succeed("merge", "merged.json", *self.slice_all(2, "json", *options))
+        self.assertEqual(json.loads(self.bytes_of("merged.json"))["layers"], whole)
 
     def test_shards_are_of_equal_work_not_height(self):
         # A fine sphere on a tall plain box.
@@ -100,6 +115,27 @@ class Shard(ProgramTest):
         self.write("a.cli.shard", "{")
         redone("--shard", "3/5")
 
+    def test_finished_shards_have_the_statistics_and_the_report_that_are_asked_for(self):
+        self.lattice()
+        shard = ["slice", "part.stl", "-o", "a.cli", "--shard", "2/4", "--resume"]
+        self.succeed(*shard)
+        for more in [["--stats", "a.json"], ["--stats", "a.json", "--stats", "b.json"], ["--report", "a.html"]]:
+            if more[0] == "--report" and self.run_program(*shard, *more).code == 2:
+                continue  # a program without the viewer
+            self.path(more[-1]).unlink(missing_ok=True)
+            self.assertIn("sliced", self.succeed(*shard, *more).text, more)
+            self.assertTrue(self.path(more[-1]).exists())
+            self.assertIn("is finished", self.succeed(*shard, *more).text, more)
+        self.write("a.json", "{}")
+        self.assertIn("sliced", self.succeed(*shard, "--stats", "a.json").text)
+
+    def test_a_shard_whose_statistics_failed_is_not_finished(self):
+        self.lattice()
+        shard = ["slice", "part.stl", "-o", "a.cli", "--shard", "2/4", "--resume", "--stats"]
+        self.assertEqual(self.run_program(*shard, "/dev/full").code, 6)
+        self.assertNotIn("a.cli.shard", self.listing())
+        self.assertIn("sliced", self.succeed(*shard, "a.json").text)
+
     def test_merge_refuses_what_does_not_belong_together(self):
         self.lattice()
         a, b, c, d = self.slice_all(4, "cli")
@@ -138,12 +174,48 @@ class Shard(ProgramTest):
         self.fail_with(3, "one is cli, the other cli-ascii", "merge", "m.cli", "a.cli", "text.cli", "c.cli")
         self.fail_with(3, "no such file", "merge", "m.cli", "a.cli", "nowhere.cli")
 
+    def test_merge_takes_shards_with_open_contours_and_without_some_of_the_parts(self):
+        self.write("part.stl", binary_stl(open_box(4, 4, 4)))
+        self.succeed("slice", "part.stl", "-o", "whole.svg", "--layer-height", "1")
+        merged = self.succeed("merge", "merged.svg", *self.slice_all(2, "svg", "--layer-height", "1"))
+        self.assertRegex(merged.err, r"part\.1\.svg: 2 contours are open")
+        self.succeed("compare", "whole.svg", "merged.svg")
+        self.succeed("make", "box", "--size", "4,4,8", "-o", "part.stl")
+        self.succeed("make", "box", "--size", "4,4,2", "-o", "low.stl")
+        for name, options in (("ovf", []), ("3mf", ["--format", "3mf-toolpath"])):
+            plate = ["slice", "part.stl", "low.stl", "--translate", "9,0,0", "--layer-height", "1", *options]
+            self.succeed(*plate, "-o", f"whole.{name}")
+            shards = [f"shard.{i}.{name}" for i in (1, 2)]
+            for i, shard in enumerate(shards, 1):
+                self.succeed(*plate, "-o", shard, "--shard", f"{i}/2")
+            self.succeed("merge", f"merged.{name}", *shards, *options)
+            self.succeed("compare", f"whole.{name}", f"merged.{name}")
+
+    def test_merge_refuses_layers_that_are_exposed_otherwise(self):
+        self.succeed("make", "box", "--size", "4,4,4", "-o", "part.stl")
+        self.write("strong.toml", "[parameters.hatch]\npower_w = 333\n")
+        for name in ("ovf", "ilt"):
+            scan = ["slice", "part.stl", "--layer-height", "1", "--scan"]
+            self.succeed(*scan, "-o", f"a.{name}", "--layers", ":2")
+            self.succeed(*scan, "-o", f"b.{name}", "--layers", "2:", "--strategy", "strong.toml")
+            self.fail_with(3, rf"a\.{name} and b\.{name}: the part part core hatch has power_w 200 in one and 333 in the other",
+                           "merge", f"m.{name}", f"a.{name}", f"b.{name}")
+
+    def test_shards_may_differ_in_what_leaves_the_layers_alone(self):
+        self.lattice()
+        self.succeed("slice", "part.stl", "-o", "a.cli", "--shard", "1/2", "--inspect", "--max-output", "1G")
+        self.succeed("slice", "part.stl", "-o", "b.cli", "--shard", "2/2", "--stats", "b.json")
+        self.succeed("merge", "merged.cli", "a.cli", "b.cli")
+        self.succeed("slice", "part.stl", "-o", "whole.cli")
+        self.assertEqual(self.bytes_of("merged.cli"), self.bytes_of("whole.cli"))
+
     def test_what_cannot_be_shared_out(self):
         self.succeed("make", "box", "--size", "10,10,1", "-o", "part.stl")
         self.fail_with(2, "10 layers cannot be divided into 11", "slice", "part.stl", "-o", "a.cli", "--shard", "1/11")
         for share in ["0/3", "4/3", "3", "a/b", "1/0"]:
             self.fail_with(2, "share such as 2/8|whole number", "slice", "part.stl", "-o", "a.cli", "--shard", share)
         self.fail_with(2, "--resume goes with --shard", "slice", "part.stl", "-o", "a.cli", "--resume")
+        self.fail_with(2, "--resume goes with --output", "slice", "part.stl", "--stats", "a.json", "--shard", "1/2", "--resume")
         self.fail_with(2, "from a file", "slice", "-", "-o", "a.cli", "--shard", "1/2")
 
     def test_the_array_script_slices_and_merges(self):

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import re
 
 from program import ProgramTest, binary_stl, box_triangles, main, open_box
@@ -209,7 +210,7 @@ class Slice(ProgramTest):
 
     def test_layers_that_single_precision_cannot_tell_apart_are_refused(self):
         self.succeed("make", "sphere", "-o", "ball.stl")
-        self.fail_with(2, "so thin that its top", "slice", "ball.stl", "-o", "x.cli", "--layer-height", "0.1",
+        self.fail_with(2, "its top, z = .* mm, is not above the height before it", "slice", "ball.stl", "-o", "x.cli", "--layer-height", "0.1",
                        "--translate", "0,0,1e7")
 
     def test_placement_is_unit_scale_rotation_translation(self):
@@ -266,12 +267,92 @@ class Slice(ProgramTest):
         self.stats("box.stl")
         self.assertEqual(self.listing(), before)
 
+    def test_options_of_the_slice_file_say_nothing_without_one(self):
+        self.box()
+        for words in [["--units-mm", "3"], ["--short"], ["--max-output", "1"], ["--antialias", "3"], ["--format", "cli"]]:
+            self.fail_with(2, f"{words[0]} goes with --output", "slice", "box.stl", "--stats", "s.json", *words)
+
+    def test_two_results_do_not_go_to_one_file(self):
+        self.box()
+        for other in ["./x.json", str(self.path("x.json"))]:
+            self.fail_with(2, "--output and --stats contradict", "slice", "box.stl", "-o", "x.json", "--stats", other)
+        self.succeed("slice", "box.stl", "-o", "-", "--format", "cli", "--stats", "./-")
+        self.write("x.json", "{}")
+        self.path("link.json").symlink_to("x.json")
+        self.fail_with(2, "--output and --stats contradict", "slice", "box.stl", "-o", "x.json", "--stats", "link.json")
+
+    def test_options_name_all_formats_that_take_them(self):
+        self.box()
+        self.fail_with(2, "--units-mm goes with the formats cli, cli-ascii, ilt, 3mf-toolpath, not with svg", "slice",
+                       "box.stl", "-o", "x.svg", "--units-mm", "0.01")
+        self.fail_with(2, "--short goes with the formats cli, ilt, not with svg", "slice", "box.stl", "-o", "x.svg", "--short")
+
+    def test_messages_call_standard_input_by_its_name(self):
+        result = self.succeed("slice", "-", "-o", "x.cli", stdin=binary_stl(open_box(20, 30, 10)))
+        self.assertRegex(result.err, r"^lamella: warning: standard input: 100 open chains .* mm\n$")
+        self.assertIn("read     standard input: 10 triangles", result.text)
+
     def test_statistics_go_to_a_file_beside_the_result(self):
         self.box()
         result = self.succeed("slice", "box.stl", "-o", "box.cli", "--stats", "box.json")
         self.assertIn("100 layers", result.text)
         self.assertEqual(len(json.loads(self.bytes_of("box.json"))["layers"]), 100)
         self.assertEqual(self.listing(), ["box.cli", "box.json", "box.stl"])
+
+    def test_statistics_follow_links_and_keep_permissions_as_results_do(self):
+        self.box()
+        self.path("kept").mkdir()
+        for name in ["box.cli", "box.json"]:
+            self.write(f"kept/{name}", "old").chmod(0o640)
+            self.path(name).symlink_to(f"kept/{name}")
+        self.succeed("slice", "box.stl", "-o", "box.cli", "--stats", "box.json")
+        for name in ["box.cli", "box.json"]:
+            self.assertTrue(self.path(name).is_symlink(), name)
+            self.assertEqual(self.path(f"kept/{name}").stat().st_mode & 0o777, 0o640, name)
+        self.assertEqual(len(json.loads(self.bytes_of("kept/box.json"))["layers"]), 100)
+
+    def test_a_place_that_takes_no_statistics_is_found_before_anything_is_written(self):
+        self.box()
+        self.write("box.cli", "old")
+        self.fail_with(6, "'nodir' does not exist", "slice", "box.stl", "-o", "box.cli", "--stats", "nodir/s.json")
+        self.fail_with(6, "it is a folder", "slice", "box.stl", "-o", "box.cli", "--stats", str(self.folder))
+        self.assertEqual(self.bytes_of("box.cli"), b"old")
+
+    def test_a_missing_folder_of_temporary_files_is_named(self):
+        self.box()
+        self.fail_with(6, r"temporary file in the folder '/nonexist'.*TMPDIR", "slice", "box.stl", "-o", "-", "--format", "npz",
+                       env=os.environ | {"TMPDIR": "/nonexist"})
+
+    def test_warnings_of_files_name_them(self):
+        for name in ["a.stl", "b.stl"]:
+            self.write(name, binary_stl(box_triangles(20, 30, 10)) + b"more")
+        result = self.succeed("slice", "a.stl", "b.stl", "-o", "plate.cli")
+        self.assertEqual([line.split(": ")[2] for line in result.err.splitlines()], ["a.stl", "b.stl"], result.err)
+
+    def test_steps_that_leave_nothing_are_warned_about(self):
+        self.box()
+        for option in ["--offset=-100", "--min-area=1000"]:
+            result = self.succeed("slice", "box.stl", "-o", "box.cli", option)
+            self.assertRegex(result.err, r"^lamella: warning: box\.stl: no contour is left in any of 100 layers: .* of 100\n$")
+            self.fail_with(4, "nothing is left of any of 100 layers", "slice", "box.stl", "-o", "strict.cli", option, "--strict")
+            self.assertFalse(self.path("strict.cli").exists())
+        # What leaves some contours, or found none, is as it was asked for.
+        self.assertEqual(self.succeed("slice", "box.stl", "-o", "box.cli", "--offset=-1").err, "")
+
+    def test_closed_contours_within_open_ones_are_not_called_inside_out(self):
+        # A box with a hollow; the outer wall has a hole.
+        hollow = [tuple((x + 5, y + 5, z) for x, y, z in t) for t in box_triangles(10, 10, 10)]
+        self.write("open.stl", binary_stl(open_box(20, 30, 10) + [(a, c, b) for a, b, c in hollow]))
+        result = self.succeed("slice", "open.stl", "-o", "open.cli", "--layer-height", "1")
+        self.assertIn("10 open chains", result.err)
+        self.assertIn("those around them stay open", result.err)
+        self.assertNotIn("inside out", result.err)
+
+    def test_a_list_of_heights_may_begin_with_a_byte_order_mark(self):
+        self.box()
+        for text in ["1\n2\n", "[1, 2]"]:
+            self.write("z.txt", b"\xef\xbb\xbf" + text.encode())
+            self.assertEqual([layer["z"] for layer in self.stats("box.stl", "--z-list", "z.txt")["layers"]], [1, 2])
 
     def test_an_existing_result_is_replaced(self):
         self.box()

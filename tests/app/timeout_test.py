@@ -1,6 +1,7 @@
 """lamella slice --timeout: a run that takes too long ends by itself, says how far it came, and leaves no file."""
 
 import json
+import os
 import subprocess
 
 from program import PROGRAM, ProgramTest, main
@@ -33,15 +34,37 @@ class Timeout(ProgramTest):
             self.assertEqual(result.err, "")
             self.assertEqual(self.bytes_of("a.cli"), self.bytes_of("b.cli"))
 
-    def test_waiting_for_standard_input_is_stopped(self):
-        process = subprocess.Popen([PROGRAM, "slice", "-", "-o", "out.cli", "--timeout", "0.1"], cwd=self.folder,
-                                   stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+    def stuck(self, *arguments):
+        """What a program says on standard error that waits for standard input, until its time is up."""
+        process = subprocess.Popen([PROGRAM, "slice", "-", "-o", "out.cli", "--timeout", "0.1", *arguments],
+                                   cwd=self.folder, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
         self.assertEqual(process.wait(timeout=60), 5)
-        self.assertIn(b"stopped after 0.1 s (--timeout)", process.stderr.read())
         self.assertEqual(self.listing(), [])
         process.stdin.close()
-        process.stderr.close()
+        with process.stderr as err:
+            return err.read().decode()
+
+    def test_waiting_for_standard_input_is_stopped(self):
+        self.assertIn("lamella: error: standard input: stopped after 0.1 s (--timeout)", self.stuck())
+        last = json.loads(self.stuck("--progress", "json").splitlines()[-1])
+        self.assertEqual(last["exit_code"], 5)
+        self.assertIn("stopped after 0.1 s (--timeout)", last["error"])
+
+    def test_waiting_for_a_list_or_a_configuration_file_is_stopped(self):
+        self.box()
+        os.mkfifo(self.path("pipe"))
+
+        def is_stopped(option):
+            result = self.run_program("slice", "box.stl", "-o", "box.cli", "--timeout", "0.2", option, "pipe")
+            self.assertEqual(result.code, 5, result.err)
+            self.assertIn("stopped after 0.2 s (--timeout)", result.err)
+            self.assertEqual(self.listing(), ["box.stl", "pipe"])
+        for option in ["--z-list", "--config", "--strategy"]:
+            with self.subTest(option):
+                is_stopped(option)
+                with open(self.path("pipe"), "r+b", buffering=0):  # the other end is open, and nothing comes
+                    is_stopped(option)
 
     def test_progress_as_json_ends_with_the_error(self):
         self.succeed("make", "rook")

@@ -1,9 +1,11 @@
 """lamella verify: a right file passes, each kind of wrong file does not."""
 
+import json
+
 from program import ProgramTest, main
 
 KEYS = ["path", "ok", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
-        "volume_mm3", "max_area_error_mm2"]
+        "volume_mm3", "max_area_error_mm2", "heights"]
 
 
 def ascii_cli(*polylines):
@@ -64,6 +66,21 @@ class Vectors(ProgramTest):
         text = self.run_program("verify", "job.ilt", *right, "--hatch-border", "0.1").text
         self.assertRegex(text, r"(?m)^  [\d]+ vectors are nearer to the edge of the material than the strategy says.*; the first in layer 0 ")
 
+    def test_only_what_was_checked_is_told(self):
+        self.succeed("slice", "rook.stl", "--layer-height", "1", "--scan", "--contours", "0", "-o", "job.cli")
+        text = self.succeed("verify", "job.cli").text
+        self.assertIn("nothing tells where the material is", text)
+        self.assertNotIn("lie within the outermost contours", text)
+        self.assertIn("was not checked", text)
+        self.assertIn("all vectors lie within rook.stl", self.succeed("verify", "job.cli", "--mesh", "rook.stl").text)
+
+    def test_contours_that_are_missing_are_noticed(self):
+        self.succeed("slice", "rook.stl", "--layer-height", "1", "--scan", "--contours", "1", "-o", "job.cli")
+        found = self.verify("job.cli", "--mesh", "rook.stl", "--scan", "--contours", "2", code=4)
+        self.assertGreater(found["wrong_contours"], 50)
+        text = self.run_program("verify", "job.cli", "--mesh", "rook.stl", "--scan", "--contours", "2").text
+        self.assertRegex(text, r"contour 2 is missing on \d+ layers, the first is layer 0 ")
+
     def test_layers_know_no_strategy(self):
         self.succeed("slice", "rook.stl", "--layer-height", "1", "-o", "rook.cli")
         self.fail_with(2, r"rook\.cli: holds no scan vectors", "verify", "rook.cli", "--contours", "2")
@@ -116,6 +133,19 @@ class Verify(ProgramTest):
         self.box("wider.stl", "21,30,10")
         found = self.verify("box.cli", "--mesh", "wider.stl", code=4)
         self.assertGreater(found["max_area_error_mm2"], 20)
+
+    def test_layers_that_are_missing_are_told(self):
+        self.box(size="20,30,2")
+        self.succeed("slice", "box.stl", "-o", "low.json", "--layer-height", "0.1", "--layers", ":5")
+        self.assertEqual(self.verify("low.json", "--mesh", "box.stl")["heights"]["layers"], [0, 0.5])
+        self.assertRegex(self.succeed("verify", "low.json", "--mesh", "box.stl").text,
+                         r"layers from z = 0 to 0\.5 mm, of a mesh from 0 to 2 mm: 25 % of its height")
+        self.succeed("slice", "box.stl", "-o", "all.json", "--layer-height", "0.1")
+        job = json.loads(self.bytes_of("all.json"))
+        del job["layers"][7]
+        self.write("gap.json", json.dumps(job))
+        self.assertEqual(self.verify("gap.json", "--mesh", "box.stl", code=4)["heights"]["gaps"], 1)
+        self.assertIn("a gap between layers", self.run_program("verify", "gap.json", "--mesh", "box.stl").text)
 
     def test_a_sound_file_from_elsewhere(self):
         self.write("a.cli", ascii_cli((1, SQUARE), (0, SMALL[::-1])))

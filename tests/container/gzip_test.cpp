@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/gzip.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 
 #include <gtest/gtest.h>
@@ -33,21 +34,14 @@ ByteSource source(std::string_view bytes) {
     return copy_bytes(std::as_bytes(std::span(bytes.data(), bytes.size())), "part.gz");
 }
 
-std::string unpacked(std::string_view bytes, std::uint64_t max_bytes = 0) {
-    const ByteSource out = unpack_gzip(source(bytes), max_bytes);
+std::string content(std::string_view bytes, std::uint64_t max_bytes = 0) {
+    const ByteSource out = unpacked(source(bytes), max_bytes);
     EXPECT_EQ(out.name, "part.gz");
     return {reinterpret_cast<const char*>(out.bytes.data()), out.bytes.size()};
 }
 
 std::string error_of(std::string_view bytes, std::uint64_t max_bytes = 0, ErrorKind kind = ErrorKind::input) {
-    try {
-        (void)unpacked(bytes, max_bytes);
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind);
-        return error.what();
-    }
-    return {};
+    return test::error_of(kind, [&] { (void)content(bytes, max_bytes); });
 }
 
 /// Text that packs neither well nor badly.
@@ -67,9 +61,9 @@ TEST(Gzip, IsToldByItsFirstBytes) {
 
 TEST(Gzip, UnpacksOneMemberOrSeveral) {
     const std::string text = some_text(18'000'000); // more than two steps of the reader
-    EXPECT_TRUE(unpacked(packed(text)) == text);
-    EXPECT_EQ(unpacked(packed("one ") + packed("") + packed("two")), "one two");
-    EXPECT_EQ(unpacked(packed("one") + std::string(100, '\0')), "one");
+    EXPECT_TRUE(content(packed(text)) == text);
+    EXPECT_EQ(content(packed("one ") + packed("") + packed("two")), "one two");
+    EXPECT_EQ(content(packed("one") + std::string(100, '\0')), "one");
 }
 
 TEST(Gzip, DoesNotBelieveTheSizeInTheFile) {
@@ -86,7 +80,7 @@ TEST(Gzip, StopsAtTheLimit) {
     EXPECT_LT(bomb.size(), 80'000U);
     EXPECT_EQ(error_of(bomb, 1'000'000, ErrorKind::limit),
               "part.gz: unpacks to more than the 1000000 bytes of `max_memory`");
-    EXPECT_EQ(unpacked(bomb, 8'000'000).size(), 8'000'000U);
+    EXPECT_EQ(content(bomb, 8'000'000).size(), 8'000'000U);
 }
 
 TEST(Gzip, NamesTheByteOfADefect) {
@@ -108,7 +102,7 @@ TEST(Gzip, SurvivesMutations) {
             bytes[static_cast<std::size_t>(random.integer(3, static_cast<std::int64_t>(bytes.size()) - 1))] =
                 static_cast<char>(random.bits());
         try {
-            (void)unpack_gzip(source(bytes), 1'000'000);
+            (void)unpacked(source(bytes), 1'000'000);
         } catch (const Error& error) {
             EXPECT_TRUE(error.kind() == ErrorKind::input || error.kind() == ErrorKind::limit);
         }
@@ -118,12 +112,7 @@ TEST(Gzip, SurvivesMutations) {
 TEST(Gzip, EndsWhenAskedTo) {
     CancelFlag stop;
     stop.request();
-    try {
-        (void)unpack_gzip(source(packed("x")), 0, {.cancel = &stop});
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::cancelled);
-    }
+    test::error_of(ErrorKind::cancelled, [&] { (void)unpacked(source(packed("x")), 0, {.cancel = &stop}); });
 }
 
 } // namespace

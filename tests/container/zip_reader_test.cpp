@@ -2,12 +2,14 @@
 
 #include "container/zip_reader.hpp"
 #include "container/zip_writer.hpp"
+#include "core/lower_case.hpp"
 #include "temporary_folder.hpp"
 #include "zip_bytes.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 
@@ -160,6 +162,28 @@ TEST(ZipReader, NamesHaveSlashesAndAreFoundInAnyCaseWhereNoOtherIs) {
     ASSERT_EQ(zip.oddities().size(), 2U);
     EXPECT_TRUE(says(zip.oddities()[0], "1 names in the zip archive have '\\'"));
     EXPECT_TRUE(says(zip.oddities()[1], "begin with '/'"));
+}
+
+TEST(ZipReader, FindsEachNameAmongManyAlike) {
+    std::vector<std::string> names{""};
+    for (std::size_t i = 0; names.size() < 400; ++i)
+        for (const char c : {'a', 'A', '[', '_', 'z', 'Z'})
+            names.push_back(names[i] + c);
+    std::mt19937 random(3);
+    std::shuffle(names.begin() + 1, names.end(), random);
+    std::vector<ZipPart> parts;
+    for (std::size_t i = 1; i < names.size() / 2; ++i)
+        parts.push_back({.name = names[i], .content = names[i], .deflated = false});
+    const ZipReader zip(source_of(zip_bytes(parts)), 0);
+    for (const std::string& name : names) {
+        std::string expected = "(missing)";
+        for (const ZipPart& part : parts) {
+            const bool similar = lower_case(part.name) == lower_case(name) && expected != name;
+            if (part.name == name || (similar && (expected == "(missing)" || part.name < expected)))
+                expected = part.name;
+        }
+        EXPECT_EQ(content(zip, name), expected) << name;
+    }
 }
 
 TEST(ZipReader, TellsWhatFollowsTheArchive) {

@@ -3,6 +3,7 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 
+#include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
 
 #include <gtest/gtest.h>
@@ -16,32 +17,26 @@
 namespace lamella {
 namespace {
 
+using test::normal_layer;
 using test::Random;
 using Points = std::vector<Point2>;
-
-Layer layer_of(const std::vector<Points>& rings, const std::vector<Points>& chains) {
-    LayerBuilder builder;
-    for (const std::vector<Points>* some : {&rings, &chains})
-        for (const Points& contour : *some) {
-            for (const Point2& p : contour)
-                builder.add_point(p);
-            builder.end_contour(some == &rings);
-        }
-    return builder.finish(7, 1.5, 1, 2);
-}
 
 const Points square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
 
 TEST(CloseGaps, PassesThroughWhatHasNoChains) {
-    const Layer layer = layer_of({square}, {});
+    const Layer layer = normal_layer({square}, {});
     const ClosedGaps closed = close_gaps(layer, 1);
     EXPECT_EQ(closed.layer.points.data(), layer.points.data());
     EXPECT_TRUE(closed.joins.empty());
-    EXPECT_EQ(close_gaps(layer_of({}, {}), 1).layer.contours(), 0U);
+    EXPECT_EQ(close_gaps(normal_layer({}, {}), 1).layer.contours(), 0U);
 }
 
 TEST(CloseGaps, ClosesAChainWhoseEndsMeet) {
-    const Layer layer = layer_of({}, {{{0, 0.25}, {0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0.75}}});
+    Layer layer = normal_layer({}, {{{0, 0.25}, {0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0.75}}});
+    layer.index = 7;
+    layer.z = 1.5;
+    layer.bottom = 1;
+    layer.top = 2;
     const ClosedGaps closed = close_gaps(layer, 0.5);
     ASSERT_EQ(closed.joins.size(), 1U);
     EXPECT_EQ(closed.joins[0].from, (Point2{0, 0.75}));
@@ -61,14 +56,15 @@ TEST(CloseGaps, ClosesAChainWhoseEndsMeet) {
 }
 
 TEST(CloseGaps, LeavesOutARepeatedPoint) {
-    const ClosedGaps closed = close_gaps(layer_of({}, {{{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}}), 0.1);
-    EXPECT_TRUE(same_contours(closed.layer, layer_of({square}, {})));
+    const ClosedGaps closed =
+        close_gaps(normal_layer({}, {{{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}}), 0.1);
+    EXPECT_TRUE(same_contours(closed.layer, normal_layer({square}, {})));
     EXPECT_EQ(closed.total_mm, 0);
 }
 
 TEST(CloseGaps, JoinsTheClosestPairsFirst) {
     // Both ends could go on with either start.
-    const Layer layer = layer_of({}, {{{0, 0}, {10, 0}}, {{10.2, 0}, {10.2, 10}}, {{10, 0.3}, {5, 5}}});
+    const Layer layer = normal_layer({}, {{{0, 0}, {10, 0}}, {{10.2, 0}, {10.2, 10}}, {{10, 0.3}, {5, 5}}});
     const ClosedGaps closed = close_gaps(layer, 1);
     ASSERT_EQ(closed.joins.size(), 1U);
     EXPECT_EQ(closed.joins[0].to, (Point2{10.2, 0}));
@@ -76,24 +72,25 @@ TEST(CloseGaps, JoinsTheClosestPairsFirst) {
 }
 
 TEST(CloseGaps, JoinsNoHeadsWithHeadsAndNoTailsWithTails) {
-    EXPECT_TRUE(close_gaps(layer_of({}, {{{0, 0}, {10, 0}}, {{20, 0}, {10.1, 0}}}), 1).joins.empty());
-    EXPECT_TRUE(close_gaps(layer_of({}, {{{0, 0}, {-10, 0}}, {{0.1, 0}, {10, 0}}}), 1).joins.empty());
+    EXPECT_TRUE(close_gaps(normal_layer({}, {{{0, 0}, {10, 0}}, {{20, 0}, {10.1, 0}}}), 1).joins.empty());
+    EXPECT_TRUE(close_gaps(normal_layer({}, {{{0, 0}, {-10, 0}}, {{0.1, 0}, {10, 0}}}), 1).joins.empty());
 }
 
 TEST(CloseGaps, JoinsNothingAcrossAContour) {
     const std::vector<Points> chains{{{0, 0}, {10, 0}}, {{11, 0}, {20, 0}}};
-    EXPECT_EQ(close_gaps(layer_of({}, chains), 2).joins.size(), 1U);
+    EXPECT_EQ(close_gaps(normal_layer({}, chains), 2).joins.size(), 1U);
     const ClosedGaps across =
-        close_gaps(layer_of({{{10.5, -5}, {10.6, -5}, {10.6, 5}, {10.5, 5}}}, chains), 2);
+        close_gaps(normal_layer({{{10.5, -5}, {10.6, -5}, {10.6, 5}, {10.5, 5}}}, chains), 2);
     EXPECT_TRUE(across.joins.empty());
     EXPECT_EQ(across.refused, 1U);
     EXPECT_EQ(across.layer.open_chains(), 2U);
     // Through a corner of another one is across, too.
-    EXPECT_TRUE(close_gaps(layer_of({{{10.5, 0}, {10.7, 3}, {10.3, 3}}}, chains), 2).joins.empty());
+    EXPECT_TRUE(close_gaps(normal_layer({{{10.5, 0}, {10.7, 3}, {10.3, 3}}}, chains), 2).joins.empty());
 }
 
 TEST(CloseGaps, AShortStraightPieceIsNoRing) {
-    const ClosedGaps closed = close_gaps(layer_of({}, {{{0, 0}, {1, 0}}, {{5, 5}, {6, 5}, {6.5, 5.1}}}), 2);
+    const ClosedGaps closed =
+        close_gaps(normal_layer({}, {{{0, 0}, {1, 0}}, {{5, 5}, {6, 5}, {6.5, 5.1}}}), 2);
     EXPECT_TRUE(closed.joins.empty());
     EXPECT_EQ(closed.refused, 2U);
 }
@@ -138,7 +135,7 @@ TEST(CloseGaps, PutsRingsTogetherThatWereTakenApart) {
         for (std::size_t i = chains.size(); i > 1; --i)
             std::swap(chains[i - 1],
                       chains[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
-        const ClosedGaps closed = close_gaps(layer_of({}, chains), 5);
+        const ClosedGaps closed = close_gaps(normal_layer({}, chains), 5);
         ASSERT_EQ(closed.layer.open_chains(), 0U);
         ASSERT_EQ(closed.layer.rings, static_cast<std::size_t>(circles));
         EXPECT_TRUE(in_normal_form(closed.layer));
@@ -168,7 +165,7 @@ TEST(CloseGaps, NeverLosesAPointNorMakesAnEndTwiceOnRandomLayers) {
             else if (points.size() > 1)
                 chains.push_back(points);
         }
-        const Layer layer = layer_of(rings, chains);
+        const Layer layer = normal_layer(rings, chains);
         const double within = random.real(0.1, 3);
         const ClosedGaps closed = close_gaps(layer, within);
         EXPECT_TRUE(in_normal_form(closed.layer));
@@ -190,14 +187,14 @@ TEST(CloseGaps, NeverLosesAPointNorMakesAnEndTwiceOnRandomLayers) {
 
 TEST(CloseGaps, RefusesDistancesThatAreNone) {
     for (const double within : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
-        EXPECT_THROW((void)close_gaps(layer_of({square}, {}), within), Error);
+        EXPECT_THROW((void)close_gaps(normal_layer({square}, {}), within), Error);
 }
 
 TEST(CloseGaps, ManyChainsInOnePlaceAreNoTrap) {
     std::vector<Points> chains;
     for (int i = 0; i < 2000; ++i)
         chains.push_back({{0, 0}, {1, static_cast<double>(i)}, {0, 0}});
-    const ClosedGaps closed = close_gaps(layer_of({}, chains), 1e-3);
+    const ClosedGaps closed = close_gaps(normal_layer({}, chains), 1e-3);
     EXPECT_GT(closed.joins.size(), 60U);
 }
 

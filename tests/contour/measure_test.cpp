@@ -1,5 +1,7 @@
 #include "lamella/contour/measure.hpp"
 
+#include "fixtures/layers.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,16 +72,8 @@ TEST(ContourLength, CountsEverySegmentOfContoursOfAnySize) {
 }
 
 TEST(Measure, SubtractsHolesAndCountsChains) {
-    LayerBuilder builder;
-    const auto add = [&](std::initializer_list<Point2> points, bool closed) {
-        for (const Point2& p : points)
-            builder.add_point(p);
-        builder.end_contour(closed);
-    };
-    add({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, true);
-    add({{2, 2}, {2, 4}, {4, 4}, {4, 2}}, true);
-    add({{20, 0}, {20, 5}}, false);
-    const LayerMeasure m = measure(builder.finish(0, 0, 0, 1));
+    const LayerMeasure m = measure(test::layer_of(
+        {test::rectangle(0, 0, 10, 10), test::reversed(test::rectangle(2, 2, 4, 4))}, {{{20, 0}, {20, 5}}}));
     EXPECT_EQ(m.contours, 3U);
     EXPECT_EQ(m.holes, 1U);
     EXPECT_EQ(m.open_chains, 1U);

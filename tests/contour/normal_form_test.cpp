@@ -1,10 +1,11 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/stack_hash.hpp"
 
+#include "fixtures/layers.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 #include <vector>
 
@@ -19,19 +20,11 @@ struct Contour {
 };
 
 Layer raw_layer(const std::vector<Contour>& contours) {
-    Layer layer;
-    Ring points;
-    for (const bool closed : {true, false}) {
-        for (const Contour& c : contours) {
-            if (c.closed != closed)
-                continue;
-            points.insert(points.end(), c.points.begin(), c.points.end());
-            layer.offsets.push_back(points.size());
-            layer.rings += closed ? 1 : 0;
-        }
-    }
-    layer.points = PointArray(std::move(points));
-    return layer;
+    std::vector<Ring> rings;
+    std::vector<Ring> chains;
+    for (const Contour& c : contours)
+        (c.closed ? rings : chains).push_back(c.points);
+    return test::layer_of(rings, chains);
 }
 
 Ring rotated(Ring ring, std::size_t start) {

@@ -1,5 +1,6 @@
 #include "lamella/contour/open_gaps.hpp"
 
+#include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
 
 #include <gtest/gtest.h>
@@ -19,21 +20,11 @@ using test::Random;
 using Points = std::vector<Point2>;
 
 Layer layer_of(const std::vector<Points>& chains) {
-    LayerBuilder builder;
-    for (const Points& chain : chains) {
-        for (const Point2& p : chain)
-            builder.add_point(p);
-        builder.end_contour(false);
-    }
-    return builder.finish(0, 0, 0, 1);
+    return test::normal_layer({}, chains);
 }
 
 TEST(OpenGaps, AreNoneWhereAllIsClosed) {
-    LayerBuilder builder;
-    for (const Point2& p : Points{{0, 0}, {1, 0}, {0, 1}})
-        builder.add_point(p);
-    builder.end_contour(true);
-    EXPECT_EQ(open_gaps(builder.finish(0, 0, 0, 1)).count, 0U);
+    EXPECT_EQ(open_gaps(test::normal_layer({Points{{0, 0}, {1, 0}, {0, 1}}})).count, 0U);
     EXPECT_EQ(open_gaps(Layer{}).count, 0U);
 }
 

@@ -1,7 +1,6 @@
-#include "lamella/core/error.hpp"
-
 #include "core/atomic_directory.hpp"
 #include "core/child_process.hpp"
+#include "fixtures/expect_error.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -22,13 +21,7 @@ bool is_layer(const fs::path& path) {
 }
 
 std::string error_of(const std::string& path) {
-    try {
-        const AtomicDirectory directory(path, is_layer);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::output);
-        return error.what();
-    }
-    return {};
+    return test::error_of(ErrorKind::output, [&] { const AtomicDirectory directory(path, is_layer); });
 }
 
 TEST(AtomicDirectory, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
@@ -38,7 +31,7 @@ TEST(AtomicDirectory, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
         done.commit();
         AtomicDirectory directory(folder.file("out"), is_layer);
         for (int i = 0; i < 1000; ++i) // more than one reading of a folder gives
-            write_file(directory.working_path() / (std::to_string(i) + ".svg"), "a");
+            directory.write(std::to_string(i) + ".svg", "a");
         remove_unfinished();
         try {
             directory.commit();
@@ -55,7 +48,7 @@ TEST(AtomicDirectory, AppearsWholeAtTheEnd) {
     const TemporaryFolder folder;
     for (const char* name : {"out", "slashed/"}) {
         AtomicDirectory directory(folder.file(name), is_layer);
-        write_file(directory.working_path() / "a.svg", "a");
+        directory.write("a.svg", "a");
         EXPECT_FALSE(fs::exists(folder.file(name)));
         directory.commit();
         EXPECT_EQ(file_bytes(fs::path(folder.file(name)) / "a.svg"), "a");
@@ -66,8 +59,8 @@ TEST(AtomicDirectory, AppearsWholeAtTheEnd) {
 TEST(AtomicDirectory, LeavesNothingBehindWhenItIsNotEnded) {
     const TemporaryFolder folder;
     {
-        const AtomicDirectory directory(folder.file("out"), is_layer);
-        write_file(directory.working_path() / "a.svg", "a");
+        AtomicDirectory directory(folder.file("out"), is_layer);
+        directory.write("a.svg", "a");
     }
     EXPECT_EQ(folder.entries(), Names{});
 }
@@ -77,7 +70,7 @@ TEST(AtomicDirectory, ReplacesAnEmptyFolderAndOneOfItsOwn) {
     fs::create_directory(folder.path() / "out");
     for (const char* name : {"first.svg", "second.svg"}) {
         AtomicDirectory directory(folder.file("out"), is_layer);
-        write_file(directory.working_path() / name, "x");
+        directory.write(name, "x");
         directory.commit();
         EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "out"), {}), 1);
         EXPECT_TRUE(fs::exists(folder.path() / "out" / name));
@@ -119,7 +112,7 @@ TEST(AtomicDirectory, KeepsASymbolicLinkToAFolder) {
     fs::create_directory(folder.path() / "real");
     fs::create_directory_symlink("real", folder.path() / "link");
     AtomicDirectory directory(folder.file("link"), is_layer);
-    write_file(directory.working_path() / "a.svg", "a");
+    directory.write("a.svg", "a");
     directory.commit();
     EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
     EXPECT_TRUE(fs::exists(folder.path() / "real" / "a.svg"));

@@ -1,6 +1,9 @@
+#include "lamella/core/whole_file.hpp"
+
 #include "core/atomic_file.hpp"
 #include "core/child_process.hpp"
 #include "core/nameless_file.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
 #include "temporary_folder.hpp"
 
@@ -12,6 +15,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -26,27 +30,12 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-// The text of the output error that `action` ends with.
 std::string output_error_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::output) << error.what();
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-        return error.what();
-    }
-    ADD_FAILURE() << "no error";
-    return {};
+    return test::error_of(ErrorKind::output, action);
 }
 
 bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
-}
-
-void write_whole(const std::string& path, std::string_view bytes) {
-    AtomicFile file(path);
-    file.append(bytes);
-    file.commit();
 }
 
 TEST(AtomicFile, GetsItsNameOnlyWhenItIsComplete) {
@@ -222,13 +211,13 @@ TEST(AtomicFile, KeepsTheOrderOfPiecesOfAllSizes) {
 TEST(AtomicFile, GivesANewFileThePermissionsOfTheUmaskAndKeepsThoseOfAReplacedOne) {
     const TemporaryFolder folder;
     const mode_t before = umask(027);
-    write_whole(folder.file("new"), "x");
+    write_whole_file(folder.file("new"), "x");
     umask(before);
     struct stat status {};
     ASSERT_EQ(stat(folder.file("new").c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0640U);
     ASSERT_EQ(chmod(folder.file("new").c_str(), 0600), 0);
-    write_whole(folder.file("new"), "y");
+    write_whole_file(folder.file("new"), "y");
     ASSERT_EQ(stat(folder.file("new").c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0600U);
     EXPECT_EQ(file_bytes(folder.file("new")), "y");
@@ -240,20 +229,20 @@ TEST(AtomicFile, WritesThroughASymbolicLinkAndKeepsTheLink) {
     write_file(folder.path() / "real" / "target", "old");
     fs::create_symlink("real/target", folder.path() / "link");
     fs::create_symlink("link", folder.path() / "link2");
-    write_whole(folder.file("link2"), "new");
+    write_whole_file(folder.file("link2"), "new");
     EXPECT_EQ(file_bytes(folder.path() / "real" / "target"), "new");
     EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
     EXPECT_TRUE(fs::is_symlink(folder.path() / "link2"));
     // One that dangles makes its target.
     fs::create_symlink("real/other", folder.path() / "dangling");
-    write_whole(folder.file("dangling"), "made");
+    write_whole_file(folder.file("dangling"), "made");
     EXPECT_EQ(file_bytes(folder.path() / "real" / "other"), "made");
     fs::create_symlink("circle", folder.path() / "circle");
     EXPECT_TRUE(contains(output_error_of([&] { AtomicFile(folder.file("circle")); }), "circle"));
 }
 
 TEST(AtomicFile, WritesSpecialFilesInPlace) {
-    write_whole("/dev/null", "gone");
+    write_whole_file("/dev/null", "gone");
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
 
     const TemporaryFolder folder;
@@ -261,7 +250,7 @@ TEST(AtomicFile, WritesSpecialFilesInPlace) {
     ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
     std::string received;
     std::thread reader([&] { received = file_bytes(fifo); });
-    write_whole(fifo, std::string(200'000, 'f'));
+    write_whole_file(fifo, std::string(200'000, 'f'));
     reader.join();
     EXPECT_EQ(received.size(), 200'000U);
     EXPECT_TRUE(fs::is_fifo(fifo));
@@ -269,7 +258,7 @@ TEST(AtomicFile, WritesSpecialFilesInPlace) {
 
 TEST(AtomicFile, ReportsAFullDisk) {
     const auto fill = [] {
-        write_whole("/dev/full", std::string(1000, 'x'));
+        write_whole_file("/dev/full", std::string(1000, 'x'));
     };
     EXPECT_TRUE(contains(output_error_of(fill), "the disk is full"));
     AtomicFile file("/dev/full");
@@ -281,19 +270,15 @@ TEST(AtomicFile, ReportsAFullDisk) {
 
 // Runs `action` in a child process, where limits can be set that must not stay; true when it returned true.
 bool true_in_child(const std::function<bool()>& action) {
-    const pid_t child = fork();
-    if (child == 0) {
+    const int code = exit_code_of_child([&] {
         bool ok = false;
         try {
             ok = action();
         } catch (...) {
-            ok = false;
         }
         _exit(ok ? 0 : 1);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    });
+    return code == 0;
 }
 
 TEST(AtomicFile, LeavesNoFileWhenTheDiskFillsUpHalfWay) {
@@ -322,7 +307,7 @@ TEST(AtomicFile, WritesStandardOutput) {
     EXPECT_TRUE(true_in_child([&] {
         if (std::freopen(folder.file("out").c_str(), "wb", stdout) == nullptr)
             return false;
-        write_whole("-", "to standard output");
+        write_whole_file("-", "to standard output");
         return write(STDOUT_FILENO, "!", 1) == 1; // it was not closed
     }));
     EXPECT_EQ(file_bytes(folder.file("out")), "to standard output!");
@@ -333,7 +318,7 @@ TEST(AtomicFile, DoesNotReplaceTheFileBehindDevStdout) {
     EXPECT_TRUE(true_in_child([&] {
         if (std::freopen(folder.file("out").c_str(), "wb", stdout) == nullptr)
             return false;
-        write_whole("/dev/stdout", "redirected");
+        write_whole_file("/dev/stdout", "redirected");
         return true;
     }));
     EXPECT_EQ(file_bytes(folder.file("out")), "redirected");
@@ -365,10 +350,33 @@ TEST(AtomicFile, SaysWhatIsWrongWithThePlace) {
     EXPECT_TRUE(contains(error(folder.file(std::string(300, 'n'))), "name is too long"));
 }
 
+TEST(AtomicFile, CanBeAskedForAPlaceThatItLeavesAlone) {
+    const TemporaryFolder folder;
+    write_file(folder.file("old"), "old");
+    check_writable(folder.file("old"));
+    check_writable(folder.file("new"));
+    ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+    check_writable(folder.file("pipe")); // does not wait for a reader
+    check_writable("/dev/full");
+    check_writable("-");
+    EXPECT_TRUE(contains(output_error_of([&] { check_writable(folder.file("no/a")); }), "does not exist"));
+    EXPECT_TRUE(contains(output_error_of([&] { check_writable(folder.path().string()); }), "it is a folder"));
+    EXPECT_EQ(folder.entries(), (Names{"old", "pipe"}));
+    EXPECT_EQ(file_bytes(folder.file("old")), "old");
+}
+
+TEST(AtomicFile, NamesTheFolderOfTemporaryFilesWhereItTakesNone) {
+    EXPECT_TRUE(true_in_child([] {
+        setenv("TMPDIR", "/nonexist", 1);
+        const std::string text = output_error_of([] { AtomicFile file("/dev/null", Overwriting::yes); });
+        return contains(text, "'/nonexist'") && contains(text, "TMPDIR");
+    }));
+}
+
 TEST(AtomicFile, TakesNamesAsLongAsTheFileSystemDoes) {
     const TemporaryFolder folder;
     const std::string name(255, 'n');
-    write_whole(folder.file(name), "x");
+    write_whole_file(folder.file(name), "x");
     EXPECT_EQ(folder.entries(), Names{name});
 }
 

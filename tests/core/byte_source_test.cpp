@@ -1,6 +1,5 @@
-#include "lamella/core/error.hpp"
-
 #include "core/byte_source.hpp"
+#include "fixtures/expect_error.hpp"
 #include "temporary_folder.hpp"
 
 #include <fcntl.h>
@@ -42,16 +41,8 @@ std::string text_of(const ByteSource& source) {
     return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
 }
 
-/// What the error says; fails the test when there is none or it is of another kind.
-std::string error_of(const std::function<void()>& action, ErrorKind kind = ErrorKind::input) {
-    try {
-        action();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind) << error.what();
-        return error.what();
-    }
-    ADD_FAILURE() << "no error";
-    return {};
+std::string error_of(const std::function<void()>& action) {
+    return test::error_of(ErrorKind::input, action);
 }
 
 /// Standard input comes from `descriptor` while this lives.
@@ -80,23 +71,30 @@ TEST_F(ByteSourceTest, GivesTheBytesOfAFile) {
     const ByteSource source = open_bytes(write("part", "seven b"));
     EXPECT_EQ(text_of(source), "seven b");
     EXPECT_EQ(source.name, path("part"));
+    for (const std::size_t bytes : {1, 65'535, 65'536, 100'000}) { // read at once, and mapped
+        const std::string text = some_text(bytes);
+        EXPECT_EQ(text_of(open_bytes(write("part", text))), text) << bytes;
+    }
 }
 
 TEST_F(ByteSourceTest, KeepsTheBytesOfADeletedFileAsLongAsACopyLives) {
-    ByteSource copy;
-    {
-        const ByteSource source = open_bytes(write("part", "still here"));
-        copy = source;
+    for (const std::size_t bytes : {10, 100'000}) {
+        const std::string text = some_text(bytes);
+        ByteSource copy;
+        {
+            const ByteSource source = open_bytes(write("part", text));
+            copy = source;
+        }
+        fs::remove(path("part"));
+        EXPECT_EQ(text_of(copy), text);
+        const std::weak_ptr<const void> watch = copy.owner;
+        copy = {};
+        EXPECT_TRUE(watch.expired());
     }
-    fs::remove(path("part"));
-    EXPECT_EQ(text_of(copy), "still here");
-    const std::weak_ptr<const void> watch = copy.owner;
-    copy = {};
-    EXPECT_TRUE(watch.expired());
 }
 
 TEST_F(ByteSourceTest, KeepsAFileOpenAsLongAsItsBytesLive) {
-    const std::string file = write("part", "x");
+    const std::string file = write("part", some_text(100'000)); // long enough to be mapped
     const auto open_descriptors = [] {
         return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
     };
@@ -110,7 +108,7 @@ TEST_F(ByteSourceTest, KeepsAFileOpenAsLongAsItsBytesLive) {
 }
 
 TEST_F(ByteSourceTest, LeavesDescriptorsToOthersWhereManyAreOpen) {
-    const std::string text = some_text(10'000);
+    const std::string text = some_text(100'000);
     const std::string file = write("part", text);
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -121,7 +119,7 @@ TEST_F(ByteSourceTest, LeavesDescriptorsToOthersWhereManyAreOpen) {
     for (int i = 0; i < 100; ++i)
         sources.push_back(open_bytes(file));
     for (const ByteSource& source : sources) {
-        std::string copy(9'000, ' ');
+        std::string copy(99'000, ' ');
         copy_out(source, 1'000, std::as_writable_bytes(std::span(copy)));
         EXPECT_EQ(copy, text.substr(1'000));
     }
@@ -130,13 +128,13 @@ TEST_F(ByteSourceTest, LeavesDescriptorsToOthersWhereManyAreOpen) {
 }
 
 TEST_F(ByteSourceTest, SaysThatAFileWasCutOffWhileItWasRead) {
-    const std::string file = write("part", some_text(10'000));
+    const std::string file = write("part", some_text(100'000));
     const ByteSource source = open_bytes(file);
     fs::resize_file(file, 4'000);
     std::string copy(9'000, ' ');
     const std::string error =
         error_of([&] { copy_out(source, 1'000, std::as_writable_bytes(std::span(copy))); });
-    EXPECT_NE(error.find("it had 10000 bytes, and ends after 4000 now"), std::string::npos) << error;
+    EXPECT_NE(error.find("it had 100000 bytes, and ends after 4000 now"), std::string::npos) << error;
 }
 
 TEST_F(ByteSourceTest, CopiesBytesThatAreInMemoryAlready) {
@@ -215,7 +213,7 @@ TEST_F(ByteSourceTest, StopsWaitingForAPipeWhenAsked) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         stop.request();
     });
-    error_of([&] { (void)open_bytes(path("pipe"), {.cancel = &stop}); }, ErrorKind::cancelled);
+    test::error_of(ErrorKind::cancelled, [&] { (void)open_bytes(path("pipe"), {.cancel = &stop}); });
 }
 
 TEST_F(ByteSourceTest, NamesWhatIsWrongWithAPath) {

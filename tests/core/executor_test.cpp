@@ -1,6 +1,5 @@
-#include "lamella/core/error.hpp"
-
 #include "core/executor.hpp"
+#include "fixtures/expect_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -74,15 +73,12 @@ TEST(Executor, StopsAtTheNextChunkWhenAsked) {
         CancelFlag stop;
         Executor executor({.threads = threads, .cancel = &stop});
         std::atomic<int> chunks = 0;
-        try {
+        test::error_of(ErrorKind::cancelled, [&] {
             executor.for_chunks(100000, 1, [&](std::uint64_t, std::uint64_t, unsigned) {
                 if (++chunks == 10)
                     stop.request();
             });
-            ADD_FAILURE() << "not cancelled";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::cancelled);
-        }
+        });
         EXPECT_LT(chunks, 100);
     }
 }

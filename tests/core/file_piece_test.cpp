@@ -1,6 +1,5 @@
-#include "lamella/core/error.hpp"
-
 #include "core/file_piece.hpp"
+#include "fixtures/expect_error.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -31,13 +30,8 @@ TEST(FilePiece, IsWrittenAtItsPlaceWhateverOrderOthersAreWrittenIn) {
 
 TEST(FilePiece, OfAFileThatIsNotThereIsRefused) {
     const TemporaryFolder folder;
-    try {
-        FilePiece(folder.file("nowhere"), 0);
-        FAIL() << "it was made";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::output);
-        EXPECT_NE(std::string(error.what()).find(folder.file("nowhere")), std::string::npos);
-    }
+    const std::string path = folder.file("nowhere");
+    test::expect_error(ErrorKind::output, {path.c_str()}, [&] { FilePiece(path, 0); });
 }
 
 } // namespace

@@ -1,7 +1,6 @@
-#include "lamella/core/error.hpp"
-
 #include "child_process.hpp"
 #include "core/spill_file.hpp"
+#include "fixtures/expect_error.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -70,29 +69,17 @@ TEST(SpillFile, HasNoName) {
 
 TEST(SpillFile, NamesAFolderThatIsNotThere) {
     const SpillFolder spill("/nowhere/at/all");
-    try {
-        const SpillFile file(4096);
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::output);
-        EXPECT_TRUE(std::string(error.what()).starts_with("/nowhere/at/all: ")) << error.what();
-    }
+    const std::string text = test::error_of(ErrorKind::output, [] { const SpillFile file(4096); });
+    EXPECT_TRUE(text.starts_with("/nowhere/at/all: ")) << text;
 }
 
 TEST(SpillFile, SaysBeforeTheWorkThatThereIsNoRoom) {
     const TemporaryFolder folder;
     const SpillFolder spill(folder.path());
+    const std::string place = folder.path().string() + ": ";
     // More than any disk has.
-    try {
-        const SpillFile file(std::uint64_t{1} << 55);
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::output);
-        const std::string text = error.what();
-        EXPECT_TRUE(text.starts_with(folder.path().string() + ": ")) << text;
-        EXPECT_NE(text.find("36028797.0 GB"), std::string::npos) << text;
-        EXPECT_NE(text.find("TMPDIR"), std::string::npos) << text;
-    }
+    test::expect_error(ErrorKind::output, {place.c_str(), "36028797.0 GB", "TMPDIR"},
+                       [] { const SpillFile file(std::uint64_t{1} << 55); });
 }
 
 TEST(SpillFile, SaysThatItMayNotGrow) {

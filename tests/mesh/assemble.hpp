@@ -1,11 +1,16 @@
 #pragma once
 
-// Building meshes from meshes.
+// Building meshes from meshes, and from nothing.
 
+#include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
+#include "fixtures/random.hpp"
+
+#include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -42,6 +47,15 @@ inline TriangleSoup turned_inside_out(const TriangleSoup& soup) {
     for (Triangle3f& t : out)
         std::swap(t[1], t[2]);
     return TriangleSoup(std::move(out));
+}
+
+/// Adds triangles between any of the vertices, some of them degenerate.
+inline void add_random_triangles(IndexedMesh& mesh, std::int64_t count, test::Random& random) {
+    const auto any = [&] {
+        return static_cast<std::uint32_t>(random.integer(0, std::ssize(mesh.vertices) - 1));
+    };
+    for (; count > 0; --count)
+        mesh.triangles.push_back({any(), any(), any()});
 }
 
 } // namespace lamella

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace lamella {
 namespace {
@@ -65,6 +65,23 @@ TEST(Diagnose, ABoxWithoutALidHasOneLoop) {
     EXPECT_EQ(found.shells[0].kind, ShellKind::open);
 }
 
+// More pairs of shells than are looked at together.
+TEST(Diagnose, ManyBoxesInOneAnotherHaveTheirDepths) {
+    constexpr int n = 1500;
+    std::vector<Triangle3f> triangles;
+    for (int i = 0; i < n; ++i) {
+        const double size = 2.0 * (n - i);
+        for (const Triangle3f& t : triangles_of(moved(make_box(size, size, size), i, i, i)))
+            triangles.push_back(t);
+    }
+    const Diagnosis found = diagnosed(TriangleSoup(std::move(triangles)), {.keep = n});
+    ASSERT_EQ(found.shells.size(), static_cast<std::size_t>(n));
+    for (std::uint32_t i = 0; i < n; ++i) {
+        ASSERT_EQ(found.shells[i].depth, i);
+        ASSERT_EQ(found.shells[i].inside, i == 0 ? std::nullopt : std::optional(i - 1));
+    }
+}
+
 TEST(Diagnose, HolesThatTouchInAVertexHaveLoopsOfTheirOwn) {
     // Two triangles of a sphere that share a vertex and no edge.
     std::vector<Triangle3f> triangles = triangles_of(make_sphere(1, 2));
@@ -114,12 +131,7 @@ TEST(Diagnose, EveryBoundaryEdgeIsInOneLoopOnRandomMeshes) {
         IndexedMesh mesh;
         for (int v = 0; v < vertices; ++v)
             mesh.vertices.push_back({random.real(0, 1), random.real(0, 1), static_cast<double>(v)});
-        for (std::int64_t t = random.integer(0, 60); t > 0; --t) {
-            const auto any = [&] {
-                return static_cast<std::uint32_t>(random.integer(0, vertices - 1));
-            };
-            mesh.triangles.push_back({any(), any(), any()});
-        }
+        add_random_triangles(mesh, random.integer(0, 60), random);
         const Diagnosis found = diagnose(mesh, {.keep = DiagnosisOptions::keep_all});
         std::size_t edges = 0;
         double length = 0;

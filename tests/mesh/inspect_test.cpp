@@ -1,6 +1,6 @@
-#include "lamella/core/error.hpp"
 #include "lamella/mesh/inspect.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
 #include "mesh/assemble.hpp"
 #include "mesh/naive.hpp"
@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <numbers>
 #include <random>
 
 namespace lamella {
@@ -315,12 +314,8 @@ TEST(Inspect, StopsWhenAsked) {
     stop.request();
     const IndexedMesh mesh = weld(make_rook());
     for (const unsigned threads : {1U, 3U})
-        try {
-            (void)inspect(mesh, {.threads = threads, .cancel = &stop});
-            ADD_FAILURE() << "not cancelled";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::cancelled);
-        }
+        test::expect_error(ErrorKind::cancelled, {},
+                           [&] { (void)inspect(mesh, {.threads = threads, .cancel = &stop}); });
 }
 
 } // namespace

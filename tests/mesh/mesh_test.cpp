@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/mesh.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
@@ -33,14 +34,9 @@ TEST(Mesh, IsOneOfTwoKinds) {
 TEST(Mesh, RefusesTrianglesWhoseVerticesAreNotThere) {
     for (const std::uint32_t wrong : {3U, 0xffffffffU}) {
         IndexedMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}}, {{0, 1, 2}, {0, wrong, 1}}};
-        try {
-            const Mesh refused(std::move(mesh));
-            FAIL() << "a vertex that is not there was taken";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::input);
-            EXPECT_EQ(error.what(), "triangle 1 names vertex " + std::to_string(wrong) +
-                                        ", but there are only 3 vertices (numbered from 0)");
-        }
+        EXPECT_EQ(test::error_of(ErrorKind::input, [&] { const Mesh refused(std::move(mesh)); }),
+                  "triangle 1 names vertex " + std::to_string(wrong) +
+                      ", but there are only 3 vertices (numbered from 0)");
     }
     EXPECT_THROW(Mesh(IndexedMesh{{}, {{0, 0, 0}}}), Error);
     EXPECT_TRUE(Mesh(IndexedMesh{}).empty());

@@ -1,8 +1,8 @@
-#include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/mesh/repair.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 #include "mesh/assemble.hpp"
 #include "mesh/naive.hpp"
@@ -10,11 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <set>
 
 namespace lamella {
 namespace {
@@ -88,12 +86,7 @@ TEST(WeldWithin, DoesNotDependOnTheOrderOfVerticesAndThreads) {
                                         : Point3{static_cast<double>(random.integer(0, 9)) / 8,
                                                  static_cast<double>(random.integer(0, 9)) / 8,
                                                  static_cast<double>(random.integer(0, 9)) / 8});
-        for (int t = 0; t < 300; ++t) {
-            const auto any = [&] {
-                return static_cast<std::uint32_t>(random.integer(0, 399));
-            };
-            mesh.triangles.push_back({any(), any(), any()});
-        }
+        add_random_triangles(mesh, 300, random);
         const double tolerance = random.real(0.02, 0.3);
         const ToleranceWeld one = weld_within(mesh, tolerance, {.threads = 1});
         for (const unsigned threads : {1U, 2U, 7U}) {
@@ -146,12 +139,7 @@ TEST(WeldWithin, EqualVerticesAreOneAndDegenerateTrianglesStay) {
 TEST(WeldWithin, RefusesTolerancesThatAreNone) {
     const IndexedMesh mesh = weld(make_sphere(1, 5));
     for (const double tolerance : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity(), 10.0})
-        try {
-            (void)weld_within(mesh, tolerance);
-            ADD_FAILURE() << tolerance;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::usage);
-        }
+        test::expect_error(ErrorKind::usage, {"weld tolerance"}, [&] { (void)weld_within(mesh, tolerance); });
     EXPECT_EQ(weld_within({}, 1).mesh.vertices.size(), 0U);
 }
 
@@ -303,12 +291,7 @@ TEST(Orient, IsTheSameForAnyNumberOfThreadsOnRandomMeshes) {
         const int vertices = 6 + round;
         for (int v = 0; v < vertices; ++v)
             mesh.vertices.push_back({random.real(0, 1), random.real(0, 1), random.real(0, 1)});
-        for (int t = 0; t < 80; ++t) {
-            const auto any = [&] {
-                return static_cast<std::uint32_t>(random.integer(0, vertices - 1));
-            };
-            mesh.triangles.push_back({any(), any(), any()});
-        }
+        add_random_triangles(mesh, 80, random);
         const OrientedMesh one = orient(mesh, {.threads = 1});
         const OrientedMesh many = orient(mesh, {.threads = 7});
         EXPECT_EQ(one.mesh.triangles, many.mesh.triangles);

@@ -1,6 +1,6 @@
-#include "lamella/core/error.hpp"
 #include "lamella/mesh/self_intersections.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
+#include <optional>
 
 namespace lamella {
 namespace {
@@ -34,10 +34,10 @@ SelfIntersections naive(const IndexedMesh& mesh) {
         for (std::uint32_t b = a + 1; b < mesh.triangles.size(); ++b) {
             if (left_out(a) || left_out(b))
                 continue;
-            const Contact c = contact(named(a), named(b));
-            found.crossing += c == Contact::crossing ? 1 : 0;
-            found.overlapping += c == Contact::overlapping ? 1 : 0;
-            found.touching += c == Contact::touching ? 1 : 0;
+            const std::optional<MeetingKind> c = contact(named(a), named(b));
+            found.crossing += c == MeetingKind::crossing ? 1 : 0;
+            found.overlapping += c == MeetingKind::overlapping ? 1 : 0;
+            found.touching += c == MeetingKind::touching ? 1 : 0;
         }
     }
     return found;
@@ -114,12 +114,7 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomMeshesForAnyNumberOfThreads) {
             };
             mesh.vertices.push_back({coordinate(), coordinate(), coordinate()});
         }
-        for (int t = 0; t < 150; ++t) {
-            const auto any = [&] {
-                return static_cast<std::uint32_t>(random.integer(0, vertices - 1));
-            };
-            mesh.triangles.push_back({any(), any(), any()});
-        }
+        add_random_triangles(mesh, 150, random);
         const SelfIntersections expected = naive(mesh);
         std::vector<std::uint32_t> parts(mesh.triangles.size());
         for (std::size_t i = 0; i < parts.size(); ++i)
@@ -173,12 +168,9 @@ TEST(SelfIntersections, StopWhenAsked) {
     stop.request();
     const IndexedMesh mesh = weld(make_rook());
     for (const unsigned threads : {1U, 3U})
-        try {
+        test::expect_error(ErrorKind::cancelled, {}, [&] {
             (void)find_self_intersections(mesh, {}, {.threads = threads, .cancel = &stop});
-            ADD_FAILURE() << "not cancelled";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::cancelled);
-        }
+        });
 }
 
 } // namespace

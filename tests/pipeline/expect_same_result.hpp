@@ -76,6 +76,9 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
         EXPECT_EQ((one.*kind).layers, (other.*kind).layers);
         EXPECT_EQ((one.*kind).first_z, (other.*kind).first_z);
     }
+    EXPECT_EQ(one.thin.rings, other.thin.rings);
+    EXPECT_EQ(one.thin.layers, other.thin.layers);
+    EXPECT_EQ(one.thin.first_z, other.thin.first_z);
     expect_same(one.open_gaps, other.open_gaps);
     EXPECT_EQ(one.gaps.closed, other.gaps.closed);
     EXPECT_EQ(one.gaps.longest_mm, other.gaps.longest_mm);

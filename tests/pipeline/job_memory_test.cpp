@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -46,8 +47,9 @@ TEST(JobMemory, GrantsPointsInFlightAQuarterOfTheLimitAndNeverFewerForMore) {
             EXPECT_TRUE(points == 1 || points * bytes_of_a_point_and_its_text <= limit / 4) << limit;
             before = points;
         });
-        // Where there is more than enough, as many as slicing takes by itself: 56 MiB of points a thread.
-        EXPECT_EQ(before, threads * (56 * mib / sizeof(Point2)));
+        // Where there is more than enough, as many as slicing takes by itself: 56 MiB of points a thread, and
+        // 112 at least.
+        EXPECT_EQ(before, std::max(threads, 2U) * (56 * mib / sizeof(Point2)));
     }
 }
 
@@ -72,6 +74,8 @@ TEST(JobMemory, KeepsMessagesAndOutputOfSeveralProcessesWithinAQuarter) {
 TEST(JobMemory, AsksForMoreWithMoreThreadsPlanesAndTriangles) {
     EXPECT_LT(JobMemory::overhead(1, 0), JobMemory::overhead(2, 0));
     EXPECT_LT(JobMemory::overhead(1, 0), JobMemory::overhead(1, 1));
+    EXPECT_LT(JobMemory::overhead(1, 1), JobMemory::overhead(1, 1, 2));
+    EXPECT_LT(JobMemory::overhead(1, 1), JobMemory::overhead(1, 1, 1, true));
     const JobMemory memory = limited_to(1024 * mib);
     const Mesh small = make_sphere(1, 2);
     const Mesh large = make_sphere(1, 3);

@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <span>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -80,12 +79,10 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     job.repair.close_gaps_mm = 1;
     const Plan plan = plan_uniform(0, 2, {.layer_height = 1});
     LayerTotals totals(job, plan.layers, std::vector<bool>(1));
-    LayerBuilder chain;
-    chain.add_point({0, 0});
-    chain.add_point({3, 4});
-    chain.end_contour(false);
     const PlannedLayer& above = plan.layers[1];
-    const Layer open = chain.finish(above.index, above.z, above.bottom, above.top);
+    Layer open = test::layer_of({}, {{{0, 0}, {3, 4}}});
+    open.index = above.index;
+    open.z = above.z;
     const Layer empty = LayerBuilder().finish(plan.layers[0].index, plan.layers[0].z, 0, 1);
     totals.add(std::span(&empty, 1), {GapJoin{{}, {}, 0.5}, GapJoin{{}, {}, 0.25}}, {});
     totals.add(std::span(&open, 1), {}, {});

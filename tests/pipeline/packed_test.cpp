@@ -1,5 +1,6 @@
 #include "lamella/core/point.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 #include "pipeline/packed.hpp"
 
@@ -87,12 +88,8 @@ TEST(Packed, SaysThatAMessageIsTooShortWhereverItIsCutOff) {
         for (std::size_t length = 0; length < bytes.size(); ++length) {
             const std::string cut = bytes.substr(0, length);
             Unpacker from(cut);
-            try {
-                sequence.expect_in(from);
-                ADD_FAILURE() << length << " of " << bytes.size() << " bytes are enough";
-            } catch (const Error& error) {
-                EXPECT_EQ(error.kind(), ErrorKind::internal);
-            }
+            SCOPED_TRACE(length);
+            test::error_of(ErrorKind::internal, [&] { sequence.expect_in(from); });
         }
     }
 }

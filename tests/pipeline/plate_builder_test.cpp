@@ -1,14 +1,12 @@
 #include "lamella/core/error.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 #include "parts/shapes.hpp"
 #include "pipeline/plate_builder.hpp"
-#include "slicing/expect_error.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <set>

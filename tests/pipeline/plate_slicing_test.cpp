@@ -1,11 +1,11 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 #include "parts/shapes.hpp"
 #include "pipeline/plate_builder.hpp"
 #include "pipeline/plate_slicing.hpp"
-#include "slicing/expect_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>

@@ -2,15 +2,14 @@
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "parts/shapes.hpp"
-#include "slicing/expect_error.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace lamella::plate_cases {
 namespace {

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/mesh_writer.hpp"
@@ -10,13 +11,17 @@
 #include "temporary_folder.hpp"
 #include "thread_processes.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
+#include <numbers>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 // Jobs that write scan vectors in the place of contours.
@@ -64,6 +69,19 @@ class ScanJob : public testing::Test {
     /// The layers of a slice file, part by part.
     [[nodiscard]] std::vector<LayerPart> parts_of(const std::string& name) const {
         return read_layers(path(name)).parts;
+    }
+
+    /// What shards of a job write, put together.
+    [[nodiscard]] std::string merged_shards(FileJob job, std::uint32_t count) const {
+        std::vector<std::string> shards;
+        for (std::uint32_t i = 1; i <= count; ++i) {
+            job.shard = Shard{i, count};
+            job.output = path("shard" + std::to_string(i) + ".cli");
+            static_cast<void>(slice_file(job));
+            shards.push_back(job.output);
+        }
+        static_cast<void>(merge_layer_files(shards, path("merged.cli")));
+        return content("merged.cli");
     }
 
     TemporaryFolder folder_;
@@ -147,11 +165,7 @@ TEST_F(ScanJob, HasTheBytesOfOneThreadWithAnyNumberOfThreadsAndProcesses) {
         expect_the_same(slice_file(scanned, {.threads = 5}));
         for (const std::size_t processes : {2, 3, 40}) {
             SCOPED_TRACE(testing::Message() << name << " by " << processes);
-            std::vector<FileResult> results(processes);
-            test::run_processes(processes, [&](Communicator& own) {
-                results[own.process()] = slice_file(scanned, {.threads = 2}, own);
-            });
-            for (const FileResult& many : results)
+            for (const FileResult& many : test::slice_by(processes, scanned))
                 expect_the_same(many);
         }
     }
@@ -171,19 +185,53 @@ TEST_F(ScanJob, HasTheSameBytesInLittleMemory) {
 }
 
 TEST_F(ScanJob, HasTheSameBytesInShards) {
-    FileJob scanned = job("whole.cli");
+    const FileJob scanned = job("whole.cli");
     static_cast<void>(slice_file(scanned));
-    for (const std::uint32_t count : {2U, 5U}) {
-        std::vector<std::string> shards;
-        for (std::uint32_t i = 1; i <= count; ++i) {
-            FileJob shard = job("shard" + std::to_string(i) + ".cli");
-            shard.shard = Shard{i, count};
-            static_cast<void>(slice_file(shard));
-            shards.push_back(shard.output);
-        }
-        static_cast<void>(merge_layer_files(shards, path("merged.cli")));
-        EXPECT_EQ(content("merged.cli"), content("whole.cli"));
+    for (const std::uint32_t count : {2U, 5U})
+        EXPECT_EQ(merged_shards(scanned, count), content("whole.cli"));
+}
+
+TEST_F(ScanJob, CountsRingsThatAreTooThinForVectors) {
+    FileJob scanned = job("job.cli"); // the outermost contour is at 0.05
+    write_stl(path("wall.stl"), make_box(0.08, 10, 2));
+    scanned.inputs.push_back({.path = path("wall.stl"), .placement = translation(30, 0, -2)});
+    const FileResult one = slice_file(scanned, {.threads = 1});
+    EXPECT_EQ(one.thin.rings, 4U);
+    EXPECT_EQ(one.thin.layers, 4U);
+    EXPECT_GT(one.thin.first_z, -2);
+    EXPECT_LT(one.thin.first_z, -1.5); // the lowest plane of the wall
+    EXPECT_TRUE(one.thin.text().starts_with("4 rings on 4 layers, the lowest at z = -1.7"))
+        << one.thin.text();
+    test::expect_same(one, slice_file(scanned, {.threads = 4}));
+    for (const FileResult& many : test::slice_by(3, scanned))
+        test::expect_same(one, many);
+    std::uint64_t of_shards = 0;
+    for (const std::uint32_t number : {1U, 2U, 3U}) {
+        FileJob shard = scanned;
+        shard.shard = Shard{number, 3};
+        of_shards += slice_file(shard).thin.rings;
     }
+    EXPECT_EQ(of_shards, 4U);
+
+    FileJob plain = scanned;
+    plain.scan.reset();
+    plain.output = path("layers.npz");
+    static_cast<void>(slice_file(plain));
+    std::vector<LayerStack> stacks;
+    LayerFileInfo info{.box = one.box, .layers = one.layers.size(), .bottom = one.bottom, .parts = {}};
+    for (const LayerPart& part : parts_of("layers.npz")) {
+        info.parts.push_back({.label = part.label});
+        stacks.push_back(part.layers);
+    }
+    const ScanResult of_layers =
+        scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info, *scanned.scan);
+    EXPECT_EQ(of_layers.thin.rings, 4U);
+    EXPECT_EQ(of_layers.thin.first_z, one.thin.first_z);
+
+    scanned.strict = true;
+    EXPECT_THROW(static_cast<void>(slice_file(scanned)), Error);
+    scanned.inputs.pop_back();
+    EXPECT_EQ(slice_file(scanned).thin.rings, 0U);
 }
 
 TEST_F(ScanJob, GivesChosenLayersTheVectorsTheyHaveInTheWhole) {
@@ -255,22 +303,10 @@ TEST_F(ScanJob, WithSupportsHasTheSameBytesForAnyThreadsProcessesAndShards) {
     const std::string expected = content("job.cli");
     test::expect_same(one, slice_file(scanned, {.threads = 5}));
     EXPECT_EQ(content("job.cli"), expected);
-    std::vector<FileResult> results(3);
-    test::run_processes(results.size(), [&](Communicator& own) {
-        results[own.process()] = slice_file(scanned, {.threads = 2}, own);
-    });
-    for (const FileResult& many : results)
+    for (const FileResult& many : test::slice_by(3, scanned))
         test::expect_same(one, many);
     EXPECT_EQ(content("job.cli"), expected);
-    std::vector<std::string> shards;
-    for (std::uint32_t i = 1; i <= 3; ++i) {
-        scanned.shard = Shard{i, 3};
-        scanned.output = path("shard" + std::to_string(i) + ".cli");
-        static_cast<void>(slice_file(scanned));
-        shards.push_back(scanned.output);
-    }
-    static_cast<void>(merge_layer_files(shards, path("merged.cli")));
-    EXPECT_EQ(content("merged.cli"), expected);
+    EXPECT_EQ(merged_shards(scanned, 3), expected);
 }
 
 TEST_F(ScanJob, OfSupportsOnlyHasNoExposuresOfParts) {
@@ -323,6 +359,29 @@ TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
             EXPECT_EQ(result.layers[3][e].energy_j, sliced.layers[3].scan[e].energy_j);
         }
     }
+}
+
+TEST_F(ScanJob, OfAFileInMillimetresWithDecimalsKeepsWhatIsRound) {
+    std::string ring;
+    constexpr int corners = 60;
+    for (int i = 0; i <= corners; ++i) {
+        const double angle = 2 * std::numbers::pi * (i % corners) / corners;
+        ring += fmt::format(",{:.3f},{:.3f}", 5 + std::cos(angle), 5 + std::sin(angle));
+    }
+    std::ofstream(path("round.cli")) << fmt::format(
+        "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0.0\n$$LAYER/0.1\n"
+        "$$POLYLINE/1,1,{}{}\n$$GEOMETRYEND\n",
+        corners + 1, ring);
+    const LayerFile file = read_layers(path("round.cli"));
+    const LayerStack& layers = file.parts.front().layers;
+    const LayerFileInfo info{.box = {{4, 4, 0}, {6, 6, 0.1}}, .layers = layers.size(), .parts = {PartInfo{}}};
+    const ScanStrategy strategy;
+    static_cast<void>(scan_layers(path("round.ovf"), layer_format("ovf", ""), std::span(&layers, 1),
+                                  file.rounding, info, strategy));
+    std::size_t points = 0;
+    for (const LayerPart& part : read_layers(path("round.ovf")).parts)
+        points += part.layers.front().points.size();
+    EXPECT_EQ(points, std::size_t{corners});
 }
 
 } // namespace

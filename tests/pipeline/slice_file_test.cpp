@@ -44,15 +44,6 @@ class Processes : public testing::Test {
         return job;
     }
 
-    /// The results of all processes, none of which may fail.
-    static std::vector<FileResult> slice_by(std::size_t processes, const FileJob& job) {
-        std::vector<FileResult> results(processes);
-        test::run_processes(processes, [&](Communicator& own) {
-            results[own.process()] = slice_file(job, {.threads = 2}, own);
-        });
-        return results;
-    }
-
     TemporaryFolder folder_;
 };
 
@@ -75,7 +66,7 @@ TEST_F(Processes, WriteTheBytesOfOneProcessWithAnyNumberOfThem) {
         for (const std::size_t processes : numbers_of_processes) {
             SCOPED_TRACE(testing::Message() << format.name << " by " << processes);
             job.output = path("one"); // some formats repeat the name
-            for (const FileResult& many : slice_by(processes, job))
+            for (const FileResult& many : test::slice_by(processes, job))
                 test::expect_same(one, many);
             EXPECT_EQ(content("one"), expected);
         }
@@ -113,7 +104,7 @@ TEST_F(Processes, TakePlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
         const std::string expected = content("out.cli");
         for (const std::size_t processes : numbers_of_processes) {
             SCOPED_TRACE(testing::Message() << "job " << i << " by " << processes);
-            for (const FileResult& many : slice_by(processes, jobs[i]))
+            for (const FileResult& many : test::slice_by(processes, jobs[i]))
                 test::expect_same(one, many);
             EXPECT_EQ(content("out.cli"), expected);
         }

@@ -4,6 +4,7 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -198,7 +199,15 @@ void run_processes(std::size_t processes, const Body& body) {
         EXPECT_FALSE(failure.has_value()) << failure->what();
 }
 
-/// The same where all of them have to fail, and alike.
+/// The results of a job that so many processes slice.
+inline std::vector<FileResult> slice_by(std::size_t processes, const FileJob& job) {
+    std::vector<FileResult> results(processes);
+    run_processes(processes,
+                  [&](Communicator& own) { results[own.process()] = slice_file(job, {.threads = 2}, own); });
+    return results;
+}
+
+/// As run_processes where all of them have to fail, and alike.
 template <class Body>
 Error common_failure(std::size_t processes, const Body& body) {
     const std::vector<std::optional<Error>> failures = failures_of(processes, body);

@@ -199,7 +199,75 @@ TEST_F(VerifyVectors, SaysWhereNothingTellsOfTheMaterial) {
     EXPECT_EQ(found.unbounded, found.hatch_vectors);
     EXPECT_EQ(found.findings.size(), 1U);
     EXPECT_EQ(with_all().unbounded, 0U);
-    EXPECT_TRUE(with_all().ok());
+    EXPECT_EQ(with_all().outside, 0U);
+    EXPECT_EQ(with_all().wrong_contours, 20U) << "each of both is missing";
+}
+
+TEST_F(VerifyVectors, FindsContoursThatAreMissing) {
+    const std::vector<LayerPart> sound = parts_;
+    for (const char* const name : {"core contour 1", "core contour 2"}) {
+        parts_ = sound;
+        std::erase_if(parts_, [&](const LayerPart& part) { return part.exposure->name() == name; });
+        for (const VectorVerification& found : {with_all(), with_strategy()}) {
+            EXPECT_EQ(found.wrong_contours, 10U) << name;
+            EXPECT_FALSE(found.ok());
+        }
+        const std::string text = with_all().findings.front();
+        EXPECT_NE(text.find("contour " + std::string(1, name[13]) + " is missing on 10 layers"),
+                  std::string::npos)
+            << text;
+        parts_ = sound;
+        Layer& layer = part(name).layers[6];
+        layer = {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
+        EXPECT_EQ(with_all().wrong_contours, 1U) << name;
+    }
+}
+
+TEST_F(VerifyVectors, FindsContoursAtAnotherDepth) {
+    const auto replaced = [&](const char* name, const std::vector<test::Contour>& rings) {
+        Layer& layer = part(name).layers[6];
+        const Layer head = layer;
+        layer = layer_of(rings);
+        layer.index = head.index;
+        layer.z = head.z;
+        layer.bottom = head.bottom;
+        layer.top = head.top;
+    };
+    replaced("core contour 1", {rectangle(8, 3, 12, 7)}); // deeper inside than it should be
+    EXPECT_EQ(with_all().wrong_contours, 1U);
+    replaced("core contour 1", {rectangle(0.35, 0.35, 19.65, 9.65)});
+    EXPECT_EQ(with_all().wrong_contours, 1U);
+    replaced("core contour 1", {rectangle(0.05, 0.05, 19.95, 9.95)});
+    EXPECT_EQ(with_all().wrong_contours, 0U);
+    replaced("core contour 2", {rectangle(1, 1, 19, 9)});
+    EXPECT_EQ(with_strategy().wrong_contours, 1U) << "the outermost one tells";
+}
+
+TEST_F(VerifyVectors, SkinsExcuseNoMoreThanTheirOverlap) {
+    const std::vector<LayerPart> sound = parts_;
+    for (const std::size_t layer : {0U, 9U}) { // all of these is skin
+        const char* const name = layer == 0 ? "downskin hatch" : "upskin hatch";
+        parts_ = sound;
+        change_hatches(name, layer,
+                       [](std::vector<Point2>& points) { points.resize(points.size() / 2 & ~1U); });
+        EXPECT_EQ(with_all().miscovered, 1U) << name;
+        parts_ = sound;
+        change_hatches(name, layer, [](std::vector<Point2>& points) {
+            const std::vector<Point2> again = points;
+            points.insert(points.end(), again.begin(), again.end());
+        });
+        EXPECT_EQ(with_all().miscovered, 1U) << name;
+    }
+}
+
+TEST_F(VerifyVectors, FindsLayersThatAreMissingInTheMiddle) {
+    for (LayerPart& part : parts_)
+        part.layers.erase(part.layers.begin() + 4);
+    const VectorVerification found = with_mesh();
+    EXPECT_FALSE(found.ok());
+    ASSERT_TRUE(found.heights);
+    EXPECT_EQ(found.heights->gaps, 1U);
+    EXPECT_TRUE(with_nothing().ok());
 }
 
 TEST_F(VerifyVectors, GrantsTheRoundingOfTheFormat) {

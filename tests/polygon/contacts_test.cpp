@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <optional>
 
 namespace lamella {
 namespace {
@@ -24,8 +23,7 @@ constexpr std::uint32_t none = Contacts::none;
 
 Contacts contacts(const Layer& layer) {
     const MonotoneChains chains(layer);
-    const std::optional<ChainGrid> grid = ChainGrid::of(chains);
-    return find_contacts(layer, chains, grid ? &*grid : nullptr);
+    return find_contacts(layer, chains, ChainGrid::of(chains));
 }
 
 Numbers groups(const std::vector<Contour>& rings) {

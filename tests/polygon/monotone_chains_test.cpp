@@ -103,13 +103,13 @@ TEST(KnownNesting, IsTheNestingOfTheLayer) {
         const Layer layer = layer_of(rings);
         const MonotoneChains chains(layer);
         const std::optional<ChainGrid> grid = ChainGrid::of(chains);
-        const Contacts contacts = find_contacts(layer, chains, grid ? &*grid : nullptr);
+        const Contacts contacts = find_contacts(layer, chains, grid);
         EXPECT_TRUE(!apart || contacts.groups == 0);
         // Who is told of contacts looks at all edges.
         const std::vector<Windings> turns(layer.rings, Windings{1, 0});
         const Contacts all{.group = std::vector<std::uint32_t>(layer.rings, 0), .groups = 1};
-        const Nesting expected = nesting(layer, chains, nullptr, all, turns).nesting;
-        const Nesting found = nesting(layer, chains, grid ? &*grid : nullptr, contacts, turns).nesting;
+        const Nesting expected = nesting(layer, chains, std::nullopt, all, turns).nesting;
+        const Nesting found = nesting(layer, chains, grid, contacts, turns).nesting;
         EXPECT_EQ(found.kind, expected.kind);
         EXPECT_EQ(found.parent, expected.parent);
         EXPECT_EQ(found.winding, expected.winding);

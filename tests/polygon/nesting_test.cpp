@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -521,13 +520,13 @@ TEST(Nesting, OfRingsAmongOthersInContactIsAsIfAllWereLookedAtTogether) {
         const MonotoneChains chains(layer);
         const std::optional<ChainGrid> grid = ChainGrid::of(chains);
         ASSERT_TRUE(grid.has_value());
-        const Contacts contacts = find_contacts(layer, chains, &*grid);
+        const Contacts contacts = find_contacts(layer, chains, grid);
         const auto apart = static_cast<std::size_t>(
             std::count(contacts.group.begin(), contacts.group.end(), Contacts::none));
         ASSERT_TRUE(0 < apart && apart < layer.rings);
         const std::vector<Windings> turns(layer.rings, Windings{1, 0});
-        const WoundNesting found = nesting(layer, chains, &*grid, contacts, turns);
-        const WoundNesting together = nesting(layer, chains, nullptr, contacts, turns);
+        const WoundNesting found = nesting(layer, chains, grid, contacts, turns);
+        const WoundNesting together = nesting(layer, chains, std::nullopt, contacts, turns);
         EXPECT_EQ(found.nesting.kind, together.nesting.kind);
         EXPECT_EQ(found.nesting.parent, together.nesting.parent);
         EXPECT_EQ(found.nesting.body, together.nesting.body);

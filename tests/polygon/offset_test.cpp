@@ -8,6 +8,7 @@
 
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
+#include "polygon/orientation.hpp"
 #include "polygon/winding_areas.hpp"
 
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -108,6 +110,54 @@ TEST(Offset, MakesNoWallsWhereAHoleRunsAlongItsBody) {
     }
     const Layer back_to_back = layer_of({rectangle(0, 0, 2, 2), rectangle(2, 0, 4, 2)});
     EXPECT_NEAR(area(offset(back_to_back, -0.5)), 3, 1e-8);
+}
+
+// What a direction says about a turn is rounding there.
+TEST(Offset, OfNeedlesAsWideAsRoundingIsThatOfALine) {
+    EXPECT_EQ(offset(layer_of({{{17.1, 25.9}, {35.9, 54.1}, {20.9, 31.6}}}), -0.05).rings, 0U);
+    Random random(87);
+    for (int round = 0; round < test::rounds_within_reason(1000); ++round) {
+        const Point2 a{random.real(-9, 9), random.real(-9, 9)};
+        const Point2 b{random.real(-9, 9), random.real(-9, 9)};
+        const double t = random.real(0, 1);
+        const Point2 c{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+        const double length = std::hypot(b.x - a.x, b.y - a.y);
+        for (const Contour& ring : {Contour{a, b, c}, Contour{a, c, b}}) {
+            const Layer needle = normal_form(layer_of({ring}));
+            EXPECT_EQ(offset(needle, -0.05).rings, 0U) << round;
+            if (orientation(ring[0], ring[1], ring[2]) > 0) {
+                EXPECT_NEAR(area(offset(needle, 1, rounded)), 2 * length + std::numbers::pi, 0.01) << round;
+            }
+        }
+    }
+}
+
+TEST(Offset, OfSlitsAsWideAsRoundingIsThatOfWiderOnes) {
+    Random random(88);
+    for (int round = 0; round < test::rounds_within_reason(1000); ++round) {
+        const double angle = random.real(0, 6);
+        const double away = random.real(0, 100);
+        const auto turned = [&](double x, double y) {
+            return Point2{away + x * std::cos(angle) - y * std::sin(angle),
+                          x * std::sin(angle) + y * std::cos(angle)};
+        };
+        const double foot = random.real(2, 4);
+        const Point2 tip = turned(foot + random.real(-1, 1), random.real(0.5, 4));
+        const Point2 in = turned(foot, 0);
+        const auto slit = [&](const Point2& out) {
+            return layer_of({{turned(0, 0), in, tip, out, turned(6, 0), turned(6, 6), turned(0, 6)}});
+        };
+        const auto beside = [&](double x) {
+            return std::nextafter(x, x + static_cast<double>(random.integer(-1, 1)));
+        };
+        Point2 out = in;
+        while (orientation(in, tip, out) >= 0) // to the right of the way in
+            out = {beside(in.x), beside(in.y)};
+        for (const double distance : {-0.4, 0.4})
+            EXPECT_NEAR(area(offset(slit(out), distance)),
+                        area(offset(slit(turned(foot + 1e-7, 0)), distance)), 1e-5)
+                << round;
+    }
 }
 
 TEST(Offset, KeepsOpenChains) {
@@ -363,6 +413,19 @@ TEST(Offset, GrowsWithItsDistance) {
             }
         }
     }
+}
+
+TEST(Offset, CountsWhatVanishesByTheFirstOfSeveralDistances) {
+    const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(6, 0, 6.5, 4)}));
+    std::uint64_t vanished = 9;
+    static_cast<void>(offsets(layer, std::array{-0.3, -0.1}, mitred, &vanished));
+    EXPECT_EQ(vanished, 1U);
+    static_cast<void>(offsets(layer, std::array{-0.1, -3.0}, mitred, &vanished));
+    EXPECT_EQ(vanished, 0U);
+    static_cast<void>(offsets(layer, std::array{0.0, -3.0}, mitred, &vanished));
+    EXPECT_EQ(vanished, 0U);
+    static_cast<void>(offsets(Layer{}, std::array{-3.0}, mitred, &vanished));
+    EXPECT_EQ(vanished, 0U);
 }
 
 TEST(Offset, ShrunkThenGrownIsContained) {

@@ -5,7 +5,6 @@
 #include "lamella/contour/layer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>

@@ -4,6 +4,7 @@ import inspect
 import pickle
 import subprocess
 import sys
+from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
@@ -67,6 +68,12 @@ CALLS = {
     "Mesh": (lamella.Mesh, dict(zip(("vertices", "faces"), box_arrays()))),
     "Layer": (lamella.Layer, {"rings": [SQUARE], "z": 1}),
     "Stack": (lamella.Stack, {"layers": list(stack())}),
+    "ContourRule": (lamella.ContourRule, {}),
+    "HatchRule": (lamella.HatchRule, {}),
+    "ParameterSet": (lamella.ParameterSet, {}),
+    "ScanStrategy": (lamella.ScanStrategy, {}),
+    "SkinRule": (lamella.SkinRule, {}),
+    "SupportRule": (lamella.SupportRule, {}),
     "Layer.filled": (stack()[0].filled, {}),
     "Layer.offset": (stack()[0].offset, {"distance": 1}),
     "Layer.simplified": (stack()[0].simplified, {"tolerance": 1}),
@@ -169,15 +176,35 @@ TEXTS = [
      "progress: expected a function of (stage, done, total), found 5"),
     (lambda: lamella.slice(box_arrays(), transform=np.full((4, 4), np.nan)), ValueError,
      "transform: expected finite numbers, found nan or inf"),
+    (lambda: lamella.slice(box_arrays(), transform=np.diag([1, 1, 1, 2])), ValueError,
+     "transform: the last row of a transform must be 0, 0, 0, 1, and this one is 0, 0, 0, 2: meshes are moved, turned and "
+     "scaled, but not projected"),
+    (lambda: lamella.slice(box_arrays(), offsets=[1, 3, 2]), ValueError,
+     "offsets: 2 is not above the one before it, 3; the list must ascend"),
+    (lambda: lamella.slice(box_arrays(), offsets=[]), ValueError, "offsets: expected a list of numbers, found an empty one"),
+    (lambda: lamella.slice(box_arrays(), z=[1, np.nan]), ValueError, "z: expected finite numbers, found nan or inf"),
+    (lambda: lamella.slice(box_arrays(), z=np.ma.array([1, 2], mask=[0, 1])), ValueError,
+     "z: expected a list of numbers, found one with masked entries"),
+    (lambda: lamella.slice(box_arrays(), np.ma.masked), TypeError,
+     "layer_height: expected a number above 0, found () of float64"),
+    (lambda: lamella.slice(box_arrays(), heights=[]), ValueError,
+     "heights: expected ranges, each of three numbers (from, to, layer_height), found none"),
+    (lambda: lamella.slice(np.zeros((2, 3, 3), dtype="U1")), ValueError,
+     "part: expected an array of numbers of the shape (m, 3, 3), found (2, 3, 3) of <U1"),
+    (lambda: lamella.write("x.html", stack()), ValueError,
+     "x.html: pages are written by the program, with lamella view, not by Python"),
+    (lambda: lamella.read("box.json", unit_mm=2), ValueError,
+     "unit_mm goes with meshes, and box.json holds layers, which say their unit"),
     (lambda: lamella.read(5), TypeError, "path: expected a path: str, bytes or os.PathLike, found 5"),
     (lambda: lamella.read(""), ValueError, "path: expected the path of a file, found an empty one"),
     (lambda: lamella.read("a\0b"), ValueError, "path: 'a\\x00b' is not possible; the path of a file holds no null character"),
     (lambda: lamella.read("x", max_memory=-1), ValueError,
      "max_memory: -1 is not possible; expected a whole number, 0 or more"),
     (lambda: lamella.write("x.cli", 5), TypeError,
-     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers or of stacks, found 5"),
+     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers, found 5"),
     (lambda: lamella.write("x.cli", [stack(), stack()[0]]), TypeError,
-     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers or of stacks, found an object of type Layer"),
+     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers, found an object of "
+     "type Layer"),
     (lambda: lamella.write("x.cli", []), ValueError, "what: there are no layers to write"),
     (lambda: lamella.write("x.cli", closed_stream()), ValueError,
      "what: there are no layers to write: the stream is closed or at its end"),
@@ -200,6 +227,13 @@ TEXTS = [
      ".faces; this is None"),
     (lambda: lamella.Layer([[(0, 0, 0)]], 1), ValueError,
      "rings: expected contours, each an array of numbers of the shape (n, 2), found (1, 3) of int64"),
+    (lambda: lamella.Layer([[(0, 0), (1, 0), (1, np.nan)]], 1), ValueError,
+     "rings: expected finite numbers, found nan or inf"),
+    (lambda: lamella.Layer([np.ma.array(SQUARE, mask=np.eye(4, 2))], 1), ValueError,
+     "rings: expected contours, each an array of numbers of the shape (n, 2), found one with masked entries"),
+    (lambda: setattr(lamella.ScanStrategy(), "hatch", "x"), TypeError, "hatch: expected a lamella.HatchRule, found 'x'"),
+    (lambda: lamella.ScanStrategy(3), TypeError, "ScanStrategy.__init__() takes 1 positional argument but 2 were given"),
+    (lambda: lamella.ParameterSet(3), TypeError, "other: expected a lamella.ParameterSet, found 3"),
     (lambda: lamella.Layer([], 1, bottom=2), ValueError,
      "z: 1 is not possible; a layer is cut between its bottom, 2.0, and its top, 1.0"),
     (lambda: lamella.Stack([1]), TypeError, "layers: expected layers, found 1"),
@@ -262,6 +296,14 @@ def test_numbers_of_any_kind_are_numbers():
     for half in (Fraction(1, 2), np.float32(0.5), np.array(0.5)):
         assert lamella.slice(box_arrays(), half, layers=np.array([1, 3])) == expected
     assert lamella.slice(box_arrays(), z=range(1, 4)).z.tolist() == [1, 2, 3]
+
+
+def test_a_length_of_any_kind_stands_for_both(tmp_path):
+    written = set()
+    for length in ((0.5, 0.5), 0.5, Decimal("0.5"), np.array(0.5)):
+        lamella.write(tmp_path / "out.zip", stack(), format="png-zip", pixel_mm=length)
+        written.add((tmp_path / "out.zip").read_bytes())
+    assert len(written) == 1
 
 
 def test_labels_need_not_be_utf_8(folder):

@@ -108,6 +108,8 @@ def test_impossible_plans_are_errors_of_usage(program, rook, keywords, options):
         ({"transform": np.eye(3)}, "transform: expected a matrix"),
         ({"transform": np.ones((4, 4))}, "the last row of a transform"),
         ({"transform": np.full((4, 4), np.nan)}, "transform"),
+        ({"transform": np.diag([1, 1, 1e308, 1]), "z": [1]}, "transform: .* no finite numbers"),
+        ({"transform": np.diag([7e306, 5e306, 1.5e307, 1]), "direction": (1, 1, 1), "z": [1]}, "direction: .* no finite numbers"),
     ],
 )
 def test_contradictions_are_named(keywords, text):
@@ -124,7 +126,12 @@ def test_contradictions_are_named(keywords, text):
         (lambda v, f: (v, f.reshape(-1, 4)), lamella.UsageError, "must be cut into triangles first"),
         (lambda v, f: (v, f + 1), lamella.InputError, "faces: row .* names vertex 8, and there are 8, counted from 0"),
         (lambda v, f: (v, f - 1), lamella.InputError, "names vertex -1"),
+        (lambda v, f: (v, f.astype(np.uint64) - 1), lamella.InputError, "names vertex 18446744073709551615, and there are 8"),
         (lambda v, f: (v, f[:0]), lamella.InputError, "no triangle"),
+        (lambda v, f: v[f][:0], lamella.InputError, "part: holds no triangle"),
+        (lambda v, f: np.where(v > 9, np.nan, v)[f], lamella.InputError, "part: triangle 0 has a corner that is not finite"),
+        (lambda v, f: (np.ma.array(v, mask=v > 9), f), lamella.UsageError, "vertices: .* masked entries"),
+        (lambda v, f: np.ma.array(v[f], mask=v[f] > 9), lamella.UsageError, "part: .* masked entries"),
         (lambda v, f: (np.where(v > 9, np.nan, v), f), lamella.InputError, "vertex"),
         (lambda v, f: (np.where(v > 9, np.inf, v), f), lamella.InputError, "vertex"),
         (lambda v, f: np.zeros((3, 4)), lamella.UsageError, r"triangles: expected an array of the shape \(m, 3, 3\)"),

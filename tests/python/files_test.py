@@ -100,6 +100,97 @@ def test_parts_stay_apart_in_files(tmp_path):
         lamella.write(path, [named[0], named[1][:5]])
 
 
+@pytest.mark.parametrize("change", [{"bottom": 0.25}, {"top": 0.75}, {"index": 7}])
+def test_parts_of_other_layers_are_refused(tmp_path, change):
+    square = [(0, 0), (1, 0), (1, 1)]
+    heads = {"z": 0.5, "bottom": 0, "top": 1, "index": 0}
+    one, other = (lamella.Stack([lamella.Layer([square], **head)]) for head in (heads, {**heads, **change}))
+    (name,) = change
+    with pytest.raises(lamella.UsageError, match={"bottom": "bottoms", "top": "tops", "index": "indices"}[name]):
+        lamella.write(tmp_path / "two.cli", [one, other])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_stacks_with_parts_keep_them(tmp_path):
+    stacks = [lamella.Stack(list(lamella.slice(box_arrays(at=(x, 0, 0)), 1)), label=f"at {x}") for x in (0, 50)]
+    lamella.write(tmp_path / "two.json", stacks)
+    both = lamella.read(tmp_path / "two.json")
+    some = both[2:8:2]
+    assert [part.label for part in some.parts] == ["at 0", "at 50"]
+    assert [part[0] for part in some.parts] == [stack[2] for stack in stacks]
+    assert [len(part) for part in pickle.loads(pickle.dumps(some)).parts] == [3, 3]
+    lamella.write(tmp_path / "twice.json", [both, both])
+    assert [part.label for part in lamella.read(tmp_path / "twice.json").parts] == ["at 0", "at 50"] * 2
+
+
+@pytest.fixture
+def jobs(program, rook, tmp_path):
+    """A folder with layers and scan vectors of the program."""
+    program.succeed("slice", rook, "-o", tmp_path / "part.cli", "--layer-height", 2)
+    for name in ("program.ilt", "program.ovf"):
+        program.succeed("scan", tmp_path / "part.cli", "-o", tmp_path / name)
+    return tmp_path
+
+
+def test_scan_vectors_keep_their_parameters(program, jobs):
+    stack = lamella.read(jobs / "program.ilt")
+    assert stack.exposure is None and lamella.read(jobs / "part.cli").exposure is None
+    for part in [*stack.parts, *stack[1:3].parts, *pickle.loads(pickle.dumps(stack)).parts]:
+        exposure = part.exposure
+        assert part.label == f"{exposure.part} {exposure.name}" and exposure.parameters.speed_mm_s > 0
+    program.succeed("convert", jobs / "program.ilt", jobs / "expected.ovf")
+    lamella.convert(jobs / "program.ilt", jobs / "converted.ovf")
+    lamella.write(jobs / "written.ovf", stack)
+    for name in ("converted.ovf", "written.ovf"):
+        assert (jobs / name).read_bytes() == (jobs / "expected.ovf").read_bytes()
+    with pytest.raises(lamella.UsageError, match="holds scan vectors"):
+        lamella.verify(stack[1:3])
+
+
+def test_scan_vectors_are_written_as_by_the_program(program, rook, jobs):
+    layers = lamella.read(jobs / "part.cli")
+    for name in ("ilt", "ovf"):
+        lamella.write(jobs / f"job.{name}", lamella.scan(layers, part=layers.label))
+        assert (jobs / f"job.{name}").read_bytes() == (jobs / f"program.{name}").read_bytes()
+    program.succeed("slice", rook, "-o", jobs / "sliced.ilt", "--layer-height", 2, "--scan")
+    scanned = lamella.scan(lamella.iter_layers(rook, 2), part=layers.label)
+    lamella.write(jobs / "streamed.ilt", scanned)
+    assert (jobs / "streamed.ilt").read_bytes() == (jobs / "sliced.ilt").read_bytes()
+    with pytest.raises(lamella.UsageError, match="no layers to write"):
+        lamella.write(jobs / "nothing.ilt", scanned)
+    # What could not be written is there still.
+    scanned = lamella.scan(lamella.iter_layers(rook, 2), part=layers.label)
+    with pytest.raises(lamella.UsageError):
+        lamella.write(jobs / "job.unknown", scanned)
+    lamella.write(jobs / "again.ilt", scanned)
+    assert (jobs / "again.ilt").read_bytes() == (jobs / "sliced.ilt").read_bytes()
+
+
+def test_scan_layers_of_any_kind_are_written(jobs):
+    scanned = list(lamella.scan(lamella.read(jobs / "part.cli")))
+
+    def known(exposures):  # of what these files keep
+        return [(e.part, e.name, e.parameters.power_w, e.parameters.speed_mm_s) for e in exposures]
+
+    for what in (scanned, iter(scanned), scanned[0]):
+        lamella.write(jobs / "out.ilt", what)
+        parts = lamella.read(jobs / "out.ilt").parts
+        assert known(part.exposure for part in parts) == known(scanned[0].exposures)
+        assert len(parts[0]) == (1 if what is scanned[0] else len(scanned))
+    (other,) = lamella.scan([lamella.Layer([], 1e3)], part="other")
+    with pytest.raises(lamella.UsageError, match="the same exposures"):
+        lamella.write(jobs / "mixed.ilt", [*scanned, other])
+    assert not (jobs / "mixed.ilt").exists()
+
+
+def test_a_part_without_contours_leaves_the_box_of_a_file_alone(tmp_path):
+    full = lamella.slice(box_arrays(at=(50, 60, 0)), 5)
+    empty = lamella.Stack([lamella.Layer([], layer.z, layer.bottom, layer.top, layer.index) for layer in full])
+    lamella.write(tmp_path / "out.geojson", [empty, full])
+    assert json.loads((tmp_path / "out.geojson").read_text())["bbox"] == [50, 60, 70, 90]
+    assert empty.bounds.tolist() == [[0, 0, 0], [0, 0, 10]]
+
+
 def test_conversion_is_that_of_the_program(program, rook, tmp_path):
     lamella.write(tmp_path / "rook.cli", lamella.slice(rook, 0.5))
     program.succeed("convert", tmp_path / "rook.cli", tmp_path / "program.svg")
@@ -160,7 +251,7 @@ def test_layers_are_written_from_whatever_has_them(tmp_path):
 
 
 def test_what_a_format_has_no_place_for_is_an_error_where_it_is_asked_to_be(tmp_path):
-    chain = lamella.Layer([], 1, chains=[[(0, 0), (1, 0), (1, 1)]])
+    chain = lamella.Layer([], 1, bottom=0.5, top=1, chains=[[(0, 0), (1, 0), (1, 1)]])
     with pytest.warns(lamella.DefectWarning):
         lamella.write(tmp_path / "out.slc", chain)
     for write in (lambda **options: lamella.write(tmp_path / "strict.slc", chain, **options),
@@ -269,6 +360,30 @@ def test_odd_files_are_warned_of(rook, tmp_path):
         lamella.read(path, strict=True)
 
 
+def test_odd_slice_files_are_errors_where_they_are_asked_to_be(tmp_path):
+    path = tmp_path / "falling.cli"
+    layers = "".join(f"$$LAYER/{z}\n$$POLYLINE/1,1,4,0,0,1,0,1,1,0,0\n" for z in (2, 1))
+    path.write_text(f"$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n{layers}$$GEOMETRYEND\n")
+    with pytest.warns(lamella.DefectWarning, match="falling.cli: layers do not ascend"):
+        assert len(lamella.read(path)) == 2
+    with pytest.raises(lamella.DefectError, match="falling.cli: layers do not ascend"):
+        lamella.read(path, strict=True)
+
+
+def test_stl_files_tell_what_single_precision_takes(tmp_path):
+    lamella.write(tmp_path / "exact.stl", lamella.Mesh(*box_arrays()), strict=True)
+    vertices, faces = box_arrays(at=(1e6, 0, 0))
+    thin = lamella.Mesh(np.where(vertices == 1e6 + 20, 1e6 + 0.01, vertices), faces)
+    with pytest.warns(lamella.DefectWarning, match="thin.stl: 8 triangles lose their area or a corner"):
+        lamella.write(tmp_path / "thin.stl", thin)
+    with pytest.raises(lamella.DefectError, match="8 triangles"):
+        lamella.write(tmp_path / "strict.stl", thin, strict=True)
+    with pytest.raises(lamella.OutputError, match="huge.stl: .* write it as .ply or .obj"):
+        lamella.write(tmp_path / "huge.stl", lamella.Mesh(vertices * 1e33, faces))
+    lamella.write(tmp_path / "huge.ply", lamella.Mesh(vertices * 1e33, faces))
+    assert {path.name for path in tmp_path.iterdir()} == {"exact.stl", "thin.stl", "huge.ply"}
+
+
 def test_supports_are_read_where_they_are_asked_for(tmp_path):
     points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     vertices = "".join("<vertex><coordinates><x>%d</x><y>%d</y><z>%d</z></coordinates></vertex>" % p for p in points)
@@ -302,9 +417,10 @@ def test_nothing_is_left_of_a_file_that_fails(tmp_path, rook):
     def progress(stage, done, total):
         raise Stop
 
-    with pytest.raises(Stop):
-        lamella.write(tmp_path / "out.cli", lamella.slice(rook, 0.5), progress=progress)
-    assert list(tmp_path.iterdir()) == []
+    for name, format in (("out.cli", ""), ("pictures", "png")):
+        with pytest.raises(Stop) as caught:
+            lamella.write(tmp_path / name, lamella.slice(rook, 5), format=format, progress=progress)
+        assert list(tmp_path.iterdir()) == [], f"while {caught.value!r} is kept, with all that led to it"
 
 
 def test_mesh_formats_are_those_that_the_program_takes(program):
@@ -314,6 +430,6 @@ def test_mesh_formats_are_those_that_the_program_takes(program):
 
 def test_formats_are_those_of_the_program(program):
     names = [name for name, _, _ in lamella.layer_formats()]
-    assert {"cli", "svg", "3mf", "npz", "png"} <= set(names)
+    assert {"cli", "svg", "3mf", "npz", "png"} <= set(names) and "html" not in names
     text = program.succeed("help", "slice").decode()
     assert all(name in text for name in names)

@@ -112,6 +112,45 @@ def test_layers_are_made_of_arrays():
             lamella.Layer([square], **heights)
 
 
+def test_contours_are_cleaned(tmp_path):
+    square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    plain = lamella.Layer([square], z=0.5, bottom=0, top=1, chains=[[(5, 5), (6, 6)]])
+    repeating = [square[0], *np.repeat(square, 2, axis=0), square[0]]
+    for ring in (repeating, [*square, square[0]]):
+        layer = lamella.Layer(
+            [ring, [(1, 1), (2, 2), (1, 1)], [(7, 7)]], 0.5, 0, 1, chains=[[(5, 5), (6, 6), (6, 6)], [(8, 8), (8, 8)]]
+        )
+        assert layer == plain
+        lamella.write(tmp_path / "layer.json", layer)
+        assert lamella.read(tmp_path / "layer.json")[0] == layer
+
+
+def with_state(thing, change):
+    """A pickled thing, some of whose state is something else."""
+    make, arguments, state = thing.__reduce_ex__(2)[:3]
+    changed = list(state)
+    for place, value in change.items():
+        changed[place] = value
+    made = make(*arguments)
+    made.__setstate__(tuple(changed))
+    return made
+
+
+def test_hatch_lines_that_are_left_out_are_warned_of(layer):
+    hatched = with_state(layer, {7: np.array([(1.0, 1), (2, 2), (1, 2), (2, 3)])})
+    assert len(hatched.hatches) == 2
+    other = lamella.Layer([[(0, 0), (1, 0), (0, 1)]], z=0)
+    made = [lambda: hatched.offset(0.1), lambda: hatched.union(other), lambda: other.union(hatched),
+            lambda: hatched.intersection(other), lambda: hatched.difference(other),
+            lambda: hatched.symmetric_difference(other)]  # fmt: skip
+    for make in made:
+        with pytest.warns(lamella.DefectWarning, match="^2 hatch lines left out") as caught:
+            assert len(make().hatches) == 0
+        assert caught[0].filename == __file__
+    for same in (hatched.offset(0), hatched.filled(), hatched.simplified(0)):  # warns of nothing
+        assert same == hatched
+
+
 def test_equality_and_hashes(layer):
     again = lamella.slice(nested_boxes(), 1)
     assert layer == again[5] and layer is not again[5]
@@ -171,7 +210,7 @@ def test_stacks_have_arrays_over_their_layers():
     assert np.isclose(stack.volume, (stack.area * (stack.top - stack.bottom)).sum())
 
 
-@pytest.mark.parametrize("protocol", range(2, pickle.HIGHEST_PROTOCOL + 1))
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
 def test_pickled_layers_are_the_same(layer, protocol):
     assert pickle.loads(pickle.dumps(layer, protocol)) == layer
     stack = lamella.slice(nested_boxes(), 1, direction=(1, 0, 0))
@@ -188,13 +227,32 @@ def test_copies_are_the_same(layer):
 
 
 def test_pickles_of_something_else_are_refused(layer):
-    make, arguments, state = layer.__reduce_ex__(2)[:3]
-    for change in ({6: 4}, {5: np.array([0, 99])}, {5: np.array([0, 8, 4, 12])}, {4: np.full((12, 2), np.inf)}):
-        broken = list(state)
-        for place, value in change.items():
-            broken[place] = value
-        with pytest.raises(lamella.InputError):
-            make(*arguments).__setstate__(tuple(broken))
+    stack = lamella.Stack([layer])
+    mesh = lamella.Mesh(*nested_boxes())
+    points = layer.points
+    for thing, place, values in [
+        (layer, 1, [np.nan, layer.top + 1, "high"]),
+        (layer, 2, [-np.inf, np.nan]),
+        (layer, 3, [np.inf, None]),
+        (layer, 4, [points + np.inf, points[:, 0], points.reshape(-1, 1), points.reshape(-1, 4), points.astype(str), None]),
+        (layer, 5, [np.array([0, 99]), np.array([0, 8, 4, 24]), np.array([0.0, 4.5, 8, 24]), layer.offsets.reshape(2, 2)]),
+        (layer, 6, [4, -1]),
+        (layer, 7, [points[:3], points[0]]),
+        (stack, 0, [[None], [layer, layer], [5]]),
+        (stack, 2, [np.full((2, 3), np.inf) * [[-1], [1]], np.zeros((3, 2))]),
+        (stack, 3, [np.diag([1, 1, np.nan, 1]), np.zeros((4, 4))]),
+        (stack, 9, [[None], [lamella.Stack([])]]),
+        (stack, 10, [5]),
+        (mesh, 0, [mesh.vertices[:, :2], mesh.vertices.ravel(), mesh.vertices * np.nan]),
+        (mesh, 1, [mesh.faces + 99, mesh.faces[:, :2], mesh.faces.astype(float), mesh.faces.astype(np.int64) - 1]),
+        (mesh, 9, [np.diag([1, 1, np.inf, 1])]),
+    ]:  # fmt: skip
+        for value in values:
+            with pytest.raises(lamella.Error):
+                with_state(thing, {place: value})
+    for thing in (layer, stack, mesh):
+        with pytest.raises(lamella.InputError, match="this is no pickled"):
+            type(thing).__new__(type(thing)).__setstate__(())
 
 
 def area_of(layer):
@@ -213,3 +271,11 @@ def test_they_say_what_they_are(rook):
     assert repr(stack[0]).startswith("<lamella.Layer 0 at z = 5 mm: 1 contours, ")
     assert repr(lamella.read(rook)) == f"<lamella.Mesh of 94080 triangles, 31.75 x 31.75 x 53.15 mm, from {rook}>"
     assert repr(lamella.iter_layers(rook, 10)) == "<lamella.LayerStream: 5 of 5 layers left>"
+
+
+def test_layers_of_files_that_round_heights_are_pickled(tmp_path):
+    mesh = lamella.Mesh([[0, 0, 0.7], [5, 0, 0.7], [0, 5, 0.7], [0, 0, 2.7]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    lamella.write(tmp_path / "a.svg", lamella.slice(mesh, 0.1, at="bottom"))
+    read = lamella.read(tmp_path / "a.svg")
+    assert all(layer.bottom <= layer.z <= layer.top for layer in read)
+    assert pickle.loads(pickle.dumps(read)) == read

@@ -87,6 +87,12 @@ def test_stubs_have_what_the_extension_has(name):
     assert {member for member in declared if not member.startswith("__")} <= set(vars(getattr(lamella, name)))
 
 
+@pytest.mark.parametrize("name", EXTENSION)
+def test_stubs_tell_which_classes_have_no_hash(name):
+    unhashable = {node.target.id for node in stub()[name].body if isinstance(node, ast.AnnAssign)} & {"__hash__"}
+    assert bool(unhashable) == (getattr(lamella, name).__hash__ is None)
+
+
 def test_the_extension_is_where_the_stubs_are():
     assert EXTENSION == ["ContourRule", "Exposure", "HatchRule", "Layer", "LayerStream", "Mesh", "ParameterSet",
                          "ScanFigures", "ScanStrategy", "SkinRule", "Stack", "SupportRule"]

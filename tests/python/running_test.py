@@ -1,11 +1,13 @@
 """Long work: other threads go on meanwhile, progress is told, and it can be stopped. Nothing here is timed."""
 
+import gc
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -33,30 +35,46 @@ def run_python(code, *arguments):
     return result.stdout
 
 
-def test_other_threads_go_on_while_slicing(sheet):
-    # The interpreter takes the lock from no thread by force, so the count goes on only where slicing gives it up.
-    code = """
+def counted_meanwhile(prepared, work, *arguments):
+    """How far another thread counts while a statement is worked on. The interpreter takes the lock from no thread by
+    force, so it counts on only where the statement gives the lock up."""
+    code = f"""
 import sys, threading, time
 import lamella
 sys.setswitchinterval(1000)
-mesh = lamella.read(sys.argv[1])
+{prepared}
 counted, done = 0, False
 def count():
     global counted
     while not done:
         counted += 1
         time.sleep(0.0001)
-counter = threading.Thread(target=count)
+counter = threading.Thread(target=count, daemon=True)
 counter.start()
 while counted == 0:
     time.sleep(0.0001)
 before = counted
-lamella.slice(mesh, 0.005)
+{work}
 print(counted - before)
 done = True
 counter.join()
 """
-    assert int(run_python(code, sheet)) > 10
+    return int(run_python(code, *arguments))
+
+
+def test_other_threads_go_on_while_slicing(sheet):
+    assert counted_meanwhile("mesh = lamella.read(sys.argv[1])", "lamella.slice(mesh, 0.005)", sheet) > 10
+
+
+@pytest.mark.parametrize("placed_by", ["(1, 1, 1), None", "(0, 0, 1), np.diag([2, 2, 2, 1])"])
+def test_other_threads_go_on_while_a_mesh_is_placed(placed_by):
+    prepared = """
+import numpy as np
+from lamella._meshes import placed, placing
+mesh = lamella.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 1)], [(0, 1, 2)])
+"""
+    work = f"for _ in range(200): placed(mesh, placing({placed_by}), 1)"
+    assert counted_meanwhile(prepared, work) > 10
 
 
 def test_two_threads_slice_side_by_side(sheet):
@@ -177,29 +195,131 @@ def threads_of_this_process():
     return len(os.listdir("/proc/self/task"))
 
 
+def assert_threads_end(before):
+    # A thread that was joined may be listed for a moment longer.
+    deadline = time.monotonic() + 20
+    while threads_of_this_process() > before and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert threads_of_this_process() <= before
+
+
 def test_a_stream_that_is_left_stops(sheet):
     before = threads_of_this_process()
     layers = lamella.iter_layers(sheet, 0.0001)
     first = next(layers)
     assert threads_of_this_process() > before
     layers.close()
-    assert threads_of_this_process() == before
+    assert_threads_end(before)
     assert list(layers) == []
     layers.close()
     assert first.area > 0
 
     layers = lamella.iter_layers(sheet, 0.0001)
     del layers
-    assert threads_of_this_process() == before
+    assert_threads_end(before)
 
     for layer in lamella.iter_layers(sheet, 0.0001):
         break
-    assert threads_of_this_process() == before
+    assert_threads_end(before)
 
     with pytest.raises(Stop):
         with lamella.iter_layers(sheet, 0.0001) as layers:
             raise Stop
-    assert threads_of_this_process() == before and list(layers) == []
+    assert_threads_end(before)
+    assert list(layers) == []
+
+
+class Viewer:
+    """Listens to a stream of its own: neither is held by anybody else."""
+
+    def __init__(self, path, height):
+        self.stream = lamella.iter_layers(path, height, progress=self.tell)
+
+    def tell(self, stage, done, total):
+        pass
+
+
+def test_a_stream_that_its_listener_holds_is_freed(sheet):
+    before = threads_of_this_process()
+    viewers = [Viewer(sheet, 0.0001) for _ in range(3)]
+    first = [next(viewer.stream).index for viewer in viewers]
+    assert first == [0, 0, 0] and threads_of_this_process() > before
+    del viewers
+    gc.collect()
+    assert_threads_end(before)
+
+
+def test_a_stream_that_is_not_made_yet_is_no_trouble_to_the_collector():
+    class Both(lamella.LayerStream, lamella.Stack):
+        pass
+
+    for cls in (lamella.LayerStream, Both):
+        unmade = cls.__new__(cls)
+        assert gc.is_tracked(unmade)
+        gc.collect()
+        del unmade
+
+
+def test_other_threads_collect_garbage_while_streams_stop(sheet):
+    # In a program of its own, which a mistake would end with a signal.
+    code = """
+import gc, sys, threading
+import lamella
+done = False
+def collect():
+    while not done:
+        gc.collect()
+collector = threading.Thread(target=collect)
+collector.start()
+for _ in range(10):
+    layers = lamella.iter_layers(sys.argv[1], 0.0001)
+    next(layers)
+    del layers
+done = True
+collector.join()
+print("stopped")
+"""
+    assert run_python(code, sheet) == "stopped\n"
+
+
+@pytest.mark.parametrize("finish", [list, lamella.LayerStream.close])
+def test_a_stream_that_has_ended_lets_go_of_its_listener(rook, finish):
+    viewer = Viewer(rook, 1)
+    stream, viewer.stream, listener = viewer.stream, None, weakref.ref(viewer)
+    del viewer
+    next(stream)
+    assert listener() is not None
+    finish(stream)
+    assert listener() is None
+
+
+def test_a_listener_may_close_its_stream(sheet):
+    before = threads_of_this_process()
+    streams = []
+    streams.append(lamella.iter_layers(sheet, 0.0001, progress=lambda *_: [stream.close() for stream in streams]))
+    assert len(list(streams[0])) < len(streams[0].z)
+    assert_threads_end(before)
+
+
+def test_what_a_listener_raises_after_it_closed_its_stream_is_not_lost(sheet):
+    streams = []
+
+    def close_and_raise(*_):
+        for stream in streams:
+            stream.close()
+            raise Stop
+
+    streams.append(lamella.iter_layers(sheet, 0.0001, progress=close_and_raise))
+    with pytest.raises(Stop):
+        list(streams[0])
+
+
+def test_a_stream_without_layers_left_has_no_bottom(rook):
+    stream = lamella.iter_layers(rook, 1)
+    assert stream._bottom == 0
+    assert len(list(stream)) > 0
+    with pytest.raises(lamella.UsageError, match="closed or at its end"):
+        stream._bottom
 
 
 def test_threads_may_share_a_stream(sheet):
@@ -221,16 +341,47 @@ def test_threads_may_share_a_stream(sheet):
         thread.start()
     for thread in threads:
         thread.join()
-    # Python joins a thread a moment before the system has done so.
-    deadline = time.monotonic() + 20
-    while threads_of_this_process() > before and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert threads_of_this_process() <= before
+    assert_threads_end(before)
 
 
 def test_a_program_may_end_with_a_stream_open(sheet):
     code = "import sys, lamella; layers = lamella.iter_layers(sys.argv[1], 0.0001); print(next(layers).index)"
     assert run_python(code, sheet) == "0\n"
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        "lamella.slice(path, 0.05)",
+        "for layer in lamella.iter_layers(path, 0.05, progress=lambda *_: None): layer.parent",
+        "layers = lamella.iter_layers(path, 0.001); next(layers); del layers",
+        "lamella.read(path + '.missing')",
+        "lamella.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]).volume",
+    ],
+)
+def test_a_program_may_end_while_a_daemon_thread_is_at_work(rook, work):
+    # The interpreter takes a while to end, in which the threads ask for the lock.
+    code = f"""
+import sys, threading, time, lamella
+path = sys.argv[1]
+started = threading.Event()
+def work_on():
+    while True:
+        started.set()
+        try:
+            {work}
+        except lamella.InputError:
+            pass
+class Slow:
+    def __del__(self, sleep=time.sleep):
+        sleep(0.3)
+slow = Slow()
+for _ in range(3):
+    threading.Thread(target=work_on, daemon=True).start()
+started.wait()
+print("ends")
+"""
+    assert run_python(code, rook) == "ends\n"
 
 
 def test_a_stream_holds_a_bounded_part_of_the_layers(sheet):

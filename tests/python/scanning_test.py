@@ -1,5 +1,8 @@
 """Scan vectors in Python."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -23,6 +26,13 @@ def test_vectors_are_views_and_lines(tmp_path):
     figures = layer.figures
     assert np.isclose(figures[1].marked_mm, 4 * 9.9)
     assert figures[0].vectors == len(hatch.hatches) and figures[0].energy_j > 0
+
+
+def test_rings_that_are_too_thin_for_vectors_are_counted():
+    thin = lamella.Layer([[(20, 0), (20.08, 0), (20.08, 5), (20, 5)], *square(10)], 0.05, 0, 0.1)
+    for support in [False, True]:
+        assert [layer.thin_rings for layer in lamella.scan([square(10)], support=support)] == [0]
+        assert [layer.thin_rings for layer in lamella.scan([thin], support=support)] == [1]
 
 
 def test_hatch_lines_are_those_that_shapely_cuts():
@@ -57,6 +67,23 @@ def test_skins_see_the_layers_around(tmp_path):
         for layer in lamella.scan(iter(layers), strategy)
     ]
     assert have == [{"downskin"}, {"core"}, {"core"}, {"upskin"}, {"upskin"}]
+
+
+def test_points_that_a_file_moved_off_straight_ways_are_left_out(tmp_path):
+    side = np.linspace(0, 10, 101)
+    turned = np.array([[np.cos(0.5), np.sin(0.5)], [-np.sin(0.5), np.cos(0.5)]])
+    ring = np.concatenate([np.column_stack([side, 0 * side]), [(10, 10), (0, 10)]]) @ turned
+    lamella.write(tmp_path / "a.cli", lamella.Stack([lamella.Layer([ring], 0.05, 0, 0.1, 0)]))
+    read = lamella.read(tmp_path / "a.cli")
+    plain = {"contours": {"count": 1}}
+
+    def points_of_contours(layers, support):
+        (layer,) = lamella.scan(layers, plain, support=support)
+        return [len(vectors.points) for exposure, vectors in layer if exposure.kind == "contour"]
+
+    for support in [False, True]:
+        assert points_of_contours(read, support) == [4]
+        assert points_of_contours(iter(read), support)[0] > 4
 
 
 def test_supports_have_rules_of_their_own():
@@ -129,7 +156,12 @@ def test_strategies_come_from_files_and_dicts(tmp_path):
         ({"hatch": {"distnace": 1}}, "strategy: hatch: there is no distnace; did you mean distance?"),
         ({"hatches": {}}, "strategy: there is no hatches; did you mean hatch?"),
         ({"hatch": {"distance": 0}}, "`hatch.distance` is 0, but has to be above 0"),
-        ({"hatch": {"pattern": "zigzag"}}, "there are lines, meander, stripes, chessboard, hexagons"),
+        ({"hatch": {"pattern": "zigzag"}}, 'hatch.pattern: "zigzag" is none of "lines", "meander", "stripes", "chessboard" and'),
+        ({"contours": {"count": -1}}, "strategy: contours.count: -1 is not possible; expected a whole number from 0 to"),
+        ({"upskin": {"layers": 2**40}}, "strategy: upskin.layers: 1099511627776 is not possible"),
+        ({"seed": -1}, "strategy: seed: -1 is not possible; expected a whole number, 0 or more"),
+        ({"support": {"hatch": {"cell": np.inf}}}, "strategy: support.hatch.cell: inf is not possible"),
+        ({"parameters": {"hatch": {"name": "fast"}}}, "strategy: parameters.hatch: there is no name"),
         ({"hatch": {"parameters": "slow"}}, "there are no parameters slow"),
         ({"parameters": {"slow": {}}}, "the parameters slow are used nowhere"),
     ],
@@ -140,12 +172,103 @@ def test_strategies_that_are_wrong_say_where(tables, text):
     assert text in str(caught.value)
 
 
-def test_wrong_types_are_type_errors():
-    for strategy in (5, {"hatch": {"distance": "wide"}}, {"hatch": 3}):
-        with pytest.raises(TypeError):
-            lamella.scan([square(10)], strategy)
+@pytest.mark.parametrize(
+    "strategy, text",
+    [
+        (5, "strategy: expected a ScanStrategy, a path, or a dict of tables, found 5"),
+        ({"hatch": 3}, "strategy: hatch: expected a table, found 3"),
+        ({"hatch": {"distance": "wide"}}, "strategy: hatch.distance: expected a finite number, found 'wide'"),
+        ({"hatch": {"distance": {}}}, "strategy: hatch.distance: expected a finite number, found an object of type dict"),
+        ({"hatch": {"distance": {"x": 1}}}, "strategy: hatch.distance: expected a finite number, found an object of type"),
+        ({"hatch": {"distance": True}}, "strategy: hatch.distance: expected a finite number, found True"),
+        ({"contours": {"count": True}}, "strategy: contours.count: expected a whole number"),
+        ({"contours": {"count": 1.5}}, "strategy: contours.count: expected a whole number"),
+        ({"contours": {"before_hatch": 1}}, "strategy: contours.before_hatch: expected True or False, found 1"),
+        ({"hatch": {"pattern": 5}}, 'strategy: hatch.pattern: expected "lines", '),
+        ({"hatch": {"parameters": []}}, "strategy: hatch.parameters: expected a text, found an object of type list"),
+        ({"parameters": {5: {}}}, "strategy: parameters: expected a text, found 5"),
+    ],
+)
+def test_wrong_types_are_type_errors(strategy, text):
+    with pytest.raises(TypeError) as caught:
+        lamella.scan([square(10)], strategy)
+    assert str(caught.value).startswith(text)
+
+
+def test_layers_of_wrong_types_are_type_errors():
     with pytest.raises(TypeError):
         list(lamella.scan([1, 2]))
+
+
+def test_layers_that_do_not_ascend_are_refused():
+    layers = [square(10, z) for z in (0.05, 0.25, 0.15)]
+    for support in (False, True):
+        scanned = lamella.scan(layers, {"hatch": {"distance": 1}}, support=support)
+        with pytest.raises(lamella.UsageError, match=r"^layers: must ascend in z: 0\.15 mm comes after 0\.25 mm$"):
+            list(scanned)
+
+
+def test_a_strategy_is_that_of_the_call():
+    strategy = lamella.ScanStrategy()
+    expected = list(lamella.scan([square(10)], strategy))
+    scanned = lamella.scan([square(10)], strategy)
+    strategy.hatch.distance = 1
+    strategy.hatch.parameters.power_w = 7
+    assert list(scanned) == expected
+    exposure = expected[0].exposures[0]
+    exposure.parameters.power_w = 7
+    assert exposure.parameters.power_w == 200, "parameters of an exposure are a copy"
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_what_scanning_takes_and_gives_is_copied_and_compared(protocol):
+    strategy = lamella.ScanStrategy()
+    strategy.upskin.hatch.pattern = "hexagons"
+    strategy.support.contours.parameters.name = "caf\udce9"
+    strategy.seed = 2**63
+    scanned = next(lamella.scan([square(10)], strategy, "a\udcff"))
+    for thing in (strategy, strategy.hatch, strategy.upskin, strategy.hatch.parameters, scanned, scanned.exposures,
+                  scanned.figures):  # fmt: skip
+        for same in (pickle.loads(pickle.dumps(thing, protocol)), copy.deepcopy(thing)):
+            assert same == thing and same is not thing and type(same) is type(thing)
+    assert hash(scanned) == hash(copy.deepcopy(scanned))
+    assert strategy != lamella.ScanStrategy() and strategy != 5 and strategy.hatch != lamella.HatchRule
+    assert strategy.hatch == lamella.HatchRule() and scanned.exposures[0] != scanned.exposures[1]
+    assert scanned.figures[0] != scanned.figures[1]
+
+
+def test_attributes_with_few_values_tell_them():
+    for attribute, values in [
+        (lamella.HatchRule.pattern, ["lines", "meander", "stripes", "chessboard", "hexagons"]),
+        (lamella.HatchRule.order, ["rows", "random"]),
+        (lamella.ContourRule.order, ["inside-out", "outside-in"]),
+        (lamella.ContourRule.start, ["aligned", "sharpest", "random"]),
+    ]:
+        assert attribute.__doc__.endswith(": " + ", ".join(f'"{value}"' for value in values))
+
+
+def test_attributes_of_strategies_tell_wrong_types_from_wrong_values():
+    contours = lamella.ContourRule()
+    with pytest.raises(lamella.UsageError, match="^count: -1 is not possible"):
+        contours.count = -1
+    with pytest.raises(lamella.UsageError, match='^order: "upwards" is none of "inside-out" and "outside-in"$'):
+        contours.order = "upwards"
+    for attribute, value in [("count", True), ("count", "1"), ("distance", False), ("before_hatch", 1), ("order", 1)]:
+        with pytest.raises(TypeError, match=f"^{attribute}: expected "):
+            setattr(contours, attribute, value)
+    with pytest.raises(TypeError, match="^name: expected a text, found 5$"):
+        contours.parameters.name = 5
+    assert (contours.count, contours.distance, contours.before_hatch) == (1, 0.1, False)
+    contours.count, contours.distance, contours.before_hatch = np.int64(2), np.float32(0.5), np.bool_(True)
+    assert (contours.count, contours.distance, contours.before_hatch) == (2, 0.5, True)
+
+
+def test_names_need_not_be_utf_8():
+    strategy = {"hatch": {"parameters": "caf\udce9"}, "parameters": {"caf\udce9": {"power_w": 7}}}
+    (layer,) = lamella.scan([square(10)], strategy, "a\udcff")
+    exposure = layer.exposures[0]
+    assert (exposure.part, exposure.parameters.name) == ("a\udcff", "caf\udce9")
+    assert repr(exposure) == "<lamella.Exposure a\udcff core hatch>"
 
 
 def test_files_of_pyslm_find_what_they_look_for():
@@ -157,3 +280,19 @@ def test_files_of_pyslm_find_what_they_look_for():
     assert hatch.coords.shape == (2 * len(layer.layers[0].hatches), 2) and hatch.bid == 1 and hatch.mid == 3
     assert (contour.coords[0] == contour.coords[-1]).all() and contour.bid == 2
     assert pyslm.getGeometry() == [hatch, contour] and pyslm.getPointsGeometry() == []
+
+
+def test_strategies_may_be_derived():
+    class Fine(lamella.ScanStrategy):
+        def __init__(self, distance):
+            super().__init__()
+            self.hatch.distance = distance
+
+        def lines_per_mm(self):
+            return 1 / self.hatch.distance
+
+    fine = Fine(0.05)
+    assert fine == Fine(0.05) and fine != Fine(0.06)
+    assert copy.deepcopy(fine) == fine
+    (scanned,) = lamella.scan([square(10)], fine)
+    assert scanned == next(lamella.scan([square(10)], {"hatch": {"distance": 0.05}}))

@@ -78,6 +78,14 @@ def test_vertices_that_are_equal_need_not_be_shared():
     assert apart == lamella.slice((vertices, faces), 1)
 
 
+def test_vertices_without_faces_do_not_count():
+    vertices, faces = box_arrays()
+    more = np.concatenate([[(-100.0, 0, -7)], vertices, [(0, 0, 99)]])
+    mesh = lamella.Mesh(more, faces + 1)
+    assert mesh.bounds.tolist() == [[0, 0, 0], [20, 30, 10]] and len(mesh.vertices) == 8
+    assert lamella.slice((more, faces + 1), 1) == lamella.slice((vertices, faces), 1)
+
+
 def test_a_box_has_the_rings_of_a_box():
     stack = lamella.slice(box_arrays(20, 30, 10), 1)
     assert stack.area.tolist() == [600.0] * 10

@@ -60,6 +60,7 @@ BAD = {
     "lamella.slice('part.stl')[0].point": "attr-defined",
     "lamella.slice('part.stl', progress=lambda: None)": "arg-type",
     "text: str = lamella.slice('part.stl')[0].area": "assignment",
+    "key: Hashable = lamella.slice('part.stl')": "assignment",
 }
 
 
@@ -72,8 +73,8 @@ def test_users_get_types(tmp_path):
 
 def test_users_are_told_their_mistakes(tmp_path):
     program = tmp_path / "bad.py"
-    program.write_text("import lamella\n" + "\n".join(BAD) + "\n")
+    program.write_text("from typing import Hashable\nimport lamella\n" + "\n".join(BAD) + "\n")
     code, text = mypy(tmp_path, str(program))
     assert code == 1
-    for line, (mistake, kind) in enumerate(BAD.items(), start=2):
+    for line, (mistake, kind) in enumerate(BAD.items(), start=3):
         assert f"bad.py:{line}: error" in text and f"[{kind}]" in text, mistake + "\n" + text

@@ -1,7 +1,7 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/core/error.hpp"
 #include "lamella/raster/picture.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
 #include "raster/clipped_area.hpp"
@@ -106,6 +106,21 @@ Contour triangle(Random& random, double from, double to) {
     return ring;
 }
 
+/// Compares all pixels: covered(column, row) is how much of one is.
+template <class Covered>
+void expect_covered(const GreyPicture& picture, std::uint64_t seed, const Covered& covered) {
+    for (std::uint32_t r = 0; r < picture.height; ++r)
+        for (std::uint32_t c = 0; c < picture.width; ++c)
+            ASSERT_NEAR(picture.row(r)[c], 255 * covered(c, r), 0.5 + 1e-6)
+                << "seed " << seed << ", column " << c << ", row " << r;
+}
+
+void expect_centres(const GreyPicture& picture, std::uint64_t seed, const Layer& layer) {
+    expect_covered(picture, seed, [&](double column, double row) {
+        return winding_number(layer, {column + 0.5, row + 0.5}) != 0 ? 1 : 0;
+    });
+}
+
 /// What two convex rings that run counter-clockwise have in common.
 Contour common(Contour ring, const Contour& other) {
     for (std::size_t i = 0; i < other.size(); ++i) {
@@ -122,11 +137,7 @@ TEST(Picture, WithoutAntiAliasingHasThePixelsWhoseCentresAreInside) {
     constexpr std::uint32_t size = 24;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         const Layer layer = tangle(seed, size);
-        const GreyPicture picture = paint_one(layer, plain(size, size), 1);
-        for (std::uint32_t r = 0; r < size; ++r)
-            for (std::uint32_t c = 0; c < size; ++c)
-                ASSERT_EQ(picture.row(r)[c], winding_number(layer, {c + 0.5, r + 0.5}) != 0 ? 255 : 0)
-                    << "seed " << seed << ", column " << c << ", row " << r;
+        expect_centres(paint_one(layer, plain(size, size), 1), seed, layer);
     }
 }
 
@@ -144,11 +155,7 @@ TEST(Picture, GivesCentresOnContoursToOneOfTwoNeighbours) {
                                                       : diamond(a.x, a.y, side));
         }
         const Layer layer = layer_of(rings);
-        const GreyPicture picture = paint_one(layer, plain(size, size), 1);
-        for (std::uint32_t r = 0; r < size; ++r)
-            for (std::uint32_t c = 0; c < size; ++c)
-                ASSERT_EQ(picture.row(r)[c], winding_number(layer, {c + 0.5, r + 0.5}) != 0 ? 255 : 0)
-                    << "seed " << seed << ", column " << c << ", row " << r;
+        expect_centres(paint_one(layer, plain(size, size), 1), seed, layer);
     }
 }
 
@@ -211,11 +218,8 @@ TEST(Picture, IsExactWithCornersAnywhere) {
             seed % 2 == 0 ? triangle(random, -5, 21) : triangle(random, 4, 7); // within a few pixels
         if (seed % 3 == 0)
             ring[0].y = ring[1].y; // a level side, within a row
-        const GreyPicture picture = paint_one(layer_of({ring}), plain(size, size), 4);
-        for (std::uint32_t r = 0; r < size; ++r)
-            for (std::uint32_t c = 0; c < size; ++c)
-                ASSERT_NEAR(picture.row(r)[c], 255 * test::clipped_area(ring, c, r), 0.5 + 1e-6)
-                    << "seed " << seed << ", column " << c << ", row " << r;
+        expect_covered(paint_one(layer_of({ring}), plain(size, size), 4), seed,
+                       [&](double c, double r) { return test::clipped_area(ring, c, r); });
     }
 }
 
@@ -279,14 +283,9 @@ TEST(Picture, IsExactWhereBodiesOverlap) {
         const Contour b = triangle(random, -5, 21);
         const Contour both = common(a, b);
         const std::vector<Layer> parts{layer_of({a}), layer_of({b})};
-        const GreyPicture picture = paint(parts, plain(size, size), {.antialias = 16});
-        for (std::uint32_t r = 0; r < size; ++r)
-            for (std::uint32_t c = 0; c < size; ++c) {
-                const double covered = test::clipped_area(a, c, r) + test::clipped_area(b, c, r) -
-                                       test::clipped_area(both, c, r);
-                ASSERT_NEAR(picture.row(r)[c], 255 * covered, 0.5 + 1e-6)
-                    << "seed " << seed << ", column " << c << ", row " << r;
-            }
+        expect_covered(paint(parts, plain(size, size), {.antialias = 16}), seed, [&](double c, double r) {
+            return test::clipped_area(a, c, r) + test::clipped_area(b, c, r) - test::clipped_area(both, c, r);
+        });
     }
 }
 
@@ -296,13 +295,9 @@ TEST(Picture, IsExactForSidesAlongThePixels) {
         const double x = random.real(-2, 10);
         const double y = random.real(-2, 10);
         const Contour ring = rectangle(x, y, x + random.real(1, 12), y + random.real(0.01, 12));
-        for (const unsigned antialias : {2U, 8U}) {
-            const GreyPicture picture = paint_one(layer_of({ring}), plain(16, 16), antialias);
-            for (std::uint32_t r = 0; r < 16; ++r)
-                for (std::uint32_t c = 0; c < 16; ++c)
-                    ASSERT_NEAR(picture.row(r)[c], 255 * test::clipped_area(ring, c, r), 0.5 + 1e-6)
-                        << "seed " << seed << ", column " << c << ", row " << r;
-        }
+        for (const unsigned antialias : {2U, 8U})
+            expect_covered(paint_one(layer_of({ring}), plain(16, 16), antialias), seed,
+                           [&](double c, double r) { return test::clipped_area(ring, c, r); });
     }
 }
 
@@ -515,14 +510,8 @@ TEST(Picture, BendsValuesByGammaAndLeavesFullAndEmptyPixels) {
 }
 
 TEST(Picture, RefusesWhatMakesNoPicture) {
-    const auto message = [](const PixelGrid& grid, const RasterOptions& options) -> std::string {
-        try {
-            static_cast<void>(paint({}, grid, options));
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::usage);
-            return error.what();
-        }
-        return "";
+    const auto message = [](const PixelGrid& grid, const RasterOptions& options) {
+        return test::error_of(ErrorKind::usage, [&] { static_cast<void>(paint({}, grid, options)); });
     };
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_NE(message(plain(0, 10), {}).find("0 x 10 pixels: each side must have 1 to 65535"),
@@ -535,7 +524,7 @@ TEST(Picture, RefusesWhatMakesNoPicture) {
     EXPECT_NE(message(plain(1, 1), {.antialias = 65}).find("level 65"), std::string::npos);
     EXPECT_NE(message(plain(1, 1), {.gamma = 0}).find("gamma of 0"), std::string::npos);
     EXPECT_NE(message(plain(1, 1), {.gamma = nan}).find("gamma of nan"), std::string::npos);
-    EXPECT_EQ(message(plain(1, 1), {}), "");
+    EXPECT_NO_THROW(static_cast<void>(paint({}, plain(1, 1), {})));
 }
 
 } // namespace

@@ -124,6 +124,21 @@ TEST(Amf, TwoObjectsOrTwoConstellationsOfOneIdAreRefused) {
               "x: line 12: constellation '1': the id is there for the second time");
 }
 
+// They would be walked once for each of 65,536 instances.
+TEST(Amf, OfManyEmptyInstancesEndsSoon) {
+    constexpr int doublings = 16;
+    std::string empty;
+    for (int i = 0; i < 50'000; ++i)
+        empty += instance("e");
+    std::string text =
+        amf_object("0") + "<object id=\"e\"><mesh/></object>" + constellation("c0", instance("0") + empty);
+    for (int i = 1; i <= doublings; ++i) {
+        const std::string inner = instance(fmt::format("c{}", i - 1));
+        text += constellation(fmt::format("c{}", i), inner + inner);
+    }
+    EXPECT_EQ(read(amf(text)).instances.size(), std::size_t{1} << doublings);
+}
+
 TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
     const std::string two = replaced(amf_object("0"), "</volume>",
                                      "</volume><volume materialid=\"2\"><metadata type=\"name\">x</metadata>"

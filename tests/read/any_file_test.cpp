@@ -1,7 +1,8 @@
-#include "lamella/core/error.hpp"
 #include "lamella/read/any_file.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "read/gzip.hpp"
+#include "read/packages.hpp"
 #include "temporary_folder.hpp"
 
 #include <fcntl.h>
@@ -33,14 +34,7 @@ constexpr std::string_view mesh_as_text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 /// The text of the error that reading gives.
 std::string refusal_of(std::string_view text) {
-    try {
-        static_cast<void>(read_text(text));
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        return error.what();
-    }
-    ADD_FAILURE() << "no error: " << text;
-    return {};
+    return test::error_of(ErrorKind::input, [&] { static_cast<void>(read_text(text)); });
 }
 
 TEST(ReadAny, GivesLayersOrAMeshByTheContent) {
@@ -72,6 +66,41 @@ TEST(ReadAny, ReportsWhatTheReaderOfTheKindFinds) {
          {"solid part"sv, "ply\n"sv, "OFF\n"sv, "PK"sv, "<?xml version=\"1.0\"?><amf unit=\"inch\">"sv,
           "<!DOCTYPE html><html><svg>"sv, "\x1f\x8b\x08"sv, "$HEADER"sv})
         EXPECT_EQ(refusal_of(text).find("slice file is expected"), std::string::npos) << text;
+}
+
+/// A 3MF package with a box, with such slices, and with such a build.
+std::string package_of(const std::string& slices, const std::string& build) {
+    using namespace package_test;
+    return package(model(slices + object(2, box_mesh(), "t:slicestackid=\"1\"") + object(3, box_mesh()),
+                         build, "xmlns:t=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\""),
+                   {{"3D/a.model", model(object(7, box_mesh()), "")}});
+}
+
+TEST(ReadAny, TakesMeshesOnlyWhereThereAreNoLayers) {
+    const auto stack = [](std::string_view last) {
+        return fmt::format(
+            "<t:slicestack id=\"1\"><t:slice ztop=\"1\"><t:vertices><t:vertex x=\"0\" y=\"0\"/>"
+            "<t:vertex x=\"1\" y=\"0\"/><t:vertex x=\"0\" y=\"1\"/></t:vertices><t:polygon "
+            "startv=\"0\"><t:segment v2=\"1\"/><t:segment v2=\"2\"/><t:segment v2=\"{}\"/>"
+            "</t:polygon></t:slice></t:slicestack>",
+            last);
+    };
+    const std::string sliced = "<item objectid=\"2\"/>";
+    const std::string whole = package_of(stack("0"), sliced);
+    EXPECT_TRUE(std::holds_alternative<LayerFile>(read_text(whole)));
+    // The mesh of a sliced object may be a stand-in.
+    EXPECT_NE(refusal_of(package_of(stack("9"), sliced)).find("vertex 9"), std::string::npos);
+    EXPECT_TRUE(
+        std::holds_alternative<MeshFile>(read_text(package_of(stack("0"), "<item objectid=\"3\"/>"))));
+    // Such a build says what a reader of slices does not understand, and such a package where its model is.
+    using namespace package_test;
+    for (const std::string& meshes :
+         {package(model("", "<item objectid=\"7\" p:path=\"/3D/a.model\"/>"),
+                  {{"3D/a.model", model(object(7, box_mesh()), "")}}),
+          zip_test::zip_bytes(
+              {{.name = "_rels/.rels", .content = relationships({})},
+               {.name = "a.model", .content = model(object(1, box_mesh()), "<item objectid=\"1\"/>")}})})
+        EXPECT_TRUE(std::holds_alternative<MeshFile>(read_text(meshes)));
 }
 
 TEST(ReadAny, LooksIntoWhatIsPackedWithGzip) {

@@ -3,8 +3,11 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include "fixtures/expect_error.hpp"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -22,13 +25,7 @@ LayerFile read(const std::string& bytes) {
 }
 
 std::string error_of(const std::string& bytes) {
-    try {
-        static_cast<void>(read(bytes));
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-        return error.what();
-    }
-    return "no error";
+    return test::error_of(ErrorKind::input, [&] { static_cast<void>(read(bytes)); });
 }
 
 void expect_error(const std::string& bytes, const std::string& part) {
@@ -128,6 +125,21 @@ TEST(ReadCommonLayer, IntegersLeadingZerosCommentsAndUnknownCommandsAreFine) {
     expect_ring(file, 100);
     EXPECT_EQ(file.parts.at(0).label, "a part");
     EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
+}
+
+TEST(ReadCommonLayer, CommandsMayFollowUnknownOnesOnTheirLine) {
+    std::string line = ascii(ring, "$$UNITS/0.01 $$VERSION/200 $$DATE/010101 ignored\n");
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    expect_ring(read(line), 96);
+    const std::string power =
+        "$$POWER/100.0 // $$LAYER/90 // $$POLYLINE/1,1,5,0,0,1000,0,1000,1000,0,1000,0,0\n";
+    expect_ring(read(ascii("$$LAYER/0\n$$LAYER/50\n" + power)), 100);
+}
+
+TEST(ReadCommonLayer, LabelsEndWhereACommentBegins) {
+    for (const std::string label : {"a part // 1 //", "\"a part\" // 1 //", "a part"})
+        EXPECT_EQ(read(ascii(ring, "$$UNITS/0.01\n$$LABEL/1," + label + "\n")).parts.at(0).label, "a part");
+    EXPECT_EQ(read(ascii(ring, "$$UNITS/0.01\n$$LABEL/1,http://a\n")).parts.at(0).label, "http://a");
 }
 
 TEST(ReadCommonLayer, UserDataMayHoldCommands) {
@@ -265,6 +277,8 @@ TEST(ReadCommonLayer, HeadersThatSayTooLittleOrTooMuchAreRefused) {
     expect_error(ascii(ring, "$$UNITS/0\n"), "above 0");
     expect_error(ascii(ring, "$$UNITS/-1\n"), "above 0");
     expect_error(ascii(ring, "$$UNITS/nan\n"), "must be a number");
+    expect_error(ascii(ring, "$$UNITS/1,5\n"), "found '1,5'; the units must be a number");
+    expect_error(ascii(ring, "$$UNITS/1.5abc\n"), "found '1.5abc'; the units must be a number");
     expect_error(ascii(ring, "$$UNITS/1\n$$BINARY\n"), "both");
     expect_error("$$HEADERSTART\n$$UNITS/1\n$$HEADEREND", "neither");
     expect_error(ascii("", "$$UNITS/1\n"), "no layer");

@@ -5,6 +5,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/mesh_file.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/mutations.hpp"
 
 #include <gtest/gtest.h>
@@ -53,15 +54,7 @@ inline void expect_mesh(std::string_view bytes, const std::string& name, const s
 /// What the error says; fails the test when there is none or it is of another kind.
 inline std::string error_of(std::string_view bytes, const std::string& name,
                             const MeshReadOptions& options = {}, ErrorKind kind = ErrorKind::input) {
-    try {
-        const MeshFile file = read(bytes, name, options);
-        ADD_FAILURE() << "no error, but " << file.stored_triangles << " triangles";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind) << error.what();
-        EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos) << error.what();
-        return error.what();
-    }
-    return {};
+    return test::error_of(kind, [&] { static_cast<void>(read(bytes, name, options)); });
 }
 
 /// Reads with this one warning, which is an error for a strict caller.

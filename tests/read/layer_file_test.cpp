@@ -1,10 +1,13 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "read/gzip.hpp"
+#include "read/layer_assembly.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -26,24 +29,30 @@ LayerFile read_text(const std::string& content) {
 }
 
 TEST(LayerFile, OfNoKindNamesAllKindsThatAreRead) {
-    try {
-        (void)read_text("G1 X10 Y10\n");
-        FAIL() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        const std::string text = error.what();
-        for (const char* kind : {"$$HEADERSTART", "-SLCVER", "<svg", "JSON", "3MF", "NumPy"})
-            EXPECT_NE(text.find(kind), std::string::npos) << kind << ": " << text;
-    }
+    const std::string text = test::error_of(ErrorKind::input, [] { (void)read_text("G1 X10 Y10\n"); });
+    for (const char* kind : {"$$HEADERSTART", "-SLCVER", "<svg", "JSON", "3MF", "NumPy"})
+        EXPECT_NE(text.find(kind), std::string::npos) << kind << ": " << text;
+}
+
+TEST(LayerFile, MayBeAStackOfAThousandPartsInFewBytes) {
+    LayerFile file;
+    file.path = "stack.cli";
+    file.parts.resize(1000);
+    check_part_planes(file, 1100, 114'338); // as such a plate is written
+    const auto check = [&](std::uint64_t planes, std::uint64_t bytes) {
+        return [&, planes, bytes] {
+            check_part_planes(file, planes, bytes);
+        };
+    };
+    check(5000, 5'000'000)();
+    EXPECT_NE(test::error_of(ErrorKind::input, check(5000, 114'338)).find("1000 parts on 5000 planes"),
+              std::string::npos);
 }
 
 TEST(LayerFile, IsOfTheKindThatItsBeginningSaysWhateverItsTextsHold) {
-    try {
-        (void)read_text("{\"label\": \"$$HEADERSTART <svg\"}");
-        FAIL() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()).find("$$"), std::string::npos) << error.what();
-    }
+    const std::string text =
+        test::error_of(ErrorKind::input, [] { (void)read_text("{\"label\": \"$$HEADERSTART <svg\"}"); });
+    EXPECT_EQ(text.find("$$"), std::string::npos) << text;
 }
 
 TEST(LayerFile, MayBePackedWithGzip) {
@@ -62,12 +71,7 @@ TEST(LayerFile, WhatIsUnpackedCountsForTheLimit) {
     if (content.empty())
         GTEST_SKIP() << "no gzip program";
     EXPECT_EQ(read_packed(content, 2U << 20).parts.size(), 1U);
-    try {
-        static_cast<void>(read_packed(content, 1U << 19));
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::limit) << error.what();
-    }
+    test::error_of(ErrorKind::limit, [&] { static_cast<void>(read_packed(content, 1U << 19)); });
 }
 
 TEST(LayerFile, PackedWithGzipAndCutOffIsAnError) {

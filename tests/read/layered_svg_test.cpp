@@ -1,6 +1,9 @@
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
+
+#include "fixtures/expect_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,13 +23,8 @@ LayerFile read(const std::string& bytes) {
 }
 
 void expect_error(const std::string& bytes, const std::string& part) {
-    try {
-        static_cast<void>(read(bytes));
-        ADD_FAILURE() << "no error, expected " << part;
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
+    const std::string text = test::error_of(ErrorKind::input, [&] { static_cast<void>(read(bytes)); });
+    EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
 std::string svg(const std::string& content) {
@@ -71,6 +69,16 @@ TEST(ReadLayeredSvg, LayersAreListedByTheirCuts) {
     EXPECT_EQ(file.parts.at(0).layers[1].index, 1U);
 }
 
+TEST(ReadLayeredSvg, LayersWhoseHeightsWereRoundedEachByItselfMeet) {
+    const LayerFile file = read(svg("<g slic3r:z=\"0.0333\" slic3r:layer-height=\"0.0333\">" + square +
+                                    "</g><g slic3r:z=\"0.0667\" slic3r:layer-height=\"0.0333\">" + square +
+                                    "</g><g slic3r:z=\"0.2\" slic3r:layer-height=\"0.0333\"/>"));
+    const LayerStack& layers = file.parts.at(0).layers;
+    ASSERT_EQ(layers.size(), 3U);
+    EXPECT_EQ(layers[1].bottom, layers[0].top);
+    EXPECT_NEAR(layers[2].bottom, 0.1667, 1e-12); // a gap
+}
+
 TEST(ReadLayeredSvg, NoSlabIsUpsideDown) {
     const LayerFile file = read(svg("<g slic3r:z=\"-1\">" + square + "</g>"));
     EXPECT_EQ(file.parts.at(0).layers.at(0).bottom, file.parts.at(0).layers.at(0).top);
@@ -90,10 +98,38 @@ TEST(ReadLayeredSvg, PathsAreTurnedBackUpright) {
     EXPECT_DOUBLE_EQ(std::abs(ring_area(file.parts.at(0).layers[0].contour(1))), 4);
 }
 
-TEST(ReadLayeredSvg, PolylinesAreOpenChains) {
-    const LayerFile file = read(svg("<g slic3r:z=\"0.5\">" + square + "<polyline points=\"1,1 2,2\"/></g>"));
-    EXPECT_EQ(file.parts.at(0).layers[0].open_chains(), 1U);
-    EXPECT_EQ(file.warnings.size(), 1U);
+TEST(ReadLayeredSvg, WhatFollowsTheEndOfARingBeginsWhereTheRingDid) {
+    const auto rings = [](const std::string& path) {
+        return read(svg("<g slic3r:z=\"0.5\"><path d=\"" + path + "\"/></g>")).parts.at(0).layers.at(0);
+    };
+    const Layer moved = rings("M 1 1 H 5 V 5 H 1 Z M 11 1 H 15 V 5 H 11 Z");
+    EXPECT_EQ(moved.rings, 2U);
+    EXPECT_TRUE(same_contours(rings("m 1 1 h 4 v 4 h -4 z m 10 0 h 4 v 4 h -4 z"), moved));
+    const Layer drawn = rings("M 0 0 L 10 0 L 10 10 Z M 0 0 L -3 3 L 0 6 Z");
+    EXPECT_EQ(drawn.rings, 2U);
+    EXPECT_TRUE(same_contours(rings("M 0 0 L 10 0 L 10 10 Z l -3 3 l 3 3 z"), drawn));
+}
+
+TEST(ReadLayeredSvg, PolylinesAndPathsThatStayOpenAreChains) {
+    for (const std::string open : {"<polyline points=\"1,1 2,2\"/>", "<path d=\"M 1 1 L 2 2\"/>",
+                                   "<path d=\"M 0 0 H 1 V 1 Z M 1 1 L 2 2\"/>"}) {
+        const LayerFile file = read(svg("<g slic3r:z=\"0.5\">" + square + open + "</g>"));
+        EXPECT_EQ(file.parts.at(0).layers[0].open_chains(), 1U);
+        EXPECT_EQ(file.warnings, std::vector<std::string>{"1 contours are open (first at line 3)"});
+    }
+}
+
+TEST(ReadLayeredSvg, TransformsAreNotFollowedButToldOf) {
+    const std::string plain = svg("<g slic3r:z=\"0.5\"><g>" + square + "</g></g>");
+    EXPECT_TRUE(read(plain).warnings.empty());
+    for (const std::string tag : {"<svg ", "<g slic3r:z=\"0.5\"", "<g>", "<polygon "}) {
+        std::string turned = plain;
+        turned.insert(turned.find(tag) + (tag == "<svg " ? 4 : 2) + (tag == "<polygon " ? 6 : 0),
+                      " transform=\"scale(10)\" ");
+        const LayerFile file = read(turned);
+        ASSERT_EQ(file.warnings.size(), 1U) << turned;
+        EXPECT_EQ(file.warnings[0].find("1 elements have transforms, which were not followed"), 0U);
+    }
 }
 
 TEST(ReadLayeredSvg, WhatIsNoLayeredSvgIsRefused) {

@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
+
+#include "fixtures/expect_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +13,7 @@ LayerFile read(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-    try {
-        static_cast<void>(read(text));
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-        return error.what();
-    }
-    return "no error";
+    return test::error_of(ErrorKind::input, [&] { static_cast<void>(read(text)); });
 }
 
 std::string file(const std::string& layers) {
@@ -44,6 +39,17 @@ TEST(ReadLayersJson, TellsAllThatALayerHas) {
     EXPECT_EQ(only.hatches[1], (Point2{2, 3}));
 }
 
+TEST(ReadLayersJson, TakesAByteOrderMarkInFront) {
+    const std::string text = file(layer("{\"rings\": []}"));
+    EXPECT_EQ(read("\xEF\xBB\xBF" + text).parts.front().layers.size(), 1U);
+    EXPECT_EQ(read("\xEF\xBB\xBF\n" + text).parts.front().layers.size(), 1U);
+}
+
+/// A document with something more in front of its end.
+std::string ended_with(std::string document, const std::string& end) {
+    return document.replace(document.rfind('}'), std::string::npos, end);
+}
+
 TEST(ReadLayersJson, RefusesWhatItDoesNotUnderstand) {
     const auto expect = [](const std::string& text, const char* part) {
         EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
@@ -52,6 +58,9 @@ TEST(ReadLayersJson, RefusesWhatItDoesNotUnderstand) {
     expect("{}", "format");
     expect("{\"format\": \"geojson\"}", "'geojson'");
     expect("{\"format\": \"lamella layers\", \"version\": 2}", "version 2");
+    expect(R"({"format": "a\nb"})", "'a\\x0ab'");
+    expect(R"({"format": "lamella layers", "rule": "a\nb"})", "'a\\x0ab'");
+    expect(ended_with(file(layer("{}")), ", \"parts\": [{}]}"), "\"parts\" a second time");
     expect(file(""), "no layer");
     expect(file(layer("{\"rings\": [[0, 0, 1]]}")), "x without its y");
     expect(file(layer("{\"hatches\": [0, 0]}")), "half a hatch");

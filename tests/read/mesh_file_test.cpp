@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 namespace lamella::mesh_test {
 namespace {
@@ -32,8 +33,10 @@ TEST(MeshFile, IsReadByItsContentWhateverItsName) {
         EXPECT_EQ(read(stl, name).format, "stl-ascii") << name;
         EXPECT_EQ(read(ply, name).format, "ply") << name;
         EXPECT_EQ(read(off, name).format, "off") << name;
+        EXPECT_EQ(read("OFF # <amf" + off.substr(3), name).format, "off") << name;
         if (name != "part.off" && name != "part.ply") {
             EXPECT_EQ(read(obj, name).format, "obj") << name;
+            EXPECT_EQ(read("# replaces <amf>\n" + obj, name).format, "obj") << name;
         }
     }
 }
@@ -89,6 +92,24 @@ TEST(MeshFile, IsNotGuessedToBeBinaryStlUnderTheNameOfASliceFile) {
                         extension));
     EXPECT_EQ(read(obj, "part.json").format, "obj");
     EXPECT_EQ(read(stl, "part.cli").format, "stl-ascii");
+}
+
+TEST(MeshFile, IsNotGuessedToBeBinaryStlUnderTheNameOfAnotherMeshFile) {
+    for (const std::string name : {"part.3mf", "PART.AMF", "part.3mf.gz"})
+        EXPECT_NE(error_of(std::string(300, '\1'), name).find("is neither what its extension ."),
+                  std::string::npos);
+    EXPECT_EQ(read(stl, "part.3mf").format, "stl-ascii");
+}
+
+TEST(MeshFile, IsNotGuessedToBeBinaryStlWhereCornersMakeNoSense) {
+    std::mt19937 random(3);
+    for (const std::size_t size : {3000U, 100'000U}) {
+        std::string bytes(size, '\0');
+        for (char& byte : bytes)
+            byte = static_cast<char>(random());
+        for (const std::string name : {"part.stl", "part"})
+            EXPECT_NE(error_of(bytes, name).find("no mesh file that is known"), std::string::npos);
+    }
 }
 
 TEST(MeshFile, GoesByTheExtensionsOfTheFormatsThatAreRead) {
@@ -183,12 +204,7 @@ TEST(MeshFile, MayBePackedWithGzip) {
         EXPECT_EQ(packed.format, plain.format);
         EXPECT_EQ(packed.stored_triangles, 1U);
         EXPECT_EQ(volume(packed.mesh()), volume(plain.mesh()));
-        try {
-            (void)read_mesh(path + ".gz", {.max_memory = 20});
-            ADD_FAILURE() << "no error";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::limit);
-        }
+        test::error_of(ErrorKind::limit, [&] { (void)read_mesh(path + ".gz", {.max_memory = 20}); });
     }
 }
 

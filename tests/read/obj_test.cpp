@@ -37,7 +37,7 @@ TEST(Obj, TakesAnyLineEndsAndLinesThatGoOn) {
 }
 
 TEST(Obj, CountsBackFromTheLastVertex) {
-    expect_mesh("v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\nf -3 -2 -1\nv 5 5 5\nf 1 -3 4\n", name,
+    expect_mesh("v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\nf -3 -2/-1 -1//-1\nv 5 5 5\nf 1 -3 4\n", name,
                 {{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.2}, {5, 5, 5}}, {{0, 1, 2}, {0, 1, 3}});
 }
 
@@ -69,6 +69,8 @@ TEST(Obj, NamesLineAndWordOfAnError) {
            "line 5: found 'x', expected the number of a vertex, such as 7, 7/1 or 7//3");
     expect(triangle + "f 1 2 3.5\n",
            "line 5: found '3.5', expected the number of a vertex, such as 7, 7/1 or 7//3");
+    expect(triangle + "f 2 3-1 4\n",
+           "line 5: found '3-1', expected the number of a vertex, such as 7, 7/1 or 7//3");
     for (const char* const face :
          {"f 1 2 4", "f 0 1 2", "f 1 2 -4", "f 1 2 99999999999999999999", "f 1 2 -0"})
         expect(triangle + "\n" + face + "\n",

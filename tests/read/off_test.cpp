@@ -26,8 +26,18 @@ TEST(Off, TakesTheHeadInAnyLayout) {
 TEST(Off, SkipsColoursNormalsAndComments) {
     expect_mesh("STCNOFF\n3 2 0\n# v\n0 0 0 0 0 1 255 0 0 255 0 0\n\n1 0 0 0 0 1\n0 1.5 -0.2 9\n# f\n3 0 1 2 "
                 "0.5 0.5 1\n"
-                "3 2 1 0 # red\nwhat follows",
+                "3 2 1 0 # red\n\n # the end\n \t\n",
                 name, corners, {{0, 1, 2}, {2, 1, 0}});
+}
+
+TEST(Off, WarnsOfLinesBeyondTheRows) {
+    const std::string text = "OFF\n3 1 0\n" + rows;
+    expect_warning(
+        text + "\n3 2 1 0\n# a comment\n3 0 2 1", name, 1,
+        "line 8: left out 2 lines from here on, beyond the 4 rows of the numbers of vertices and faces");
+    expect_warning(
+        text + "3 2 1 0\n", name, 1,
+        "line 7: left out 1 line from here on, beyond the 4 rows of the numbers of vertices and faces");
 }
 
 // Texts are cut into pieces by counting their rows; what a line holds or how it ends must not change the

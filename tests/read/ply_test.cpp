@@ -284,6 +284,39 @@ TEST(Ply, LeavesOutWhatLinesHaveBeyondTheirRows) {
     EXPECT_EQ(mesh_of(read(text, name)).vertices, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
+TEST(Ply, WarnsOfWhatFollowsAllRows) {
+    for (const std::string white : {"\n", "\r\n \n", " "})
+        for (const std::string& whole :
+             {head("ascii") + rows, head(little) + binary_rows(false), head(big) + binary_rows(true)})
+            expect_mesh(whole + white, name, corners, {{0, 1, 2}});
+    expect_warning(head("ascii") + rows + "3 2 1 0\n\n3 1 2 0\n", name, 1,
+                   "line 15: left out 2 lines from here on, beyond the 4 rows of the head");
+    const std::string binary = head(little) + binary_rows(false);
+    expect_warning(
+        binary + binary_rows(false).substr(36), name, 1,
+        fmt::format("byte {}: left out 13 bytes from here on, beyond the rows of the head", binary.size()));
+    // Elements that nobody needs belong to the file, and may be cut off.
+    std::string more = head("ascii");
+    more.insert(more.find("end_header"), "element edge 2\nproperty int a\n");
+    expect_mesh(more + rows + "0\n1\n", name, corners, {{0, 1, 2}});
+    expect_mesh(more + rows + "0\n", name, corners, {{0, 1, 2}});
+    expect_warning(more + rows + "0\n1\n2\n", name, 1,
+                   "line 19: left out 1 line from here on, beyond the 6 rows of the head");
+    more = head(little);
+    more.insert(more.find("end_header"), "element edge 2\nproperty list uchar uchar a\n");
+    const std::string lists("\1\7\2\7\7", 5);
+    for (std::size_t size = 0; size <= lists.size(); ++size)
+        expect_mesh(more + binary_rows(false) + lists.substr(0, size), name, corners, {{0, 1, 2}});
+    expect_warning(more + binary_rows(false) + lists + '\0', name, 1,
+                   fmt::format("byte {}: left out 1 bytes from here on, beyond the rows of the head",
+                               more.size() + binary_rows(false).size() + lists.size()));
+}
+
+TEST(Ply, MayBeginWithAByteOrderMark) {
+    expect_mesh("\xEF\xBB\xBF" + head("ascii") + rows, name, corners, {{0, 1, 2}});
+    expect_mesh("\xEF\xBB\xBF" + head("ascii") + rows, "part.stl", corners, {{0, 1, 2}});
+}
+
 TEST(Ply, CountsTextOfAnyLayoutOnceOnly) {
     std::mt19937 random(3);
     const std::string text = laid_out(ascii_with_all(1002), random, {" ", "\n"});

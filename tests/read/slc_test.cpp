@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
+
+#include "fixtures/expect_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,13 +24,7 @@ LayerFile read(const std::string& bytes) {
 }
 
 std::string error_of(const std::string& bytes) {
-    try {
-        static_cast<void>(read(bytes));
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-        return error.what();
-    }
-    return "no error";
+    return test::error_of(ErrorKind::input, [&] { static_cast<void>(read(bytes)); });
 }
 
 std::string head(const std::string& keywords = "-SLCVER 2.0 -UNIT MM -TYPE PART ",

@@ -1,9 +1,9 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "container/zip_writer.hpp"
+#include "fixtures/expect_error.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -53,13 +53,7 @@ LayerFile read(const std::string& root, const std::string& other = "") {
 }
 
 std::string error_of(const std::string& root, const std::string& other = "") {
-    try {
-        static_cast<void>(read(root, other));
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-        return error.what();
-    }
-    return "no error";
+    return test::error_of(ErrorKind::input, [&] { static_cast<void>(read(root, other)); });
 }
 
 TEST(ReadSlices3mf, StacksArePartsWhereTheBuildPutsThem) {
@@ -150,6 +144,15 @@ TEST(ReadSlices3mf, OpenPolygonsStayOpen) {
     EXPECT_EQ(file.warnings.size(), 1U);
 }
 
+TEST(ReadSlices3mf, APolygonThatASliceBeginsInIsDropped) {
+    std::string slices = slice("1");
+    slices.insert(slices.rfind("</t:slice>"), "<t:polygon startv=\"0\"><t:slice ztop=\"2\"/></t:polygon>");
+    const LayerFile file = read(model(stack(1, slices) + object(2, 1), "<item objectid=\"2\"/>"));
+    ASSERT_EQ(file.parts[0].layers.size(), 2U);
+    EXPECT_EQ(file.parts[0].layers[0].rings, 1U);
+    EXPECT_EQ(file.parts[0].layers[1].contours(), 0U);
+}
+
 TEST(ReadSlices3mf, WhatBreaksTheRulesIsRefused) {
     const auto expect = [](const std::string& error, const char* part) {
         EXPECT_NE(error.find(part), std::string::npos) << error;
@@ -179,9 +182,15 @@ TEST(ReadSlices3mf, WhatBreaksTheRulesIsRefused) {
                               object(2, 1),
                           item),
                     model(stack(7, "<t:sliceref slicestackid=\"7\" slicepath=\"/2D/other.model\"/>"), "")),
-           "within slices");
-    expect(error_of(
-               model("<object id=\"2\"><components><component objectid=\"2\"/></components></object>", item)),
+           "found a reference to slices within slices");
+    expect(error_of(model(stack(1, "<t:sliceref slicestackid=\"7\" slicepath=\"/2D/other.model\"/>") +
+                              object(2, 1),
+                          item),
+                    model(stack(8, slice("1")), "")),
+           "found a reference to slice stack 7 of '2D/other.model'");
+    expect(error_of(model(stack(1, slice("1")) + "<object id=\"2\"><components><component objectid=\"2\"/>"
+                                                 "</components></object>",
+                          item)),
            "without end");
 }
 

@@ -2,16 +2,16 @@
 
 // STL files made in memory, sound and broken.
 
-#include "lamella/core/error.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/read/mesh_file.hpp"
+
+#include "fixtures/expect_error.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -106,15 +106,7 @@ inline Triangles triangles_of(const MeshFile& file) {
 /// What the error says; fails the test when there is none or it is of another kind.
 inline std::string error_of(std::string_view bytes, const MeshReadOptions& options = {},
                             ErrorKind kind = ErrorKind::input) {
-    try {
-        const MeshFile file = read(bytes, options);
-        ADD_FAILURE() << "no error, but " << soup_of(file).size() << " triangles";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind) << error.what();
-        EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos) << error.what();
-        return error.what();
-    }
-    return {};
+    return test::error_of(kind, [&] { static_cast<void>(read(bytes, options)); });
 }
 
 /// Reads without a warning and gives these triangles.

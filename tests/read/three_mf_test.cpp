@@ -304,6 +304,22 @@ TEST(ThreeMf, FindsTheRootByItsRelationshipAndElseByItsName) {
                      "is a zip archive without a model"));
 }
 
+TEST(ThreeMf, ReferencesThatLeadNowhereAreCounted) {
+    const std::string lost =
+        replaced(relationships({"/3D/a", "/3D/b"}), "2013/01/3dmodel", "2013/01/another");
+    const std::string bytes =
+        zip_bytes({{.name = "[Content_Types].xml", .content = content_types},
+                   {.name = "_rels/.rels", .content = relationships({"/3D/3dmodel.model"})},
+                   {.name = "3D/_rels/3dmodel.model.rels", .content = lost},
+                   {.name = "3D/3dmodel.model",
+                    .content = model("", "<item objectid=\"1\" p:path=\"/3D/other.model\"/>")},
+                   {.name = "3D/other.model", .content = model(object(1, box_mesh()), "")}});
+    const MeshFile file = read(bytes);
+    ASSERT_EQ(file.warnings.size(), 2U);
+    EXPECT_EQ(file.warnings[0], "2 references of the package lead to no part of it (the first is '3D/a')");
+    EXPECT_EQ(file.warnings[1], "the part '3D/other.model' is used without a relationship to it");
+}
+
 TEST(ThreeMf, NamesTheLineOfWhatIsWrong) {
     const std::string good = model(object(1, box_mesh()), one_item);
     const auto wrong = [&](std::string_view from, std::string_view to) {

@@ -16,6 +16,7 @@ using test::contours;
 using test::diamond;
 using test::normal_layer;
 using test::rectangle;
+using test::reversed;
 
 TEST(FollowedContours, BeginFarthestInTheDirection) {
     const Layer layer = normal_layer({diamond(0, 0, 5), diamond(20, 0, 5)});
@@ -33,6 +34,17 @@ TEST(FollowedContours, BeginAtTheSharpestCorner) {
     rule.start = StartPoint::sharpest;
     const Layer needle = normal_layer({{{0, 0}, {2, -1}, {10, 0.5}, {2, 1}}});
     EXPECT_EQ(contours(followed(needle, rule, 1, 1))[0].front(), (Point2{10, 0.5}));
+}
+
+TEST(FollowedContours, BeginAtNoConcaveCornerWhereThereIsAConvexOne) {
+    ContourRule rule;
+    rule.start = StartPoint::sharpest;
+    const Contour notched{{0, 0}, {10, 0}, {10, 10}, {5.7, 10}, {5, 9}, {4.3, 10}, {0, 10}};
+    EXPECT_EQ(contours(followed(normal_layer({notched}), rule, 1, 1))[0].front(), (Point2{0, 0}));
+    // As a hole it has one: the material is on the other side.
+    for (const Contour& ring :
+         contours(followed(normal_layer({rectangle(-5, -5, 15, 15), reversed(notched)}), rule, 1, 1)))
+        EXPECT_EQ(ring.front(), ring.size() == 4 ? (Point2{-5, -5}) : (Point2{5, 9}));
 }
 
 TEST(FollowedContours, BeginAtRandomCornersByTheSeed) {

@@ -75,6 +75,26 @@ TEST(Scan, GivesALayerForEachExposureWithTheHeightsOfItsOwn) {
     EXPECT_NEAR(measure(vectors[3]).perimeter_mm, 4 * (10 - 2 * 0.05), 1e-12);
 }
 
+TEST(Scan, CountsRingsThatAreTooThinForVectors) {
+    const Layer layer = normal_layer({rectangle(0, 0, 10, 10), rectangle(12, 0, 12.09, 10)});
+    ScanStrategy strategy; // the outermost contour is at 0.05
+    ScanMemory memory;
+    std::uint64_t thin = 9;
+    static_cast<void>(scan(layer, {}, {}, strategy, nullptr, &thin));
+    EXPECT_EQ(thin, 1U);
+    static_cast<void>(scan(layer, {}, {}, strategy, &memory));
+    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &thin));
+    EXPECT_EQ(thin, 1U) << "out of the memory, too";
+    strategy.contours.beam_offset = 0.04;
+    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &thin));
+    EXPECT_EQ(thin, 0U);
+    strategy.contours.count = 0; // the border of the hatch is at 0.05
+    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &thin));
+    EXPECT_EQ(thin, 1U);
+    static_cast<void>(scan_support(layer, strategy, nullptr, &thin));
+    EXPECT_EQ(thin, 1U);
+}
+
 TEST(Scan, KeepsItsDistancesToTheOutline) {
     Random random(5);
     ScanStrategy strategy;
@@ -105,6 +125,25 @@ TEST(Scan, HatchesTheOutlineItselfWhereNothingLiesBetween) {
     // Bodies that overlap count once.
     const Layer layer = normal_layer({rectangle(0, 0, 6, 4), rectangle(3, 0, 9, 4)});
     EXPECT_NEAR(marked(scan(layer, {}, {}, strategy).front()), 4 * 9, 1e-6);
+}
+
+TEST(Scan, KnowsNoWallsBetweenBodiesThatTouch) {
+    ScanStrategy strategy;
+    strategy.contours.beam_offset = 0;
+    strategy.hatch.border = 0;
+    const Layer two = normal_layer({rectangle(0, 0, 2.05, 4), rectangle(2.05, 0, 4, 4)});
+    const Layer one = normal_layer({rectangle(0, 0, 4, 4)});
+    for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::stripes}) {
+        strategy.hatch.pattern = pattern;
+        const std::vector<Layer> found = scan(two, {}, {}, strategy);
+        const std::vector<Layer> expected = scan(one, {}, {}, strategy);
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_EQ(found[i].rings, expected[i].rings);
+            EXPECT_EQ(found[i].hatches.size(), expected[i].hatches.size());
+            EXPECT_NEAR(marked(found[i]), marked(expected[i]), 1e-6);
+        }
+    }
 }
 
 // A stack of random layers: with the same lines in all regions, all together cover what the layer has, and
@@ -170,7 +209,7 @@ TEST(Scan, WaysAreAsStraightAsRoundingLeavesThem) {
     const ScanLayer straight(layer, rounding);
     EXPECT_EQ(straight.layer().points.size(), corners.size());
     for (const Point2& p : layer.points)
-        EXPECT_LE(distance_to(straight.layer(), p), 2 * moved_point(layer, rounding));
+        EXPECT_LE(distance_to(straight.layer(), p), 2 * moved_point(layer.points.span(), rounding));
     EXPECT_EQ(ScanLayer(layer_of({corners}), rounding).layer().points.size(), corners.size());
 }
 

@@ -114,5 +114,27 @@ TEST(Skin, IsAllOfTheLayerWhereThePartEndsAndNothingWithoutARule) {
     EXPECT_LT(difference(all.area(), offset(layer, rule.narrowest)), 1e-6);
 }
 
+TEST(Skin, IsAllOfTheLayerBelowAndAboveAGap) {
+    SkinRule rule;
+    rule.layers = 2;
+    const auto at = [](double bottom) {
+        Layer layer = layer_of({rectangle(0, 0, 6, 6)});
+        layer.bottom = bottom;
+        layer.top = bottom + 0.1;
+        return ScanLayer(layer);
+    };
+    const auto whole = [&](double first, double second) {
+        return Skin(at(1), std::vector<ScanLayer>{at(first), at(second)}, rule).whole();
+    };
+    EXPECT_FALSE(whole(1.1, 1.2));
+    EXPECT_FALSE(whole(1.1 + 1e-9, 1.2));
+    EXPECT_TRUE(whole(1.1, 1.5));
+    EXPECT_TRUE(whole(1.5, 1.6));
+    EXPECT_FALSE(whole(0.9, 0.8));
+    EXPECT_FALSE(whole(0.9, 0.8 - 1e-9));
+    EXPECT_TRUE(whole(0.9, 0.5));
+    EXPECT_TRUE(whole(0.5, 0.4));
+}
+
 } // namespace
 } // namespace lamella

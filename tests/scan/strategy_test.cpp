@@ -63,6 +63,15 @@ TEST(Strategy, RefusesValuesOutOfRangeAndNamesTheirField) {
          [](ScanStrategy& s) {
              s.hatch.overlap = s.hatch.cell / 2;
          }},
+        {"`hatch.cell`",
+         [](ScanStrategy& s) {
+             s.hatch.shortest = s.hatch.cell;
+         }},
+        {"`upskin.hatch.cell`",
+         [](ScanStrategy& s) {
+             s.upskin.hatch.pattern = HatchPattern::hexagons;
+             s.upskin.hatch.shortest = s.upskin.hatch.cell + 1;
+         }},
         {"`hatch.speed_mm_s`",
          [](ScanStrategy& s) {
              s.hatch.parameters.speed_mm_s = 0;
@@ -117,6 +126,15 @@ TEST(Strategy, RefusesValuesOutOfRangeAndNamesTheirField) {
     }
 }
 
+TEST(Strategy, OfPatternsWithoutCellsMayAskForLinesLongerThanThese) {
+    ScanStrategy strategy;
+    strategy.hatch.shortest = 100;
+    for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::meander}) {
+        strategy.hatch.pattern = pattern;
+        EXPECT_NO_THROW(check_strategy(strategy));
+    }
+}
+
 TEST(Strategy, TellsWhatIsExposedInItsOrder) {
     ScanStrategy strategy;
     const auto names = [&] {
@@ -152,6 +170,16 @@ TEST(Strategy, HasRulesOfTheirOwnForSupports) {
     EXPECT_EQ(found[2].part, "foot");
     EXPECT_EQ(found[1].parameters, strategy.support.contours.parameters);
     EXPECT_EQ(found[2].parameters, strategy.support.hatch.parameters);
+}
+
+TEST(Strategy, AsksNothingOfCellsThatAPatternHasNot) {
+    ScanStrategy strategy;
+    strategy.hatch.cell = 0.1;
+    EXPECT_THROW(check_strategy(strategy), Error);
+    for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::meander}) {
+        strategy.hatch.pattern = pattern;
+        EXPECT_NO_THROW(check_strategy(strategy));
+    }
 }
 
 } // namespace

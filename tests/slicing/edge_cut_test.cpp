@@ -80,14 +80,18 @@ TEST(EdgeCut, IsTheBaseBitForBitOnAPlaneThroughTheBase) {
     }
 }
 
+void expect_all_inside(test::Random& random, const Point3& a, const Point3& b) {
+    for (const double z : heights_on(random, a.z, b.z)) {
+        expect_inside(EdgeCut(a, b).at(z), a, b);
+        expect_inside(EdgeCut(b, a).at(z), a, b);
+    }
+}
+
 TEST(EdgeCut, NeverLeavesTheBoxOfTheEdge) {
     test::Random random(11);
     for (int i = 0; i < test::rounds_within_reason(200000); ++i) {
         const auto [a, b] = any_edge(random, -60, 60);
-        for (const double z : heights_on(random, a.z, b.z)) {
-            expect_inside(EdgeCut(a, b).at(z), a, b);
-            expect_inside(EdgeCut(b, a).at(z), a, b);
-        }
+        expect_all_inside(random, a, b);
     }
 }
 
@@ -95,10 +99,7 @@ TEST(EdgeCut, NeverLeavesTheBoxOfAnEdgeOfAnySize) {
     test::Random random(12);
     for (int i = 0; i < test::rounds_within_reason(200000); ++i) {
         const auto [a, b] = any_edge(random, -1074, 1022);
-        for (const double z : heights_on(random, a.z, b.z)) {
-            expect_inside(EdgeCut(a, b).at(z), a, b);
-            expect_inside(EdgeCut(b, a).at(z), a, b);
-        }
+        expect_all_inside(random, a, b);
     }
 }
 
@@ -108,10 +109,7 @@ TEST(EdgeCut, NeverLeavesTheBoxOfAnEdgeThatIsAlmostLevel) {
         auto [a, b] = any_edge(random, -10, 10);
         a.z = any_size(random, -1074, -1020);
         b.z = a.z + static_cast<double>(random.integer(1, 5)) * 5e-324;
-        for (const double z : heights_on(random, a.z, b.z)) {
-            expect_inside(EdgeCut(a, b).at(z), a, b);
-            expect_inside(EdgeCut(b, a).at(z), a, b);
-        }
+        expect_all_inside(random, a, b);
     }
 }
 

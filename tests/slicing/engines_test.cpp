@@ -1,6 +1,6 @@
 #include "lamella/slicing/slice.hpp"
 
-#include "expect_error.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/named_solids.hpp"
 #include "fixtures/rounds.hpp"
 #include "parts/shapes.hpp"

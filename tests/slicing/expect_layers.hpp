@@ -3,6 +3,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
 
 #include "naive_section.hpp"
 
@@ -11,9 +12,18 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <vector>
+#include <utility>
 
 namespace lamella::test {
+
+/// Keeps the layers that it is handed, in order.
+inline LayerSink keeping(LayerStack& stack) {
+    return [&stack](Layer&& layer) {
+        return [&stack, kept = std::move(layer)]() mutable {
+            stack.push_back(std::move(kept));
+        };
+    };
+}
 
 /// What every layer that an engine makes keeps to.
 inline void expect_sound(const Layer& layer) {

@@ -4,13 +4,12 @@
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/slicing/layering.hpp"
 
-#include "expect_error.hpp"
+#include "fixtures/expect_error.hpp"
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 

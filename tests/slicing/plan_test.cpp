@@ -1,11 +1,10 @@
 #include "lamella/slicing/plan.hpp"
 
-#include "expect_error.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

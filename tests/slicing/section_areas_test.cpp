@@ -1,7 +1,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/slicing/slice.hpp"
 
-#include "expect_error.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 

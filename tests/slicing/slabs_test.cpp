@@ -2,8 +2,8 @@
 #include "lamella/mesh/transform.hpp"
 
 #include "even_planes.hpp"
-#include "expect_error.hpp"
 #include "expect_layers.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/named_solids.hpp"
 #include "fixtures/random.hpp"
 #include "fixtures/solids.hpp"
@@ -14,7 +14,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <mutex>
 #include <thread>
 
 namespace lamella {
@@ -242,13 +241,8 @@ void expect_same_layers(const Triangles& triangles, const Transform& placement) 
             LayerStack stack;
             for (std::uint32_t s = 0; s < n; ++s) {
                 EXPECT_EQ(parts[s].size(), survey.triangles(slabs[s]));
-                const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-                    return [&stack, kept = std::move(layer)]() mutable {
-                        stack.push_back(std::move(kept));
-                    };
-                };
-                slice_to(sink, TriangleSoup(parts[s]).transformed(placement), part_of(plan, slabs[s]),
-                         {.threads = 2});
+                slice_to(test::keeping(stack), TriangleSoup(parts[s]).transformed(placement),
+                         part_of(plan, slabs[s]), {.threads = 2});
             }
             expect_same(stack, whole);
         }

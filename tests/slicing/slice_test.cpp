@@ -3,8 +3,8 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "even_planes.hpp"
-#include "expect_error.hpp"
 #include "expect_layers.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
@@ -76,13 +76,8 @@ TEST(SliceTo, HandsOverTheLayersOfSliceInOrder) {
     const LayerStack expected = slice(soup, plan);
     for (const unsigned threads : {1U, 2U, 7U}) {
         LayerStack stack;
-        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-            return [&stack, kept = std::move(layer)]() mutable {
-                stack.push_back(std::move(kept));
-            };
-        };
         SliceReport report;
-        slice_to(sink, soup, plan, {.threads = threads}, &report);
+        slice_to(test::keeping(stack), soup, plan, {.threads = threads}, &report);
         expect_same(stack, expected);
         EXPECT_EQ(report.layers, 300U);
     }
@@ -162,11 +157,7 @@ TEST(SliceTo, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
     for (const std::uint64_t bound : {1U, 20000U, 100000U}) {
         for (const unsigned threads : {1U, 3U}) {
             LayerStack stack;
-            const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-                return [&stack, kept = std::move(layer)]() mutable {
-                    stack.push_back(std::move(kept));
-                };
-            };
+            const LayerSink sink = test::keeping(stack);
             SliceReport report;
             const Execution execution{.threads = threads};
             engines().front().slice({soup, plan, sink, execution, bound, report});

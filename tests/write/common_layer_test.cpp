@@ -1,12 +1,11 @@
-#include "lamella/core/error.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,18 +27,7 @@ std::string written(std::string_view format, const LayerStack& layers,
 
 std::string usage_error_of(std::string_view format, const LayerStack& layers, const LayerFileInfo& info,
                            const LayerWriteOptions& options) {
-    try {
-        (void)written(format, layers, info, options);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::usage);
-        return error.what();
-    }
-    ADD_FAILURE() << "no error";
-    return {};
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
+    return test::error_of(ErrorKind::usage, [&] { (void)written(format, layers, info, options); });
 }
 
 class Bytes {
@@ -147,7 +135,7 @@ TEST(CommonLayer, CountsTheLabelsThatItChanged) {
         EXPECT_EQ(
             warnings({{"a,b", info.box}}),
             std::vector<std::string>{"1 label was changed, the first from \"a,b\" to \"a_b\": the format has "
-                                     "no place for some of the characters"});
+                                     "no place for some of its characters, or for its length"});
         const auto two = warnings({{"x", info.box}, {"\xC3\xA4", info.box}, {"$", info.box}});
         ASSERT_EQ(two.size(), 1U);
         EXPECT_TRUE(two.front().starts_with("2 labels were changed, the first from \"\xC3\xA4\" to \"__\""))
@@ -210,7 +198,7 @@ TEST(CommonLayerShort, RefusesNegativeCoordinatesAndLayersThinnerThanAUnit) {
     thin[0].top = thin[0].z = 0.04;
     const std::string error =
         usage_error_of("cli", thin, info_of(thin), {.units_mm = 0.1, .short_form = true});
-    EXPECT_TRUE(contains(error, "layer 0 is thinner than half a unit")) << error;
+    EXPECT_TRUE(contains(error, "layer 0: its top")) << error;
 }
 
 TEST(CommonLayerShort, WritesContoursOfMorePointsThanItCanCountInTheLongForm) {
@@ -224,6 +212,14 @@ TEST(CommonLayerShort, WritesContoursOfMorePointsThanItCanCountInTheLongForm) {
     command.add_all<std::uint16_t>(128, 1).add<std::uint16_t>(130).add_all<std::int32_t>(1, 2, 70'000);
     command.add_all<float>(0, 0, 1, 0);
     EXPECT_TRUE(contains(bytes, command.text()));
+}
+
+TEST(CommonLayer, LeavesOutARingOfOnePoint) {
+    LayerBuilder builder;
+    add_contour(builder, {{7, 8}});
+    const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
+    for (const char* format : {"cli", "cli-ascii"})
+        EXPECT_FALSE(contains(written(format, layers, info_of(layers), {}), "POLYLINE")) << format;
 }
 
 TEST(CommonLayer, RefusesImpossibleUnits) {

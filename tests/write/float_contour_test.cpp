@@ -69,13 +69,34 @@ TEST(FloatContours, CountWhatRoundingLosesWhereSinglePrecisionIsCoarse) {
         return loss.warnings();
     };
     EXPECT_TRUE(warnings(1e3).empty());
-    EXPECT_TRUE(warnings(1e5).empty());
+    // A wall of a tenth of a micrometre is thinner than the 8 micrometres between neighbours.
+    const std::vector<std::string> thin = warnings(1e5);
+    ASSERT_EQ(thin.size(), 1U);
+    EXPECT_TRUE(thin[0].starts_with("rounding left out 1 contour, first in layer 9;")) << thin[0];
     const std::vector<std::string> far = warnings(1e7);
     ASSERT_EQ(far.size(), 1U);
     // Beyond 2^23 mm, 2^33 units of a micrometre, neighbours are 1.024 mm apart.
     EXPECT_TRUE(far[0].starts_with("rounding moved points by up to 0.")) << far[0];
     EXPECT_NE(far[0].find("merged 3 of them"), std::string::npos) << far[0];
     EXPECT_NE(far[0].find("left out 1 contour, first in layer 7;"), std::string::npos) << far[0];
+}
+
+TEST(FloatContours, CountWhatVanishesHoweverFineSinglePrecisionIs) {
+    RoundingLoss loss;
+    const FloatContours floats(1, &loss);
+    char bytes[6 * float_point_size];
+    const std::vector<Point2> ring{{100, 100}, {100 + 1e-9, 100}, {100, 100 + 1e-9}};
+    EXPECT_EQ(floats.put(ring, true, 2, bytes).points, 0U);
+    const std::vector<Point2> lines{{0, 0}, {1, 0}, {1, 0}, {1 + 1e-12, 0}, {1, 0}, {2, 0}};
+    EXPECT_EQ(floats.put_lines(lines, 3, bytes), 4U);
+    float numbers[8];
+    std::memcpy(numbers, bytes, sizeof numbers);
+    EXPECT_EQ(numbers[4], 1);
+    EXPECT_EQ(numbers[6], 2);
+    ASSERT_EQ(loss.warnings().size(), 1U);
+    EXPECT_TRUE(
+        loss.warnings()[0].starts_with("rounding left out 1 contour and 1 hatch line, first in layer 2;"))
+        << loss.warnings()[0];
 }
 
 TEST(FloatContours, HaveNoMinusZero) {

@@ -57,11 +57,33 @@ TEST(WriterGrid, CountsWhatACoarseStepLoses) {
         return loss.warnings();
     };
     EXPECT_TRUE(warnings(0.001).empty());
-    EXPECT_TRUE(warnings(0.02).empty());
+    EXPECT_EQ(warnings(0.02),
+              (std::vector<std::string>{"rounding left out 1 contour, first in layer 4; a part nearer to the "
+                                        "origin, or smaller units where the format has units, lose less"}));
     EXPECT_EQ(warnings(0.1), (std::vector<std::string>{
                                  "rounding moved points by up to 0.04 mm, merged 3 of them with the one "
-                                 "before and left out 1 contour, first in layer 3; smaller units, or a "
-                                 "part nearer to the origin, lose less"}));
+                                 "before and left out 1 contour, first in layer 3; a part nearer to "
+                                 "the origin, or smaller units where the format has units, lose less"}));
+}
+
+TEST(WriterGrid, SaysNothingWhereACoarseStepLosesNothing) {
+    RoundingLoss loss;
+    const WriterGrid grid(1, &loss);
+    std::vector<GridPoint> scratch;
+    static_cast<void>(grid.snap(std::vector<Point2>{{0, 0}, {5, 0}, {5, 5}}, true, 12.5, 0, scratch));
+    static_cast<void>(grid.snap(std::vector<Point2>{{0, 0}, {5.001, 0}, {5, 5}}, true, 12.5, 0, scratch));
+    static_cast<void>(grid.snap_lines(std::vector<Point2>{{0, 0}, {5, 0}}, 0));
+    EXPECT_TRUE(loss.warnings().empty());
+}
+
+TEST(WriterGrid, LeavesOutAndCountsLinesThatShrinkToAPoint) {
+    RoundingLoss loss;
+    const WriterGrid grid(0.001, &loss);
+    EXPECT_EQ(grid.snap_lines(std::vector<Point2>{{0, 0}, {1e-4, 0}, {1, 0}, {1, 2}, {3, 3}, {3, 3.0001}}, 6),
+              (std::vector<GridPoint>{{1000, 0}, {1000, 2000}}));
+    ASSERT_EQ(loss.warnings().size(), 1U);
+    EXPECT_TRUE(loss.warnings()[0].starts_with("rounding left out 2 hatch lines, first in layer 6;"))
+        << loss.warnings()[0];
 }
 
 TEST(WriterGrid, ForgetsContoursThatShrinkToAPointOrALine) {

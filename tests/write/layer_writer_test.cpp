@@ -1,6 +1,6 @@
-#include "lamella/core/error.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 
@@ -11,26 +11,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <numeric>
 #include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 namespace lamella {
 namespace {
 
-std::string error_of(ErrorKind kind, const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind) << error.what();
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-        return error.what();
-    }
-    ADD_FAILURE() << "no error";
-    return {};
-}
+using test::error_of;
 
 TEST(LayerFormat, IsChosenByNameOrElseByExtension) {
     EXPECT_EQ(layer_format("", "out/part.cli").name, "cli");
@@ -85,6 +77,171 @@ TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
             << format.name;
         EXPECT_EQ(writer->bytes(), file_bytes(folder.file("expected")).size());
     }
+}
+
+/// Formats that are files and take layers of any thickness.
+std::vector<const LayerFormat*> plain_formats() {
+    std::vector<const LayerFormat*> found;
+    for (const LayerFormat& format : layer_formats())
+        if (!format.directory && !format.name.starts_with("sl1"))
+            found.push_back(&format);
+    return found;
+}
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+TEST(LayerWriter, SaysWhichGapsBetweenLayersAreLost) {
+    LayerStack layers = square_with_hole();
+    layers.push_back(layers.back());
+    layers[2].index = 2;
+    for (double* height : {&layers[2].z, &layers[2].bottom, &layers[2].top})
+        *height += 2;
+    const TemporaryFolder folder;
+    for (const LayerFormat* format : plain_formats()) {
+        const std::vector<std::string> warnings =
+            write_layers(folder.file("out"), *format, layers, info_of(layers), options_for_any());
+        const bool lost = std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("1 gap or overlap of layers was left out, the lowest at z = 2.75 mm") !=
+                   std::string::npos;
+        });
+        EXPECT_EQ(lost,
+                  is_one_of(format->name, {"cli", "cli-ascii", "slc", "3mf", "ilt", "ovf", "3mf-toolpath"}))
+            << format->name;
+    }
+    const std::string error = error_of(ErrorKind::usage, [&] {
+        write_layers(folder.file("out"), layer_format("sl1", ""), layers, info_of(layers), options_for_any());
+    });
+    EXPECT_NE(error.find("layer 2 begins at 2.5 mm, the one before ends at 1 mm"), std::string::npos)
+        << error;
+}
+
+TEST(LayerWriter, RefusesHeightsThatTheFileCannotTellApartOrHold) {
+    const TemporaryFolder folder;
+    for (const LayerFormat* format : plain_formats()) {
+        const auto error_at = [&](double bottom, double thickness) {
+            LayerStack layers = square_with_hole();
+            layers.pop_back();
+            layers[0].bottom = bottom;
+            layers[0].top = layers[0].z = bottom + thickness;
+            return error_of(ErrorKind::usage, [&] {
+                write_layers(folder.file("out"), *format, layers, info_of(layers), options_for_any());
+            });
+        };
+        if (is_one_of(format->name, {"cli", "slc", "ilt", "ovf"})) {
+            EXPECT_NE(error_at(1e39, 1e38).find("beyond single precision"), std::string::npos)
+                << format->name;
+        }
+        if (is_one_of(format->name, {"cli", "cli-ascii", "slc", "3mf", "ilt", "ovf", "3mf-toolpath"})) {
+            EXPECT_TRUE(contains(error_at(1, 0), "layer 0: its top")) << format->name;
+            EXPECT_TRUE(contains(error_at(1, 0), "a layer has no thickness")) << format->name;
+        }
+        if (is_one_of(format->name, {"cli", "slc", "ilt"})) {
+            EXPECT_NE(error_at(1e6, 0.01).find("layer 0: its top"), std::string::npos) << format->name;
+        }
+        if (format->name == "cli-ascii") {
+            EXPECT_NE(error_at(1, 1e-10).find("layer 0: its top"), std::string::npos);
+        }
+    }
+}
+
+TEST(LayerWriter, CountsBytesThatWaitForTheirPlace) {
+    const TemporaryFolder folder;
+    const LayerStack stack = random_layers(2, 60, 30, {0, 0}, false);
+    const std::vector<LayerStack> parts(4, stack);
+    LayerFileInfo info = info_of(stack);
+    info.parts = {{.label = "a"}, {.label = "b"}, {.label = "c"}, {.label = "d"}};
+    for (const LayerFormat* format : plain_formats()) {
+        if (format->name == "html") // fits its layers into bytes of its own
+            continue;
+        write_layers(folder.file("whole"), *format, parts, info, options_for_any());
+        LayerWriteOptions options = options_for_any();
+        options.most_bytes = file_bytes(folder.file("whole")).size() / 2;
+        error_of(ErrorKind::limit, [&] { write_layers(folder.file("part"), *format, parts, info, options); });
+        EXPECT_FALSE(std::filesystem::exists(folder.file("part"))) << format->name;
+    }
+}
+
+TEST(LayerWriter, SaysWhichLabelsAreNotWrittenAsTheyAre) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    info.parts = {{.label = std::string(70'000, 'x') + '\1'}};
+    for (const LayerFormat* format : plain_formats()) {
+        if (is_one_of(format->name, {"slc", "dxf", "html", "png-zip"})) // no labels, or for looking at
+            continue;
+        const std::vector<std::string> warnings =
+            write_layers(folder.file("out"), *format, layers, info, options_for_any());
+        EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("1 label was changed") != std::string::npos;
+        })) << format->name;
+    }
+}
+
+bool says(const std::vector<std::string>& warnings, std::string_view text) {
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST(LayerWriter, SaysWhichLabelsHaveNoPlace) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    for (const char* format : {"slc", "dxf"}) {
+        info.parts = {{.label = "part"}};
+        EXPECT_TRUE(write_layers(folder.file("out"), layer_format(format, ""), layers, info).empty());
+        info.parts = {{.label = "bracket"}};
+        EXPECT_EQ(write_layers(folder.file("out"), layer_format(format, ""), layers, info),
+                  (std::vector<std::string>{
+                      "1 label was not written, the first \"bracket\": the format has no place for labels"}))
+            << format;
+    }
+}
+
+TEST(LayerWriter, SaysWhichPartsAreSupportsWhereTheFormatCannot) {
+    const TemporaryFolder folder;
+    const LayerStack stack = square_with_hole();
+    LayerFileInfo info = info_of(stack);
+    info.parts = {{.label = "body"}, {.label = "foot", .support = true}, {.label = "leg", .support = true}};
+    constexpr std::string_view text = "2 parts are supports: the format has no place for that; 3mf has";
+    for (const LayerFormat* format : plain_formats()) {
+        const std::vector<std::string> warnings = write_layers(
+            folder.file("out"), *format, std::vector<LayerStack>(3, stack), info, options_for_any());
+        EXPECT_EQ(says(warnings, text), !is_one_of(format->name, {"3mf", "html", "png-zip"})) << format->name;
+        EXPECT_LE(std::count_if(warnings.begin(), warnings.end(),
+                                [](const std::string& warning) {
+                                    return warning.find("supports") != std::string::npos;
+                                }),
+                  1);
+    }
+    for (PartInfo& part : info.parts)
+        part.exposure = Exposure{.part = part.label, .region = ScanRegion::support, .parameters = {}};
+    EXPECT_FALSE(says(
+        write_layers(folder.file("out"), layer_format("ovf", ""), std::vector<LayerStack>(3, stack), info),
+        "supports"));
+}
+
+TEST(LayerWriter, CountsContoursThatVanishHoweverFineTheFormatIs) {
+    const TemporaryFolder folder;
+    LayerBuilder builder;
+    add_contour(builder, {{0, 0}, {1e-4, 0}, {0, 1e-4}});
+    const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
+    for (const char* format : {"cli-ascii", "svg", "3mf", "dxf", "geojson", "3mf-toolpath"})
+        EXPECT_TRUE(says(write_layers(folder.file("out"), layer_format(format, ""), layers, info_of(layers)),
+                         "rounding left out 1 contour, first in layer 0;"))
+            << format;
+}
+
+TEST(LayerWriter, SaysNothingOfPointsThatSinglePrecisionKeepsFarFromTheOrigin) {
+    const TemporaryFolder folder;
+    LayerBuilder builder;
+    add_contour(builder, {{0, 0}, {1e7, 0}, {1e7, 1e7}});
+    const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
+    for (const char* format : {"cli", "slc"})
+        EXPECT_TRUE(
+            write_layers(folder.file("out"), layer_format(format, ""), layers, info_of(layers)).empty())
+            << format;
 }
 
 /// Notes what it is given to write.

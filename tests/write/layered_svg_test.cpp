@@ -20,10 +20,6 @@ std::string svg(const LayerStack& layers, const LayerWriteOptions& options = {})
     return file_bytes(folder.file("out.svg"));
 }
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 TEST(LayeredSvg, HasTheseBytes) {
     const std::string polygons =
         "    <polygon slic3r:type=\"contour\" points=\"0,0 10,0 10,10 0,10\" style=\"fill: white\" />\n"
@@ -71,6 +67,16 @@ TEST(LayeredSvg, KeepsOpenChainsWithoutPaintingThem) {
     add_contour(builder, {{0, 0}, {10, 0}, {10, 10}}, false);
     EXPECT_TRUE(contains(svg({builder.finish(0, 0.5, 0, 1)}),
                          "<polyline slic3r:type=\"open\" points=\"0,0 10,0 10,10\" style=\"fill: none\" />"));
+}
+
+TEST(LayeredSvg, HasAGroupForAPartAloneThatHasAName) {
+    const TemporaryFolder folder;
+    LayerFileInfo info = info_of(square_with_hole());
+    info.parts = {{.label = "bracket"}};
+    EXPECT_TRUE(
+        write_layers(folder.file("out.svg"), layer_format("svg", ""), square_with_hole(), info).empty());
+    EXPECT_TRUE(contains(file_bytes(folder.file("out.svg")),
+                         "<g data-lamella-part=\"1\" data-lamella-label=\"bracket\">\n    <polygon"));
 }
 
 TEST(SvgLayers, WritesOnePicturePerLayer) {

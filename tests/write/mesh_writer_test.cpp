@@ -174,6 +174,12 @@ TEST(WriteObj, HasTheTextOfTheFormat) {
               "v 0 3 0\nv 0.5 -0.25 1000\nf 1 2 3\nf 4 3 2\n");
 }
 
+TEST(WriteObj, HasNoNameThatGoesOnToTheNextLine) {
+    const TemporaryFolder folder;
+    write_obj(folder.file("out.obj"), two_triangles, "C:\\parts\\");
+    EXPECT_NE(file_bytes(folder.file("out.obj")).find("\no C:/parts/\nv 0 0 0\n"), std::string::npos);
+}
+
 TEST(MeshWriter, WritesPieceByPieceWhatItWritesAtOnce) {
     const TemporaryFolder folder;
     const TriangleSoup box = make_box(1, 2, 3);

@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <numbers>
 #include <random>
+#include <string>
 #include <string_view>
 
 namespace lamella {
@@ -21,6 +22,10 @@ inline LayerWriteOptions options_for_any() {
     LayerWriteOptions options;
     options.page.viewer = test_viewer;
     return options;
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
 }
 
 inline void add_contour(LayerBuilder& builder, std::initializer_list<Point2> points, bool closed = true) {

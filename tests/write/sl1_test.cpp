@@ -66,17 +66,20 @@ TEST(Sl1, RefusesPartsLargerThanTheDisplay) {
         std::string::npos);
 }
 
+/// The entry of an archive that is stored.
+PngFile stored_picture(const std::string& archive, const std::string& name) {
+    const std::size_t begin = archive.find("\x89PNG", archive.find(name));
+    const std::size_t end = archive.find("IEND", begin) + 8;
+    return read_png(archive.substr(begin, end - begin));
+}
+
 TEST(Sl1, ShowsItsPicturesUpright) {
     // x runs up the picture and y to the right; the display has 2560 rows and 1440 columns.
     const TemporaryFolder folder;
     const LayerStack layers = stack_of({0.1});
     write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers),
                  {.picture = {.raster = {.antialias = 1}}});
-    const std::string archive = file_bytes(folder.file("job.sl1"));
-    const std::size_t begin = archive.find("\x89PNG");
-    const std::size_t end = archive.find("IEND") + 8;
-    ASSERT_NE(begin, std::string::npos);
-    const PngFile picture = read_png(archive.substr(begin, end - begin));
+    const PngFile picture = stored_picture(file_bytes(folder.file("job.sl1")), "job00000.png");
     ASSERT_EQ(picture.error, "");
     ASSERT_EQ(picture.width, 1440U);
     ASSERT_EQ(picture.height, 2560U);
@@ -90,13 +93,6 @@ TEST(Sl1, ShowsItsPicturesUpright) {
     EXPECT_EQ(at(9, 8), 255);
     EXPECT_EQ(at(1, 2), 0);
     EXPECT_EQ(at(3, 9), 0);
-}
-
-/// The entry of an archive that is stored.
-PngFile stored_picture(const std::string& archive, const std::string& name) {
-    const std::size_t begin = archive.find("\x89PNG", archive.find(name));
-    const std::size_t end = archive.find("IEND", begin) + 8;
-    return read_png(archive.substr(begin, end - begin));
 }
 
 TEST(Sl1, HasPicturesOfThePart) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace LAMELLA_API lamella {
 
@@ -29,12 +30,12 @@ struct Rounding {
     return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
 }
 
-/// How far a format may have moved a point of a layer.
-[[nodiscard]] inline double moved_point(const Layer& layer, const Rounding& rounding) noexcept {
+/// How far a format may have moved one of these points, in mm. O(points), where it rounds.
+[[nodiscard]] inline double moved_point(std::span<const Point2> points, const Rounding& rounding) noexcept {
     if (rounding == Rounding{})
         return 0;
     double largest = 0;
-    for (const Point2& p : layer.points)
+    for (const Point2& p : points)
         largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
     return rounding.step_at(largest) / 2 * std::sqrt(2.0);
 }

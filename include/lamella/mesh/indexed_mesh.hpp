@@ -44,7 +44,11 @@ struct IndexedMesh {
 /// finite. Everything else in this library takes a mesh that passes.
 void check(const IndexedMesh& mesh);
 
-/// The box of all vertices. Empty for a mesh without vertices.
+/// Drops vertices that no triangle names; the others keep their order. In place, O(vertices + triangles).
+/// Throws Error{cancelled}.
+void drop_unused_vertices(IndexedMesh& mesh, const Execution& execution = {});
+
+/// The box of all vertices, used or not. Empty for a mesh without vertices.
 [[nodiscard]] Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution = {});
 
 /// Signed volume in mm^3, as for a soup. The same bits as for the soup it was welded from.

@@ -20,6 +20,7 @@ struct MergeResult {
     double bottom = 0;       ///< of the first layer
     double top = 0;          ///< of the last one
     std::uint64_t bytes = 0; ///< written
+    /// What was odd about the files where they are written anew, and what the format has no place for.
     std::vector<std::string> warnings;
 };
 
@@ -29,9 +30,10 @@ struct MergeResult {
 /// Layers of other formats are read and written anew. Memory holds one of the files at a time.
 ///
 /// `format`: by name; "" goes by the extension of `output`. Throws Error{input} when files differ in their
-/// parts (but of scan vectors, formats that know only parts with some), their units or their head, when one
-/// begins above the end of the one below it (a gap) or below it (an overlap), naming both; and what reading
-/// and writing throw.
+/// parts (but formats of scan vectors know only parts that have something), the parameters of a part, their
+/// units or their head, when one begins above the end of the one below it (a gap) or below it (an overlap),
+/// naming both; for files that are put together as they are and whose reading met anything odd; and what
+/// reading and writing throw.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format = {}, const LayerWriteOptions& options = {},
                               const LayerReadOptions& reading = {}, const Execution& execution = {});

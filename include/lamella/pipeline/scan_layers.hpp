@@ -27,6 +27,19 @@ struct ExposureResult {
 /// the part and their own name, such as "bracket core hatch".
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
+/// Rings of layers that are thinner than the beam's offsets: nothing is left of them for vectors.
+struct ThinRings {
+    std::uint64_t rings = 0;
+    std::uint64_t layers = 0; ///< with any
+    double first_z = 0;       ///< of the lowest of them
+
+    /// Of the next layer above.
+    void add(std::uint64_t count, double z) noexcept;
+    /// "12 rings on 3 layers, the lowest at z = 0.5 mm, are thinner than the beam's offsets: they have no
+    /// vectors"
+    [[nodiscard]] std::string text() const;
+};
+
 struct ScanResult {
     /// In the order in which they are executed, all layers and parts together, those of supports last. A beam
     /// goes through the parts of a layer one after the other; how it comes from layer to layer does not
@@ -34,6 +47,7 @@ struct ScanResult {
     std::vector<ExposureResult> exposures;
     /// For each layer what each of these takes.
     std::vector<std::vector<ScanFigures>> layers;
+    ThinRings thin;
     double scan_seconds = 0; ///< of all threads
     std::uint64_t bytes = 0; ///< written
     std::vector<std::string> warnings;
@@ -42,7 +56,8 @@ struct ScanResult {
 /// Scans the layers of parts, whose stacks have the same planes, and writes the vectors. `rounding`: of the
 /// file that they come from, none for layers just cut; `info`: the head of a file of these layers. Hatches
 /// that layers have already do not count. On all threads, each of which holds the vectors of one plane.
-/// Throws what `scan` and `write_layers` throw.
+/// Throws what `scan` and `write_layers` throw, and Error{defect} for thin rings with
+/// LayerWriteOptions::strict.
 [[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
                                      std::span<const LayerStack> parts, const Rounding& rounding,
                                      const LayerFileInfo& info, const ScanStrategy& strategy,

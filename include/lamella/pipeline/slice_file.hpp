@@ -76,7 +76,8 @@ struct FileJob {
     std::string engine; ///< by name; "" is the default engine
     /// Weld the mesh and count its defects first.
     bool inspect = false;
-    /// Inspect, and make an Error{defect} of any defect, before anything is written.
+    /// Inspect, and make an Error{defect} of any defect, of rings that are too thin for scan vectors, and of
+    /// steps that leave no contour in any layer, before anything is written.
     bool strict = false;
     /// Measure and hash every layer.
     bool layer_statistics = false;
@@ -155,9 +156,10 @@ struct FileResult {
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
     /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
     std::vector<ExposureResult> exposures;
-    Affected open;                    ///< with open chains
-    OpenGaps open_gaps;               ///< of these, in all
-    Affected inside_out;              ///< whose first ring, always an outer one, runs clockwise
+    ThinRings thin;      ///< with FileJob::scan
+    Affected open;       ///< with open chains
+    OpenGaps open_gaps;  ///< of these, in all
+    Affected inside_out; ///< whose first ring runs clockwise: an outer one unless open chains lie around it
     std::uint64_t planned_layers = 0; ///< by all shards
     PlaneRange shard;                 ///< which of them by this one: all, where there are no shards
     double bottom = 0;                ///< of the first layer

@@ -29,6 +29,16 @@ struct VerifyOptions {
     Rounding rounding = {};
 };
 
+/// Between which heights layers lie, and the mesh that they are compared with, in mm.
+struct CoveredHeights {
+    double bottom = 0; ///< of the first layer
+    double top = 0;    ///< of the last layer
+    double mesh_bottom = 0;
+    double mesh_top = 0;
+    std::uint64_t gaps = 0; ///< between a layer and the next one, where the mesh has material
+    double gaps_mm = 0;     ///< all of them together
+};
+
 struct Verification {
     /// A layer with contours that do not close.
     struct OpenLayer {
@@ -57,11 +67,15 @@ struct Verification {
     /// Whether each area lies within its tolerance: the rounding of the format and of sums, times the
     /// perimeter.
     bool areas_agree = true;
+    /// With VerifyOptions::mesh, where there are layers. Layers of a part of the mesh's height are no error,
+    /// gaps between them are.
+    std::optional<CoveredHeights> heights = {};
     /// One line for each kind of finding, with the first layer and place where it occurs.
     std::vector<std::string> findings;
 
     [[nodiscard]] bool ok() const noexcept {
-        return open_chains == 0 && crossings == 0 && misoriented == 0 && areas_agree;
+        return open_chains == 0 && crossings == 0 && misoriented == 0 && areas_agree &&
+               (!heights || heights->gaps == 0);
     }
 };
 
@@ -78,8 +92,9 @@ struct VectorVerifyOptions {
     PlaneRule rule = PlaneRule::section_above; ///< as VerifyOptions::rule
     Rounding rounding = {};                    ///< of coordinates and heights: vectors may be off by so much
     /// By which the vectors were made. With it they are to be as far from the edges of the material as it
-    /// says, no hatch line shorter than `shortest`, and lines times their distance are to be the area that
-    /// they fill.
+    /// says, each of its contours there and at its depth, no hatch line shorter than `shortest`, and lines
+    /// times their distance are to be the area that they fill. How far lines are apart, and how they are
+    /// turned, is not looked at.
     std::optional<ScanStrategy> strategy = {};
 };
 
@@ -95,11 +110,17 @@ struct VectorVerification {
     std::uint64_t outside = 0;
     std::uint64_t too_short = 0; ///< hatch lines
     /// Planes of a part, of all parts with a mesh, whose lines cover more or less than they are to fill. What
-    /// may be off: along the edges of that half a distance, as wide a strip as the shortest line is long, and
-    /// what stripes, islands and skins overlap.
+    /// may be off: along the edges of that, and of skins, half a distance and as wide a strip as the shortest
+    /// line is long, and what stripes, islands and skins overlap.
     std::uint64_t miscovered = 0;
     /// What lines cover by what they are to fill, of all layers; where there is a strategy.
     std::optional<double> cover;
+    /// Contours that are missing on a plane of a part, or enclose another area than the material has at their
+    /// depth: by more than both perimeters times four times what rounding moves. Of a mesh of several parts
+    /// these are held against the outermost contours of each.
+    std::uint64_t wrong_contours = 0;
+    /// With a mesh, where there are layers; see Verification::heights.
+    std::optional<CoveredHeights> heights = {};
     /// Vectors of which nothing tells where the material is: neither a mesh nor an outer contour, or an open
     /// one.
     std::uint64_t unbounded = 0;
@@ -108,7 +129,7 @@ struct VectorVerification {
 
     [[nodiscard]] bool ok() const noexcept {
         return open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 && too_short == 0 &&
-               miscovered == 0;
+               miscovered == 0 && wrong_contours == 0 && (!heights || heights->gaps == 0);
     }
 };
 

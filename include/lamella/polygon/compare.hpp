@@ -40,7 +40,7 @@ struct RoundedLayers {
 /// Two layers that belong together, or one that the other stack has no partner for.
 struct ComparedPlane {
     double z = 0; ///< of the cut
-    /// Their numbers in the stacks; none where that stack has no contours there.
+    /// Their numbers in the stacks; none where that stack has neither contours nor hatch lines there.
     std::optional<std::size_t> first;
     std::optional<std::size_t> second;
     LayerDifference difference = {}; ///< where there are both
@@ -56,9 +56,10 @@ struct StackComparison {
 };
 
 /// Compares two stacks plane by plane. Layers belong together when their cuts are no further apart than the
-/// rounding of both formats explains, and neither is nearer to another layer; one without contours needs no
-/// partner. `tolerance_mm` is for LayerDifference::within; unless given, it is what the rounding of both
-/// formats explains.
+/// rounding of both formats explains, and neither is nearer to another layer; one without contours and hatch
+/// lines needs no partner. Hatch lines and heights of layers that belong together do not count: see
+/// `compare_files`. `tolerance_mm` is for LayerDifference::within; unless given, it is what the rounding of
+/// both formats explains.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                                       std::optional<double> tolerance_mm = {});
 

@@ -55,8 +55,9 @@ struct OffsetCorners {
 [[nodiscard]] Layer offset(const Layer& layer, double distance, const OffsetCorners& corners = {},
                            std::uint64_t* vanished = nullptr);
 
-/// The same for several distances: the layer itself is looked at once.
+/// The same for several distances: the layer itself is looked at once. `vanished` is of the first of them.
 [[nodiscard]] std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
-                                         const OffsetCorners& corners = {});
+                                         const OffsetCorners& corners = {},
+                                         std::uint64_t* vanished = nullptr);
 
 } // namespace lamella

@@ -25,7 +25,8 @@ struct LayerReadOptions {
 
 /// One of the parts that a file holds.
 struct LayerPart {
-    std::string label; ///< "" where the file has none
+    /// "" where the file has none; some readers put a number behind one that is there before.
+    std::string label;
     LayerStack layers;
     /// Where the file says so, the layers are scan vectors: in the order in which they are executed, not in
     /// normal form. Numbers of the parameters that it does not say are 0.
@@ -35,8 +36,7 @@ struct LayerPart {
 
 struct LayerFile {
     std::string path;
-    std::string
-        format; ///< "cli", "cli-ascii", "svg", "slc", "3mf", "json", "npz", "ilt", "ovf" or "3mf-toolpath"
+    std::string format;  ///< as in the table of formats that are written, such as "cli"; also "slc"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
     Rounding rounding = {}; ///< of coordinates and heights, by the format
     /// By which the layers were cut, where the format says it; else the usual one.

@@ -6,6 +6,7 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/scan/strategy.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -14,9 +15,9 @@
 namespace LAMELLA_API lamella {
 
 /// A layer as `scan` takes it: without points of rings on the straight way between others, at which a beam
-/// need not stop; to 2^-36 of its extent, or to what the rounding of a file that it comes from explains. Made
-/// once of each layer, which may be scanned and be a neighbour of others. Throws Error{limit} for coordinates
-/// beyond 1e150.
+/// need not stop. That is to 2^-36 of its extent, or to what the rounding of a file that it comes from
+/// explains: no ring is farther from what it was than 2 `moved_point`. Made once of each layer, which may be
+/// scanned and be a neighbour of others. O(points). Throws Error{limit} for coordinates beyond 1e150.
 class ScanLayer {
   public:
     // NOLINTNEXTLINE(google-explicit-constructor): a layer is one, as a string is a view
@@ -61,18 +62,21 @@ class ScanMemory {
 ///
 /// `below` and `above`: the layers beneath and on top, the nearest one first, for skins; as many as the
 /// strategy asks for (`SkinRule::layers`), and fewer only where there are no more: where the part ends there
-/// is no material. `memory`, where given, is that of the part.
+/// is no material. So it is where heights leave a gap of more than 1e-6 mm between one layer and the next.
+/// `memory`, where given, is that of the part. `thin_rings`, where given, becomes the number of rings that
+/// are thinner than the least of these offsets: nothing is left of them, and they have no vectors.
 ///
 /// The same bits on every machine, for any order of rings. O((n + v) log) for n points and v vectors, beside
 /// what offsets and, for skins, differences take. Throws Error{usage} as `check_strategy`, and Error{limit}
 /// for a layer that would have more than 2^26 lines, or islands, before memory is spent on them.
 [[nodiscard]] std::vector<Layer> scan(const ScanLayer& layer, std::span<const ScanLayer> below,
                                       std::span<const ScanLayer> above, const ScanStrategy& strategy,
-                                      ScanMemory* memory = nullptr);
+                                      ScanMemory* memory = nullptr, std::uint64_t* thin_rings = nullptr);
 
 /// The same of a layer of a support: by the strategy's rule for these, a layer for each of its
 /// `support_exposures`.
 [[nodiscard]] std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
-                                              ScanMemory* memory = nullptr);
+                                              ScanMemory* memory = nullptr,
+                                              std::uint64_t* thin_rings = nullptr);
 
 } // namespace lamella

@@ -39,8 +39,11 @@ struct HatchRule {
     double turn_degrees = 67; ///< from each layer to the next
     double border = 0.05;     ///< from the innermost contour, or the outline of the part, to where lines end
     double shortest = 0.1;    ///< shorter lines are left out
-    double cell = 5;          ///< width of a stripe or a square, of a hexagon from side to side; above 0
-    double overlap = 0.1;     ///< of neighbouring stripes or islands; less than half of `cell`
+    /// Width of a stripe or a square, of a hexagon from side to side; above 0, and above `shortest` where the
+    /// pattern has any of these.
+    double cell = 5;
+    /// Of neighbouring stripes or islands, where there are any; less than half of `cell`.
+    double overlap = 0.1;
     IslandOrder order = IslandOrder::rows;
     ParameterSet parameters;
 };
@@ -48,7 +51,7 @@ struct HatchRule {
 /// Where a beam begins to follow a contour.
 enum class StartPoint : std::uint8_t {
     aligned,  ///< at the corner that is farthest in a direction
-    sharpest, ///< at the sharpest convex corner; of equal ones at the first
+    sharpest, ///< at the sharpest convex corner; where there is none, at the concave one that turns least
     random,   ///< at a corner by the seed of the strategy
 };
 [[nodiscard]] std::string_view start_point_name(StartPoint start) noexcept;

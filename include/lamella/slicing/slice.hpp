@@ -109,8 +109,8 @@ struct Engine {
                                SliceReport* report = nullptr, const Engine& engine = engines().front());
 
 /// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
-/// flight (some 56 MB per thread, or two layers per thread where single layers are larger). Layers that the
-/// sink has let go of take no memory. `points_in_flight` overrides this bound; 0 keeps it.
+/// flight (some 56 MB per thread, 112 MB at least, or two layers per thread where those are more). Layers
+/// that the sink has let go of take no memory. `points_in_flight` overrides this bound; 0 keeps it.
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
               SliceReport* report = nullptr, const Engine& engine = engines().front(),
               std::uint64_t points_in_flight = 0);

@@ -99,9 +99,10 @@ struct LayerFormat {
                                          const LayerWriteOptions& options) = nullptr;
     /// Of files that get their names from a program, where it is not `extension`.
     std::string_view file_extension = extension;
-    bool directory = false; ///< writes one file per layer into a directory
-    bool pieces = false;    ///< can be written piece by piece
-    bool joins = false;     ///< files of consecutive layers can be put together as they are
+    bool directory = false;    ///< writes one file per layer into a directory
+    bool pieces = false;       ///< can be written piece by piece
+    bool joins = false;        ///< files of consecutive layers can be put together as they are
+    bool filled_parts = false; ///< files know only those parts that have something in them
     /// Of coordinates, with the options as they are by default; none where contours are not kept as such.
     std::optional<Rounding> rounding = {};
 
@@ -142,11 +143,11 @@ class LayerWriter {
     /// leaves nothing behind. To be called once, after the last layer.
     virtual void finish() = 0;
 
-    /// Bytes written so far.
+    /// Bytes of the file so far, with those of layers that wait for their place in it.
     [[nodiscard]] virtual std::uint64_t bytes() const noexcept = 0;
 
-    /// What the format had no place for, and what its rounding lost where it moves points by more than 0.01
-    /// mm, one line each. To be asked once all layers are written.
+    /// What the format had no place for, contours and lines that its rounding lost, and how far it moves
+    /// points where that is more than 0.01 mm, one line each. To be asked once all layers are written.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 

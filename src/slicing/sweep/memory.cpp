@@ -7,9 +7,10 @@ namespace lamella {
 
 std::uint64_t SlabMemory::bytes(const SlabNeeds& slab) const noexcept {
     // While nodes are joined, each has its hash and a record beside it; afterwards its place in the order of
-    // starts, and each worker marks in an array of all nodes where it has been.
+    // starts and, at most, in the list of one task that it reaches into, and each worker marks in an array of
+    // all nodes where it has been.
     constexpr std::uint64_t joining = sizeof(std::uint64_t) + 12;
-    const std::uint64_t walking = 4 + 4 * std::uint64_t{threads};
+    const std::uint64_t walking = 8 + 4 * std::uint64_t{threads};
     const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +
                                sizeof(PlaneSpan) + std::max(joining, walking);
     // A point, and the text that a sink makes of it.

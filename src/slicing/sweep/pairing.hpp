@@ -128,6 +128,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
         return order != 0 ? order < 0 : a < b;
     });
     crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());
+    executor.check_cancelled();
 
     const auto third = [&](const Ends& edge, const Ends& other) {
         const bool low_is_shared = other.low == edge.low || other.low == edge.high;
@@ -138,7 +139,12 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
     std::vector<bool> is_crowded(graph.count);
     for (const std::uint32_t id : crowded)
         is_crowded[id] = true;
-    std::vector<std::vector<Ray>> found(executor.workers());
+    struct Arrival {
+        std::uint32_t node;
+        std::uint32_t from;
+        std::uint32_t triangle;
+    };
+    std::vector<std::vector<Arrival>> found(executor.workers());
     executor.for_chunks(graph.count, 1U << 16, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
         for (std::uint64_t id = begin; id < end; ++id) {
             const Node& node = graph.nodes[id];
@@ -146,22 +152,26 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
                 continue;
             for (const std::uint32_t next : {node.next_low, node.next_high})
                 if (is_crowded[next])
-                    found[worker].push_back(
-                        {true, 0, third(graph.nodes[next].ends, node.ends), node.triangle, next});
+                    found[worker].push_back({next, static_cast<std::uint32_t>(id), node.triangle});
         }
     });
-    std::vector<Ray> arrivals;
-    for (const auto& part : found)
+    std::vector<Arrival> arrivals;
+    for (std::vector<Arrival>& part : found) {
         arrivals.insert(arrivals.end(), part.begin(), part.end());
-    const auto by_node = [](const Ray& a, const Ray& b) {
+        part = std::vector<Arrival>(); // lets go of the memory, too
+    }
+    const auto by_node = [](const Arrival& a, const Arrival& b) {
         return a.node < b.node;
     };
+    executor.check_cancelled();
     std::sort(arrivals.begin(), arrivals.end(), by_node);
 
     std::uint64_t edges = 0;
     std::vector<Ray> rays;
     std::vector<Node> links;
     for (std::size_t begin = 0; begin < crowded.size();) {
+        if (edges % 1024 == 0)
+            executor.check_cancelled();
         std::size_t end = begin + 1;
         while (end < crowded.size() && ends_order(crowded[begin], crowded[end]) == 0)
             ++end;
@@ -183,9 +193,10 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             }
             if (node.entered) {
                 const auto arrival =
-                    std::lower_bound(arrivals.begin(), arrivals.end(), Ray{true, 0, {}, 0, id}, by_node);
+                    std::lower_bound(arrivals.begin(), arrivals.end(), Arrival{id, 0, 0}, by_node);
                 assert(arrival != arrivals.end() && arrival->node == id);
-                rays.push_back(*arrival);
+                rays.push_back(
+                    {true, 0, third(edge, graph.nodes[arrival->from].ends), arrival->triangle, id});
             } else {
                 spare.push_back(id);
             }

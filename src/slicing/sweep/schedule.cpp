@@ -32,29 +32,37 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
     assert(workers > 0);
     assert(loads.begun.size() == loads.points.size() + 1);
     const std::uint32_t planes = loads.planes();
+    if (planes == 0)
+        return {};
     std::uint64_t work = 0;
     for (const std::uint64_t p : loads.points)
         work += p + plane_cost;
     if (work < workers * worth_a_thread)
         workers = 1;
 
+    const bool bounded = points_in_flight != 0;
     const std::uint64_t per_task = points_in_flight / (workers + 1ULL); // one may wait for its turn
     const std::uint64_t largest_layer = std::max<std::uint64_t>(1, loads.most_points);
-    if (points_in_flight != 0 && per_task / largest_layer < std::min<std::uint64_t>(planes, worth_a_task))
-        return one_for_all(planes, workers, std::max<std::uint64_t>(1, points_in_flight / largest_layer));
+    const std::uint64_t planes_of_task = bounded ? per_task / largest_layer : planes;
+    const std::uint64_t group =
+        bounded ? std::max<std::uint64_t>(1, points_in_flight / largest_layer) : planes;
+    if (planes_of_task == 0)
+        return one_for_all(planes, workers, group);
+    const bool many_planes = planes_of_task >= std::min<std::uint64_t>(planes, worth_a_task);
 
     std::vector<SweepTask> tasks;
     const std::uint64_t wanted =
         workers == 1 ? 1 : workers * std::clamp<std::uint64_t>(planes / (workers * 32ULL), 1, 4);
     std::uint64_t target = work / wanted + 1;
-    if (points_in_flight != 0)
+    if (bounded)
         target = std::min(target, per_task);
     std::uint64_t filled = 0;
     const std::uint64_t nodes = loads.begun.back();
     std::uint64_t walked = nodes;
     for (std::uint32_t p = 0; p < planes; ++p) {
         const std::uint64_t cost = loads.points[p] + plane_cost;
-        if (tasks.empty() || filled + cost / 2 > target) {
+        // Of a task of many planes, a part of one more is little.
+        if (tasks.empty() || filled + (many_planes ? cost / 2 : cost) > target) {
             tasks.push_back({{p, p}, planes});
             filled = 0;
             walked += loads.points[p] - (loads.begun[p + 1] - loads.begun[p]);
@@ -63,9 +71,15 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
         tasks.back().planes.end = p + 1;
     }
     assert(covers_every_plane_once(tasks, planes));
-    // Where layers are delivered on the way, tasks of their own let some slice while others deliver.
-    if (points_in_flight == 0 && tasks.size() > 1 && workers * nodes <= walked + walked / 16)
-        return one_for_all(planes, workers, planes);
+    // Where layers are delivered on the way, long tasks let some slice while others deliver.
+    if (tasks.size() <= 1 || (bounded && many_planes))
+        return tasks;
+    const std::uint64_t walking = std::min<std::uint64_t>(workers, tasks.size());
+    const bool no_sooner = walking * nodes <= walked + walked / 16;
+    // What reaches into short tasks is to take no more memory than one number for each node.
+    const bool too_many_carried = bounded && walked > 2 * nodes;
+    if (no_sooner || too_many_carried)
+        return one_for_all(planes, workers, group);
     return tasks;
 }
 

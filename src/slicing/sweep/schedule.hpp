@@ -11,8 +11,7 @@
 
 namespace lamella {
 
-/// Planes that one worker sweeps; or all of them together, where single layers are so large that only a few
-/// may be in flight.
+/// Planes that one worker sweeps, or all of them together.
 struct SweepTask {
     PlaneRange planes;
     std::uint32_t group; ///< planes that may be in flight together
@@ -28,9 +27,10 @@ struct SweepTask {
 /// plane, so there are few of them where planes are few and large, and more where that cost is lost among the
 /// planes, to level out what the estimate of the work misses.
 ///
-/// There is one task, on which all workers share the work, where the bound on points in flight would make
-/// tasks of a few planes only; and where all layers stay in memory and each task would walk over as much as
-/// one worker that walks for all, as on upright parts: what follows the walk is then shared evenly.
+/// There is one task, on which all workers share the work, where the bound on points in flight leaves no room
+/// for a task of each worker; and where tasks would walk over as much as one worker that walks for all, as on
+/// upright parts: what follows the walk is then shared evenly. But where the bound makes tasks of many planes
+/// all the same, these are better: some workers slice while others deliver.
 [[nodiscard]] std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers,
                                               std::uint64_t points_in_flight);
 

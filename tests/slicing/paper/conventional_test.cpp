@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <map>
 #include <utility>
-#include <vector>
 
 namespace lamella {
 namespace {

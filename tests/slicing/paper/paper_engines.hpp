@@ -9,11 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace lamella::test {
@@ -44,11 +42,7 @@ inline LayerStack slice_with(std::string_view name, const Mesh& mesh, const Plan
 inline LayerStack slice_as_listed(std::string_view name, const Mesh& mesh, const Plan& plan,
                                   SliceReport* report = nullptr) {
     LayerStack stack;
-    const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
-        return [&stack, kept = std::move(layer)]() mutable {
-            stack.push_back(std::move(kept));
-        };
-    };
+    const LayerSink keep = keeping(stack);
     const Execution execution;
     SliceReport ours;
     engine(name).slice({mesh, plan, keep, execution, 0, ours});

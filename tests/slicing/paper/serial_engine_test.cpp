@@ -1,7 +1,7 @@
+#include "fixtures/expect_error.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/even_planes.hpp"
-#include "slicing/expect_error.hpp"
 #include "slicing/naive_section.hpp"
 #include "slicing/paper/paper_engines.hpp"
 #include "slicing/paper/serial_engine.hpp"

@@ -1,9 +1,9 @@
 #include "lamella/core/error.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/even_planes.hpp"
-#include "slicing/expect_error.hpp"
 #include "slicing/sweep/graph_of.hpp"
 #include "slicing/sweep/measure.hpp"
 

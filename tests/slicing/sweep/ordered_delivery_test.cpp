@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
-#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -33,9 +34,26 @@ std::vector<std::uint32_t> mixed(std::uint32_t n, std::uint64_t seed) {
     return order;
 }
 
+/// A delivery of so many planes, and what it needs.
+struct Delivery {
+    Delivery(std::uint64_t planes, LayerSink to, const Execution& by = {})
+        : execution(by), executor(execution), sink(std::move(to)), progress(execution, Stage::slice, planes) {
+    }
+
+    void deliver(std::uint32_t plane) { delivery.deliver(plane, layer_number(plane)); }
+
+    Execution execution;
+    Executor executor;
+    LayerSink sink;
+    ProgressMeter progress;
+    OrderedDelivery delivery{sink, executor, progress};
+};
+
+constexpr auto nothing_in_order = [](Layer&&) {
+    return std::function<void()>();
+};
+
 TEST(OrderedDelivery, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
-    const Execution execution{};
-    const Executor executor(execution);
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         std::vector<std::uint64_t> arrived;
         std::vector<std::uint64_t> ordered;
@@ -45,11 +63,10 @@ TEST(OrderedDelivery, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
                 ordered.push_back(index);
             };
         };
-        ProgressMeter progress(execution, Stage::slice, 50);
-        OrderedDelivery delivery(sink, executor, progress);
+        Delivery delivery(50, sink);
         const std::vector<std::uint32_t> order = mixed(50, seed);
         for (const std::uint32_t plane : order)
-            delivery.deliver(plane, layer_number(plane));
+            delivery.deliver(plane);
         EXPECT_TRUE(std::equal(arrived.begin(), arrived.end(), order.begin(), order.end()))
             << "the parallel part must not wait";
         ASSERT_EQ(ordered.size(), 50U);
@@ -59,8 +76,6 @@ TEST(OrderedDelivery, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
 
 TEST(OrderedDelivery, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
     constexpr std::uint32_t planes = 2000;
-    const Execution execution{.threads = 7};
-    Executor executor(execution);
     std::atomic<int> inside{0};
     std::atomic<int> parallel{0};
     std::vector<std::uint64_t> ordered; // not guarded: the promise is that it need not be
@@ -72,12 +87,10 @@ TEST(OrderedDelivery, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
             --inside;
         };
     };
-    ProgressMeter progress(execution, Stage::slice, planes);
-    OrderedDelivery delivery(sink, executor, progress);
+    Delivery delivery(planes, sink, {.threads = 7});
     const std::vector<std::uint32_t> order = mixed(planes, 1);
-    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        delivery.deliver(order[i], layer_number(order[i]));
-    });
+    delivery.executor.for_chunks(
+        planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) { delivery.deliver(order[i]); });
     EXPECT_EQ(parallel, static_cast<int>(planes));
     ASSERT_EQ(ordered.size(), planes);
     for (std::uint32_t i = 0; i < planes; ++i)
@@ -85,51 +98,37 @@ TEST(OrderedDelivery, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
 }
 
 TEST(OrderedDelivery, CountsLayersWithoutAnOrderedPart) {
-    const Execution execution{};
-    const Executor executor(execution);
-    const LayerSink sink = [](Layer&&) {
-        return std::function<void()>();
-    };
-    ProgressMeter progress(execution, Stage::slice, 3);
-    OrderedDelivery delivery(sink, executor, progress);
+    Delivery delivery(3, nothing_in_order);
     for (const std::uint32_t plane : {0U, 1U, 2U})
-        delivery.deliver(plane, layer_number(plane));
-    EXPECT_TRUE(delivery.wait_for(3));
+        delivery.deliver(plane);
+    EXPECT_TRUE(delivery.delivery.wait_for(3));
 }
 
 TEST(OrderedDelivery, LetsGoOfAnOrderedPartOnceItHasRun) {
-    const Execution execution{};
-    const Executor executor(execution);
     const auto token = std::make_shared<int>(0);
     const LayerSink sink = [&](Layer&&) -> std::function<void()> {
         return [kept = token] {
         };
     };
-    ProgressMeter progress(execution, Stage::slice, 3);
-    OrderedDelivery delivery(sink, executor, progress);
-    delivery.deliver(1, layer_number(1));
+    Delivery delivery(3, sink);
+    delivery.deliver(1);
     EXPECT_EQ(token.use_count(), 2);
-    delivery.deliver(0, layer_number(0));
+    delivery.deliver(0);
     EXPECT_EQ(token.use_count(), 1);
 }
 
 TEST(OrderedDelivery, PassesAnExceptionOfTheParallelPartToWhoDelivered) {
-    const Execution execution{};
-    const Executor executor(execution);
     const LayerSink sink = [](Layer&& layer) -> std::function<void()> {
         if (layer.index == 1)
             throw std::runtime_error("no room for layer 1");
         return {};
     };
-    ProgressMeter progress(execution, Stage::slice, 3);
-    OrderedDelivery delivery(sink, executor, progress);
-    EXPECT_NO_THROW(delivery.deliver(0, layer_number(0)));
-    EXPECT_THROW(delivery.deliver(1, layer_number(1)), std::runtime_error);
+    Delivery delivery(3, sink);
+    EXPECT_NO_THROW(delivery.deliver(0));
+    EXPECT_THROW(delivery.deliver(1), std::runtime_error);
 }
 
 TEST(OrderedDelivery, StopsForGoodWhenAnOrderedPartThrows) {
-    const Execution execution{};
-    const Executor executor(execution);
     std::vector<std::uint64_t> ordered;
     const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
         return [&, index = layer.index] {
@@ -138,36 +137,29 @@ TEST(OrderedDelivery, StopsForGoodWhenAnOrderedPartThrows) {
             ordered.push_back(index);
         };
     };
-    ProgressMeter progress(execution, Stage::slice, 4);
-    OrderedDelivery delivery(sink, executor, progress);
-    delivery.deliver(2, layer_number(2));
-    delivery.deliver(1, layer_number(1));
-    EXPECT_THROW(delivery.deliver(0, layer_number(0)), std::runtime_error);
-    EXPECT_NO_THROW(delivery.deliver(3, layer_number(3)));
+    Delivery delivery(4, sink);
+    delivery.deliver(2);
+    delivery.deliver(1);
+    EXPECT_THROW(delivery.deliver(0), std::runtime_error);
+    EXPECT_NO_THROW(delivery.deliver(3));
     EXPECT_EQ(ordered, (std::vector<std::uint64_t>{0})) << "nothing may follow the failure";
-    EXPECT_FALSE(delivery.wait_for(2)) << "whoever waits must not wait for ever";
-    EXPECT_TRUE(delivery.wait_for(1));
+    EXPECT_FALSE(delivery.delivery.wait_for(2)) << "whoever waits must not wait for ever";
+    EXPECT_TRUE(delivery.delivery.wait_for(1));
 }
 
 TEST(OrderedDelivery, HoldsBackWhoeverWaitsForAPlane) {
-    const Execution execution{.threads = 2};
-    Executor executor(execution);
-    const LayerSink sink = [](Layer&&) {
-        return std::function<void()>();
-    };
-    ProgressMeter progress(execution, Stage::slice, 10);
-    OrderedDelivery delivery(sink, executor, progress);
+    Delivery delivery(10, nothing_in_order, {.threads = 2});
     std::atomic<int> delivered{0};
-    executor.run([&](unsigned worker) {
+    delivery.executor.run([&](unsigned worker) {
         if (worker == 0) {
             for (std::uint32_t plane = 0; plane < 10; ++plane) {
                 std::this_thread::yield();
                 ++delivered;
-                delivery.deliver(plane, layer_number(plane));
+                delivery.deliver(plane);
             }
         } else {
             for (std::uint32_t plane = 0; plane <= 10; ++plane) {
-                EXPECT_TRUE(delivery.wait_for(plane));
+                EXPECT_TRUE(delivery.delivery.wait_for(plane));
                 EXPECT_GE(delivered, static_cast<int>(plane));
             }
         }
@@ -176,35 +168,26 @@ TEST(OrderedDelivery, HoldsBackWhoeverWaitsForAPlane) {
 
 TEST(OrderedDelivery, LetsWaitersGoWhenTheCallerCancels) {
     CancelFlag stop;
-    const Execution execution{.threads = 2, .cancel = &stop};
-    Executor executor(execution);
-    const LayerSink sink = [](Layer&&) {
-        return std::function<void()>();
-    };
-    ProgressMeter progress(execution, Stage::slice, 10);
-    OrderedDelivery delivery(sink, executor, progress);
-    EXPECT_THROW(executor.run([&](unsigned worker) {
+    Delivery delivery(10, nothing_in_order, {.threads = 2, .cancel = &stop});
+    EXPECT_THROW(delivery.executor.run([&](unsigned worker) {
         if (worker == 0)
             stop.request();
         else
-            EXPECT_FALSE(delivery.wait_for(5));
+            EXPECT_FALSE(delivery.delivery.wait_for(5));
     }),
                  Error);
 }
 
 TEST(OrderedDelivery, LetsWaitersGoWhenAnotherWorkerFails) {
-    const Execution execution{.threads = 2};
-    Executor executor(execution);
     const LayerSink sink = [](Layer&&) -> std::function<void()> {
         throw std::runtime_error("parallel");
     };
-    ProgressMeter progress(execution, Stage::slice, 10);
-    OrderedDelivery delivery(sink, executor, progress);
-    EXPECT_THROW(executor.run([&](unsigned worker) {
+    Delivery delivery(10, sink, {.threads = 2});
+    EXPECT_THROW(delivery.executor.run([&](unsigned worker) {
         if (worker == 0)
-            delivery.deliver(0, layer_number(0));
+            delivery.deliver(0);
         else
-            EXPECT_FALSE(delivery.wait_for(1));
+            EXPECT_FALSE(delivery.delivery.wait_for(1));
     }),
                  std::runtime_error);
 }

@@ -82,6 +82,30 @@ TEST(Schedule, KeepsTheBoundOnPointsInFlight) {
             }
 }
 
+TEST(Schedule, LetsWorkersWalkShortTasksWhereMostNodesAreNew) {
+    for (const unsigned workers : {2U, 7U})
+        for (const std::uint64_t planes_in_flight : {20U, 60U}) {
+            const std::vector<SweepTask> tasks = schedule(slanted(300), workers, planes_in_flight * many);
+            EXPECT_GT(tasks.size(), workers);
+            expect_all_planes_once(tasks, 300);
+            const std::vector<SweepTask> walls = schedule(upright(300), workers, planes_in_flight * many);
+            ASSERT_EQ(walls.size(), 1U);
+            EXPECT_TRUE(walls.front().shared);
+            EXPECT_EQ(walls.front().group, planes_in_flight);
+        }
+}
+
+TEST(Schedule, GivesUprightPartsOfFewPlanesToAllWorkersTogether) {
+    const std::vector<SweepTask> tasks = schedule(upright(8), 16, 17 * many);
+    ASSERT_EQ(tasks.size(), 1U);
+    EXPECT_TRUE(tasks.front().shared);
+}
+
+TEST(Schedule, HasNoTaskForNothing) {
+    for (const std::uint64_t points_in_flight : {std::uint64_t{0}, many})
+        EXPECT_TRUE(schedule(planes({}, {}), 2, points_in_flight).empty());
+}
+
 TEST(Schedule, TroublesNoSecondWorkerWithLittle) {
     const std::vector<SweepTask> tasks = schedule(planes({4, 4, 4}, {4, 0, 0}), 7, 0);
     ASSERT_EQ(tasks.size(), 1U);

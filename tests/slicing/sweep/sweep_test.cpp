@@ -590,11 +590,7 @@ TEST(Sweep, OfAFlatMeshIsNothing) {
 /// The layers as they come in order when at most so many points may be in flight.
 LayerStack swept(const Mesh& mesh, const Plan& plan, unsigned threads, std::uint64_t points_in_flight) {
     LayerStack stack;
-    const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
-        return [&stack, kept = std::move(layer)]() mutable {
-            stack.push_back(std::move(kept));
-        };
-    };
+    const LayerSink keep = test::keeping(stack);
     const Execution execution{.threads = threads};
     SliceReport report;
     engine("sweep").slice({mesh, plan, keep, execution, points_in_flight, report});
@@ -612,13 +608,8 @@ TEST(Sweep, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
         for (const unsigned threads : {1U, 2U, 7U}) {
             for (const std::uint64_t points : {1U, 1000U, 30'000U, 300'000U}) {
                 const LayerStack found = swept(mesh, plan, threads, points);
-                ASSERT_EQ(found.size(), expected.size());
-                for (std::size_t i = 0; i < found.size(); ++i) {
-                    EXPECT_EQ(found[i].index, expected[i].index);
-                    EXPECT_EQ(found[i].z, expected[i].z);
-                    EXPECT_EQ(content_hash(found[i]), content_hash(expected[i]))
-                        << i << ", " << threads << " threads, " << points << " points";
-                }
+                SCOPED_TRACE(testing::Message() << threads << " threads, " << points << " points");
+                expect_same(found, expected);
             }
         }
     }

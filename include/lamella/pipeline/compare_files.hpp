@@ -1,0 +1,58 @@
+#pragma once
+
+// How far two slice files are from being the same: contours, hatch lines, heights, and what the beam does.
+
+#include "lamella/core/point.hpp"
+#include "lamella/polygon/compare.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace LAMELLA_API lamella {
+
+/// What two layers that belong together have besides their contours.
+struct PlaneDetails {
+    std::uint64_t first_hatches = 0;
+    std::uint64_t second_hatches = 0;
+    /// The largest way from an end of a hatch line to that of the line of the same number, and where it
+    /// begins; infinite where there are not as many.
+    double hatch_distance_mm = 0;
+    Point2 hatch_where = {};
+    double height_distance_mm = 0; ///< of bottoms or of tops, whichever are farther apart
+    bool heights_agree = true;
+    bool same = false; ///< all of it and the contours, bit for bit
+};
+
+/// A number of the parameters by which parts of one label are exposed.
+struct ParameterDifference {
+    std::string label;
+    std::string parameter; ///< such as "power_w"
+    double first = 0;
+    double second = 0;
+};
+
+/// Planes, and parameters of parts, of two files.
+struct FileComparison {
+    /// Of all parts of a file together. `agree` is of the details, too.
+    StackComparison layers;
+    std::vector<PlaneDetails> details; ///< of each of the planes
+    std::vector<ParameterDifference> parameters;
+
+    /// All planes, and all parameters.
+    [[nodiscard]] bool agree() const noexcept;
+};
+
+/// Compares the contours of two files as `compare` does. Hatch lines are compared one by one, in their order:
+/// part by part where the same labels have some, else those of all parts. Their ends agree within the
+/// tolerance; unless given, what rounding explains. Bottoms and tops agree up to what rounding explains and
+/// 1e-6 mm. Parameters of parts of the same label differ where files of one format say other numbers; of
+/// different formats, not all of which have a place for each, where both say one. Expected O(n log n) for n
+/// points and ends of lines of both, whose contours are in memory a second time.
+[[nodiscard]] FileComparison compare_files(const LayerFile& first, const LayerFile& second,
+                                           std::optional<double> tolerance_mm = {});
+
+} // namespace lamella

@@ -1,0 +1,38 @@
+#pragma once
+
+// Classes whose objects travel between processes.
+
+#include "lamella/core/error.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+namespace lamella::python {
+
+/// Has objects pickled and copied as a tuple of `size` things: `get(object)` gives it, `set(tuple)` makes an
+/// object of it and looks at what it finds there, since it may come from anywhere.
+template <class Class, class Get, class Set>
+void bind_pickle(Class& cls, const char* what, std::size_t size, const Get& get, const Set& set) {
+    const auto checked = [=](const pybind11::tuple& state) {
+        try {
+            if (state.size() == size)
+                return set(state);
+        } catch (const pybind11::cast_error&) {              // a thing of another type
+        } catch (const pybind11::error_already_set& error) { // an array of another one
+            if (!error.matches(PyExc_TypeError))
+                throw;
+        }
+        throw Error(ErrorKind::input, std::string("this is no pickled ") + what);
+    };
+    cls.def(pybind11::pickle(get, checked));
+    // Older protocols would make an object of pybind11's base class, which ends the process.
+    cls.def("__reduce_ex__", [](const pybind11::object& self, int protocol) {
+        const pybind11::object plain = pybind11::module_::import("builtins").attr("object");
+        return pybind11::object(plain.attr("__reduce_ex__")(self, std::max(protocol, 2)));
+    });
+}
+
+} // namespace lamella::python

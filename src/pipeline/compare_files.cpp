@@ -1,0 +1,153 @@
+#include "lamella/pipeline/compare_files.hpp"
+
+#include "lamella/scan/strategy_fields.hpp"
+
+#include "contour/distance.hpp"
+#include "contour/same_height.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+/// Of parts that have any, ascending.
+std::vector<std::string> hatched_labels(const LayerFile& file) {
+    std::vector<std::string> labels;
+    for (const LayerPart& part : file.parts)
+        if (std::any_of(part.layers.begin(), part.layers.end(),
+                        [](const Layer& layer) { return !layer.hatches.empty(); }))
+            labels.push_back(part.label);
+    std::sort(labels.begin(), labels.end());
+    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    return labels;
+}
+
+/// Which parts have hatches that are compared with one another: those of each label, or all.
+using HatchedParts = std::vector<std::vector<const LayerPart*>>;
+
+HatchedParts hatched_parts(const LayerFile& file, const std::vector<std::string>& labels, bool by_label) {
+    HatchedParts result(by_label ? labels.size() : 1);
+    for (const LayerPart& part : file.parts) {
+        if (!by_label)
+            result.front().push_back(&part);
+        else if (const auto found = std::lower_bound(labels.begin(), labels.end(), part.label);
+                 found != labels.end() && *found == part.label)
+            result[static_cast<std::size_t>(found - labels.begin())].push_back(&part);
+    }
+    return result;
+}
+
+std::vector<Point2> ends_of(const std::vector<const LayerPart*>& parts, std::size_t plane) {
+    std::vector<Point2> ends;
+    for (const LayerPart* const part : parts)
+        ends.insert(ends.end(), part->layers[plane].hatches.begin(), part->layers[plane].hatches.end());
+    return ends;
+}
+
+/// How far a format may have moved the ends of lines.
+double moved_ends(const LayerFile& file) {
+    double most = 0;
+    for (const LayerPart& part : file.parts)
+        for (const Layer& layer : part.layers)
+            most = std::max(most, moved_point(layer.hatches.span(), file.rounding));
+    return most;
+}
+
+void compare_ends(const std::vector<Point2>& first, const std::vector<Point2>& second,
+                  PlaneDetails& details) {
+    details.first_hatches += first.size() / 2;
+    details.second_hatches += second.size() / 2;
+    if (first.size() != second.size()) {
+        details.hatch_distance_mm = std::numeric_limits<double>::infinity();
+        return;
+    }
+    for (std::size_t i = 0; i < first.size(); ++i)
+        if (const double apart = distance(first[i], second[i]); apart > details.hatch_distance_mm) {
+            details.hatch_distance_mm = apart;
+            details.hatch_where = first[i];
+        }
+}
+
+bool is_same(double one, double other) noexcept {
+    constexpr double of_single_precision = 1e-6;
+    return std::abs(one - other) <= of_single_precision * std::max(std::abs(one), std::abs(other));
+}
+
+std::vector<ParameterDifference> compare_parameters(const LayerFile& first, const LayerFile& second) {
+    std::vector<ParameterDifference> differences;
+    const bool one_format = first.format == second.format;
+    std::map<std::string_view, std::vector<const LayerPart*>> others; // by label, the first one last
+    for (auto part = second.parts.rbegin(); part != second.parts.rend(); ++part)
+        others[part->label].push_back(&*part);
+    for (const LayerPart& part : first.parts) {
+        std::vector<const LayerPart*>& alike = others[part.label];
+        if (alike.empty())
+            continue;
+        const LayerPart& other = *alike.back();
+        alike.pop_back();
+        if (!part.exposure || !other.exposure)
+            continue;
+        for (const StrategyField<ParameterSet>& field : parameter_fields()) {
+            const auto member = std::get<double ParameterSet::*>(field.member);
+            const double one = part.exposure->parameters.*member;
+            const double its = other.exposure->parameters.*member;
+            if ((one_format || (one != 0 && its != 0)) && !is_same(one, its))
+                differences.push_back({part.label, std::string(field.name), one, its});
+        }
+    }
+    return differences;
+}
+
+} // namespace
+
+bool FileComparison::agree() const noexcept {
+    return parameters.empty() && std::all_of(layers.planes.begin(), layers.planes.end(),
+                                             [](const ComparedPlane& plane) { return plane.agree; });
+}
+
+FileComparison compare_files(const LayerFile& first, const LayerFile& second,
+                             std::optional<double> tolerance_mm) {
+    const LayerStack stacks[2] = {first.merged(), second.merged()};
+    FileComparison result{.layers = compare(RoundedLayers{stacks[0], first.rounding},
+                                            {stacks[1], second.rounding}, tolerance_mm),
+                          .details = {},
+                          .parameters = compare_parameters(first, second)};
+    const double of_ends = tolerance_mm ? *tolerance_mm : moved_ends(first) + moved_ends(second);
+    result.layers.tolerance_mm = std::max(result.layers.tolerance_mm, of_ends);
+    const std::vector<std::string> labels = hatched_labels(first);
+    const bool by_label = labels == hatched_labels(second);
+    const HatchedParts ones = hatched_parts(first, labels, by_label);
+    const HatchedParts others = hatched_parts(second, labels, by_label);
+    for (ComparedPlane& plane : result.layers.planes) {
+        PlaneDetails& details = result.details.emplace_back();
+        if (plane.first && plane.second) {
+            for (std::size_t i = 0; i < ones.size(); ++i)
+                compare_ends(ends_of(ones[i], *plane.first), ends_of(others[i], *plane.second), details);
+            const Layer& one = stacks[0][*plane.first];
+            const Layer& other = stacks[1][*plane.second];
+            details.height_distance_mm =
+                std::max(std::abs(one.bottom - other.bottom), std::abs(one.top - other.top));
+            details.heights_agree = details.height_distance_mm <= moved_cut(one, first.rounding) +
+                                                                      moved_cut(other, second.rounding) +
+                                                                      same_height_mm;
+            plane.agree = plane.agree && details.heights_agree && details.hatch_distance_mm <= of_ends;
+            details.same =
+                plane.difference.same && details.height_distance_mm == 0 && details.hatch_distance_mm == 0;
+        } else {
+            details.first_hatches = plane.first ? stacks[0][*plane.first].hatches.size() / 2 : 0;
+            details.second_hatches = plane.second ? stacks[1][*plane.second].hatches.size() / 2 : 0;
+        }
+    }
+    return result;
+}
+
+} // namespace lamella

@@ -1,0 +1,26 @@
+#pragma once
+
+// What layers cover of the height of a mesh.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/verify.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella {
+
+/// Of layers in any order; none without layers, and of a mesh without triangles. A gap is one of more
+/// than the format may have moved heights by, in the middle of which the mesh has material. Tells of gaps in
+/// `findings`.
+[[nodiscard]] std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, const Mesh& mesh,
+                                                            const Rounding& rounding,
+                                                            const Execution& execution,
+                                                            std::vector<std::string>& findings);
+
+} // namespace lamella

@@ -1,0 +1,113 @@
+#include "lamella/pipeline/compare_files.hpp"
+
+#include "fixtures/layers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella::compare_files_cases {
+namespace {
+
+using test::normal_layer;
+using test::rectangle;
+
+/// Three layers of a part with a contour and of one with two lines.
+LayerFile job(const std::string& format = "ovf") {
+    LayerFile file{.path = "job", .format = format};
+    Exposure contour{.part = "a", .contour = 1, .parameters = {}};
+    Exposure hatch{.part = "a", .kind = VectorKind::hatch, .parameters = {}};
+    file.parts = {{contour.label(), {}, contour}, {hatch.label(), {}, hatch}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        Layer layer = normal_layer({rectangle(0, 0, 4, 4)});
+        layer.bottom = static_cast<double>(i);
+        layer.z = layer.bottom + 0.5;
+        layer.top = layer.bottom + 1;
+        Layer lines = layer;
+        lines.points = {};
+        lines.offsets = {0};
+        lines.rings = 0;
+        lines.hatches = PointArray(std::vector<Point2>{{1, 1}, {3, 1}, {3, 2}, {1, 2}});
+        file.parts[0].layers.push_back(std::move(layer));
+        file.parts[1].layers.push_back(std::move(lines));
+    }
+    return file;
+}
+
+std::size_t same_of(const FileComparison& found) {
+    std::size_t same = 0;
+    for (const PlaneDetails& plane : found.details)
+        same += plane.same ? 1 : 0;
+    return same;
+}
+
+TEST(CompareFiles, OfTheSameTellsNothing) {
+    const FileComparison found = compare_files(job(), job());
+    EXPECT_TRUE(found.agree());
+    EXPECT_EQ(same_of(found), 3U);
+}
+
+TEST(CompareFiles, SeesHatchLinesThatAreMissingMovedOrInAnotherOrder) {
+    const std::vector<std::vector<Point2>> others{
+        {{1, 1}, {3, 1}}, {}, {{1, 1}, {3, 1.01}, {3, 2}, {1, 2}}, {{3, 2}, {1, 2}, {1, 1}, {3, 1}}};
+    for (const std::vector<Point2>& lines : others) {
+        LayerFile other = job();
+        other.parts[1].layers[1].hatches = PointArray(lines);
+        const FileComparison found = compare_files(job(), other);
+        EXPECT_FALSE(found.agree());
+        EXPECT_EQ(same_of(found), 2U);
+        EXPECT_FALSE(found.layers.planes[1].agree);
+        EXPECT_TRUE(found.layers.planes[1].difference.same);
+        EXPECT_EQ(found.details[1].second_hatches, lines.size() / 2);
+        EXPECT_GT(found.details[1].hatch_distance_mm, 0.009);
+    }
+    LayerFile moved = job();
+    moved.parts[1].layers[1].hatches = PointArray(others[2]);
+    const FileComparison found = compare_files(job(), moved, 0.02);
+    EXPECT_TRUE(found.agree());
+    EXPECT_EQ(same_of(found), 2U) << "they agree, but are not the same";
+}
+
+TEST(CompareFiles, SeesLayersOfLinesThatOneFileHasNot) {
+    LayerFile lines = job();
+    lines.parts.erase(lines.parts.begin());
+    LayerFile fewer = lines;
+    fewer.parts[0].layers.pop_back();
+    EXPECT_FALSE(compare_files(lines, fewer).agree());
+}
+
+TEST(CompareFiles, SeesHeights) {
+    LayerFile other = job();
+    for (LayerPart& part : other.parts)
+        part.layers[2].top += 0.25;
+    const FileComparison found = compare_files(job(), other);
+    EXPECT_FALSE(found.agree());
+    EXPECT_FALSE(found.details[2].heights_agree);
+    EXPECT_EQ(found.details[2].height_distance_mm, 0.25);
+    for (LayerPart& part : other.parts)
+        part.layers[2].top -= 0.25 - 1e-8;
+    const FileComparison nearly = compare_files(job(), other);
+    EXPECT_TRUE(nearly.agree());
+    EXPECT_EQ(same_of(nearly), 2U);
+}
+
+TEST(CompareFiles, SeesParameters) {
+    LayerFile other = job();
+    other.parts[1].exposure->parameters.power_w = 333;
+    const FileComparison found = compare_files(job(), other);
+    EXPECT_FALSE(found.agree());
+    ASSERT_EQ(found.parameters.size(), 1U);
+    EXPECT_EQ(found.parameters.front().label, "a core hatch");
+    EXPECT_EQ(found.parameters.front().parameter, "power_w");
+    EXPECT_EQ(found.parameters.front().second, 333);
+    LayerFile unsaid = job("cli"); // which has no place for such
+    for (LayerPart& part : unsaid.parts)
+        part.exposure->parameters = unknown_parameters();
+    EXPECT_TRUE(compare_files(job(), unsaid).agree());
+}
+
+} // namespace
+} // namespace lamella::compare_files_cases

@@ -1,0 +1,113 @@
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/merge.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include "fixtures/layers.hpp"
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella::merge_cases {
+namespace {
+
+using test::normal_layer;
+using test::rectangle;
+
+class Merge : public testing::Test {
+  protected:
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
+
+    /// A file of one layer from this height to 1 mm above, which some parts have a square on.
+    void write(const std::string& name, const std::string& format, double bottom, std::vector<PartInfo> parts,
+               const std::vector<bool>& has_square) const {
+        std::vector<LayerStack> stacks;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            Layer layer = has_square[i] ? normal_layer({rectangle(0, 0, 4, 4)}) : Layer{};
+            layer.bottom = bottom;
+            layer.z = bottom + 0.5;
+            layer.top = bottom + 1;
+            stacks.push_back({std::move(layer)});
+            parts[i].box.add(Point3{0, 0, bottom});
+            parts[i].box.add(Point3{4, 4, bottom + 1});
+        }
+        Box3 box;
+        for (const PartInfo& part : parts)
+            box.add(part.box);
+        write_layers(path(name), layer_format(format, name), stacks,
+                     {.box = box, .layers = 1, .bottom = bottom, .parts = std::move(parts)});
+    }
+
+    [[nodiscard]] std::string refusal(const std::string& format) const {
+        const std::vector<std::string> shards{path("low"), path("high")};
+        try {
+            static_cast<void>(merge_layer_files(shards, path("merged"), format));
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return {};
+    }
+
+    TemporaryFolder folder_;
+};
+
+PartInfo exposed(double power_w) {
+    Exposure exposure{.part = "block", .contour = 1, .parameters = {}};
+    exposure.parameters.power_w = power_w;
+    return {.label = exposure.label(), .exposure = exposure};
+}
+
+TEST_F(Merge, RefusesPartsOfDifferentParameters) {
+    for (const char* const format : {"ovf", "ilt", "3mf-toolpath"}) {
+        SCOPED_TRACE(format);
+        write("low", format, 0, {exposed(200)}, {true});
+        write("high", format, 1, {exposed(333)}, {true});
+        const std::string text = refusal(format);
+        for (const std::string& word : {path("low"), path("high"), std::string("block core contour 1"),
+                                        std::string("power_w 200 in one and 333 in the other")})
+            EXPECT_NE(text.find(word), std::string::npos) << text;
+        write("high", format, 1, {exposed(200)}, {true});
+        EXPECT_EQ(refusal(format), "");
+    }
+}
+
+TEST_F(Merge, TakesPlainPartsThatAFileHasNothingOf) {
+    for (const char* const format : {"ovf", "3mf-toolpath"}) {
+        SCOPED_TRACE(format);
+        const std::vector<PartInfo> parts{{.label = "a"}, {.label = "b"}};
+        write("low", format, 0, parts, {true, true});
+        write("high", format, 1, parts, {false, true});
+        ASSERT_EQ(refusal(format), "");
+        const LayerFile merged = read_layers(path("merged"));
+        ASSERT_EQ(merged.parts.size(), 2U);
+        EXPECT_EQ(merged.parts[0].label, "a");
+        EXPECT_EQ(merged.parts[0].layers[1].rings, 0U);
+        EXPECT_EQ(merged.parts[1].layers[1].rings, 1U);
+    }
+}
+
+TEST_F(Merge, TakesOpenContoursWithAWarning) {
+    for (const double bottom : {0.0, 1.0}) {
+        Layer layer = normal_layer({rectangle(0, 0, 4, 4)}, {{{5, 5}, {6, 5}, {6, 6}}});
+        layer.bottom = bottom;
+        layer.z = bottom + 0.5;
+        layer.top = bottom + 1;
+        static_cast<void>(write_layers(path(bottom == 0 ? "low.svg" : "high.svg"), std::span(&layer, 1)));
+    }
+    const std::vector<std::string> shards{path("low.svg"), path("high.svg")};
+    const MergeResult result = merge_layer_files(shards, path("merged.svg"));
+    EXPECT_EQ(result.layers, 2U);
+    EXPECT_EQ(read_layers(path("merged.svg")).parts.front().layers[1].open_chains(), 1U);
+    std::string all;
+    for (const std::string& warning : result.warnings)
+        all += warning + '\n';
+    EXPECT_NE(all.find(path("low.svg") + ": "), std::string::npos) << all;
+}
+
+} // namespace
+} // namespace lamella::merge_cases

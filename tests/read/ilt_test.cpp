@@ -1,0 +1,74 @@
+#include "lamella/read/layer_file.hpp"
+
+#include "container/ilt_format.hpp"
+#include "container/zip_bytes.hpp"
+#include "fixtures/expect_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamella::ilt_cases {
+namespace {
+
+/// An archive of a file with a hatch, and of a list with these lines for it.
+std::string archive(const std::string& lines) {
+    const std::string vectors = "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n"
+                                "$$LAYER/1\n$$HATCHES/1,1,0,0,5,5\n$$GEOMETRYEND\n";
+    return zip_test::zip_bytes(
+        {{.name = std::string(ilt_parameters), .content = "[modelsection_001_s1_vs.cli]\n" + lines},
+         {.name = "modelsection_001_s1_vs.cli", .content = vectors}});
+}
+
+LayerFile read(const std::string& bytes) {
+    return read_layers(std::as_bytes(std::span(bytes)), "test.ilt");
+}
+
+TEST(ReadIlt, NumbersMayHaveUnitsBehindThem) {
+    const LayerFile file = read(archive("LaserSpeed = 800.5 mm/s\nLaserPower=200 watt\nFocusShift = -1.5\n"
+                                        "PointDistance = 0.0 \xb5m\nExposureTime = 0.0 \xb5s\n"));
+    EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
+    const ParameterSet& set = file.parts.at(0).exposure->parameters;
+    EXPECT_EQ(set.speed_mm_s, 800.5);
+    EXPECT_EQ(set.power_w, 200);
+    EXPECT_EQ(set.focus_mm, -1.5);
+}
+
+TEST(ReadIlt, RefusesWhatIsANumberOnlyAtItsBeginning) {
+    for (const std::string value : {"800,5", "800,5 mm/s", "800mm/s", "0x10", "1.5.2"}) {
+        const std::string error = test::error_of(
+            ErrorKind::input, [&] { static_cast<void>(read(archive("LaserSpeed = " + value + "\n"))); });
+        EXPECT_NE(error.find("line 2: found '" + value + "'; LaserSpeed must be a number"), std::string::npos)
+            << error;
+    }
+}
+
+TEST(ReadIlt, SaysWhichFilesAreForAPulsedBeam) {
+    for (const char* line : {"PointDistance = 50 \xb5m\n", "ExposureTime = 80 \xb5s\n"}) {
+        const std::vector<std::string> warnings =
+            read(archive(std::string("LaserSpeed = 800 mm/s\n") + line)).warnings;
+        ASSERT_EQ(warnings.size(), 1U);
+        EXPECT_TRUE(
+            warnings[0].starts_with("1 files are for a pulsed beam; the distance and time of its points"))
+            << warnings[0];
+    }
+}
+
+TEST(ReadIlt, SaysWhichFilesTheListDoesNotName) {
+    const std::string bytes = zip_test::zip_bytes(
+        {{.name = std::string(ilt_parameters), .content = "[a.cli]\nLaserSpeed = 1\n"},
+         {.name = "a.cli",
+          .content = "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n"
+                     "$$HATCHES/1,1,0,0,5,5\n$$GEOMETRYEND\n"},
+         {.name = "b.CLI", .content = "not looked at"},
+         {.name = "notes.txt", .content = "no vectors"}});
+    EXPECT_EQ(
+        read(bytes).warnings,
+        (std::vector<std::string>{"1 Common Layer Interface files are not in the list of parameters; they "
+                                  "were left out (first at b.CLI)"}));
+}
+
+} // namespace
+} // namespace lamella::ilt_cases

@@ -1,0 +1,201 @@
+#include "lamella/read/layer_file.hpp"
+
+#include "container/ovf_format.hpp"
+#include "container/protobuf.hpp"
+#include "fixtures/expect_error.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella::ovf_cases {
+namespace {
+
+std::string error_of(const std::string& bytes) {
+    return test::error_of(ErrorKind::input, [&] {
+        static_cast<void>(read_layers(std::as_bytes(std::span(bytes)), "test.ovf"));
+    });
+}
+
+void put_position(std::string& file, std::size_t at, std::uint64_t position) {
+    std::memcpy(file.data() + at, &position, sizeof position);
+}
+
+/// A job without blocks, whose table names its one work plane so many times.
+std::string plane_named(std::size_t times) {
+    std::string file(ovf::magic);
+    file.append(8, '\0');
+    const std::size_t job = file.size();
+    file += ProtobufMessage().delimited();
+    const std::size_t plane = file.size();
+    file.append(8, '\0');
+    const std::size_t shell = file.size();
+    ProtobufMessage head;
+    head.real(ovf::work_plane::z, 1);
+    head.text(99, std::string(100, 'x'));
+    file += head.delimited();
+    put_position(file, plane, file.size());
+    ProtobufMessage of_plane;
+    of_plane.integer(ovf::table::shell, static_cast<std::int64_t>(shell));
+    file += of_plane.delimited();
+    put_position(file, ovf::magic.size(), file.size());
+    ProtobufMessage of_job;
+    of_job.integer(ovf::table::shell, static_cast<std::int64_t>(job));
+    of_job.integers(ovf::table::positions, std::vector<std::uint64_t>(times, plane));
+    return file + of_job.delimited();
+}
+
+TEST(ReadOvf, WorkPlanesShareNeitherTablesNorHeads) {
+    const std::string once = plane_named(1);
+    EXPECT_EQ(read_layers(std::as_bytes(std::span(once)), "test.ovf").parts.at(0).layers.size(), 1U);
+    EXPECT_NE(error_of(plane_named(1000)).find("the head of a work plane once more"), std::string::npos);
+}
+
+TEST(ReadOvf, ABrokenListOfPositionsHasItsPlace) {
+    std::string file(ovf::magic);
+    file.append(8, '\0');
+    put_position(file, ovf::magic.size(), file.size());
+    ProtobufMessage table;
+    table.text(ovf::table::positions, "\xff");
+    file += table.delimited();
+    EXPECT_EQ(error_of(file), fmt::format("test.ovf, byte {}: found the end of a message within a number; "
+                                          "the file is damaged or truncated",
+                                          file.size() - 1));
+}
+
+struct Plane {
+    double z;
+    std::vector<ProtobufMessage> blocks;
+    std::int64_t repeats = 0;
+};
+
+/// A job with the parameters 1, 2 and 3 and these parts.
+std::string job_of(const std::vector<Plane>& planes, const std::vector<std::string>& parts = {"AA1"}) {
+    std::string file(ovf::magic);
+    file.append(8, '\0');
+    std::vector<std::uint64_t> places;
+    for (const Plane& plane : planes) {
+        places.push_back(file.size());
+        file.append(8, '\0');
+        std::vector<std::uint64_t> blocks;
+        for (const ProtobufMessage& block : plane.blocks) {
+            blocks.push_back(file.size());
+            file += block.delimited();
+        }
+        ProtobufMessage head;
+        head.real(ovf::work_plane::z, plane.z);
+        head.integer(ovf::work_plane::repeats, plane.repeats);
+        ProtobufMessage table;
+        table.integer(ovf::table::shell, static_cast<std::int64_t>(file.size()));
+        table.integers(ovf::table::positions, blocks);
+        file += head.delimited();
+        put_position(file, places.back(), file.size());
+        file += table.delimited();
+    }
+    ProtobufMessage job;
+    for (std::int64_t key = 1; key <= 3; ++key) {
+        ProtobufMessage parameters;
+        parameters.real(ovf::marking::speed_mm_s, 800);
+        job.entry(ovf::job::marking_params, key, parameters);
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        ProtobufMessage part;
+        part.text(ovf::part::name, parts[i]);
+        job.entry(ovf::job::parts, static_cast<std::int64_t>(i + 1), part);
+    }
+    ProtobufMessage table;
+    table.integer(ovf::table::shell, static_cast<std::int64_t>(file.size()));
+    table.integers(ovf::table::positions, places);
+    file += job.delimited();
+    put_position(file, ovf::magic.size(), file.size());
+    return file + table.delimited();
+}
+
+/// Two points, as lines or as a hatch, of a part; without metadata of what they are of.
+ProtobufMessage block(std::uint32_t kind, std::int64_t parameters, std::int64_t part = 1,
+                      bool empty = false) {
+    const float numbers[] = {1, 2, 3, 4};
+    ProtobufMessage vectors;
+    vectors.text(ovf::block::points, {reinterpret_cast<const char*>(numbers), empty ? 0 : sizeof numbers});
+    ProtobufMessage of_part;
+    of_part.integer(ovf::block::meta::part_key, part);
+    ProtobufMessage result;
+    result.message(kind, vectors);
+    result.integer(ovf::block::marking_params_key, parameters);
+    result.message(ovf::block::meta_data, of_part);
+    return result;
+}
+
+LayerFile read(const std::string& bytes) {
+    return read_layers(std::as_bytes(std::span(bytes)), "test.ovf");
+}
+
+TEST(ReadOvf, SaysWhichLayersLoseTheOrderOfExecution) {
+    const ProtobufMessage hatch = block(ovf::block::hatches, 1);
+    const ProtobufMessage lines = block(ovf::block::line_sequence, 2);
+    EXPECT_TRUE(read(job_of({{1, {hatch, lines}}, {2, {hatch, hatch, lines}}})).warnings.empty());
+    // Contours first; and a hatch in two goes.
+    const LayerFile file =
+        read(job_of({{1, {hatch, lines}}, {3, {hatch, lines, hatch}}, {2, {lines, hatch}}}));
+    ASSERT_EQ(file.warnings.size(), 2U);
+    EXPECT_EQ(file.warnings[1],
+              "vectors of 2 layers, the lowest at z = 2 mm, are executed in another order in the file; they "
+              "were put into that of the parts");
+    // Hatches without lines are none.
+    const ProtobufMessage empty = block(ovf::block::hatches, 1, 1, true);
+    EXPECT_TRUE(read(job_of({{1, {hatch, lines, empty}}})).warnings.empty());
+    // Plain contours have no order.
+    const ProtobufMessage plain = block(ovf::block::line_sequence, 0);
+    EXPECT_TRUE(read(job_of({{1, {hatch, plain}}})).warnings.empty());
+}
+
+TEST(ReadOvf, TakesFromTheVectorsWhatTheMetadataDoNotSay) {
+    const LayerFile file =
+        read(job_of({{1, {block(ovf::block::hatches, 1), block(ovf::block::line_sequence, 1)}}}));
+    ASSERT_EQ(file.parts.size(), 2U);
+    EXPECT_EQ(file.parts[0].label, "AA1 core hatch");
+    EXPECT_EQ(file.parts[1].label, "AA1 core contour 1");
+}
+
+TEST(ReadOvf, RefusesParametersThatTheJobDoesNotHave) {
+    EXPECT_NE(error_of(job_of({{1, {block(ovf::block::hatches, 9)}}}))
+                  .find("found a block with parameters of the key 9; the job must have them"),
+              std::string::npos);
+}
+
+TEST(ReadOvf, SaysWhatItLeavesOutOfTheExecution) {
+    ProtobufMessage twice = block(ovf::block::hatches, 1);
+    twice.integer(ovf::block::repeats, 1);
+    twice.integer(ovf::block::laser_index, 2);
+    ProtobufMessage other = block(ovf::block::hatches, 1);
+    other.integer(ovf::block::laser_index, 1);
+    const std::vector<std::string> warnings = read(job_of({{1, {twice, other}, 3}})).warnings;
+    ASSERT_EQ(warnings.size(), 3U);
+    EXPECT_TRUE(warnings[0].starts_with("1 blocks are to be executed more than once")) << warnings[0];
+    EXPECT_TRUE(warnings[1].starts_with("1 work planes are to be executed more than once")) << warnings[1];
+    EXPECT_TRUE(warnings[2].starts_with("2 blocks are for another laser than the first")) << warnings[2];
+}
+
+TEST(ReadOvf, PartsOfOneNameGetNamesOfTheirOwn) {
+    const LayerFile file =
+        read(job_of({{1,
+                      {block(ovf::block::hatches, 1, 1), block(ovf::block::hatches, 1, 2),
+                       block(ovf::block::hatches, 2, 2), block(ovf::block::hatches, 1, 3)}}},
+                    {"AA1", "AA1", "AA1"}));
+    ASSERT_EQ(file.parts.size(), 4U);
+    EXPECT_EQ(file.parts[0].label, "AA1 core hatch");
+    EXPECT_EQ(file.parts[1].exposure->part, "AA1 2");
+    EXPECT_EQ(file.parts[2].label, "AA1 2 core hatch");
+    EXPECT_EQ(file.parts[3].label, "AA1 3 core hatch");
+    EXPECT_EQ(file.warnings, (std::vector<std::string>{
+                                 "2 parts have the name of another one; a number was put behind it, the "
+                                 "first is now 'AA1 2'"}));
+}
+
+} // namespace
+} // namespace lamella::ovf_cases
