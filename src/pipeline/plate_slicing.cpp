@@ -1,6 +1,7 @@
 #include "pipeline/plate_slicing.hpp"
 
 #include "core/executor.hpp"
+#include "core/stopwatch.hpp"
 #include "slicing/shrunken_contours.hpp"
 #include "slicing/slabs.hpp"
 
@@ -17,10 +18,10 @@ namespace {
 /// Progress of several runs of one kind as that of one.
 class JointProgress {
   public:
-    JointProgress(const Plate& plate, const Plan& plan, std::size_t windows) {
-        for (const PlateShape& shape : plate.shapes)
-            triangles_ += shape.mesh.size() * windows;
-        planes_ = plate.shapes.size() * plan.layers.size();
+    /// One more run is to come.
+    void expect(std::uint64_t triangles, std::uint64_t planes) {
+        triangles_ += triangles;
+        planes_ += planes;
     }
 
     /// How the next run is to be executed.
@@ -65,6 +66,33 @@ Layer moved(const Layer& layer, double dx, double dy) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
+/// By shape, the planes between its lowest and its uppermost point: on all others it has no contours.
+std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
+    const auto planes_where = [&plan](auto&& holds) {
+        return static_cast<std::uint32_t>(
+            std::partition_point(plan.layers.begin(), plan.layers.end(), holds) - plan.layers.begin());
+    };
+    std::vector<PlaneRange> planes(plate.shapes.size());
+    for (const PlatePart& part : plate.parts)
+        if (!part.box.empty())
+            planes[part.shape] = {
+                planes_where([&](const PlannedLayer& layer) { return layer.z < part.box.min.z; }),
+                planes_where([&](const PlannedLayer& layer) { return layer.z <= part.box.max.z; })};
+    return planes;
+}
+
+/// The planes in both; none of them where both have none in common.
+PlaneRange common(PlaneRange a, PlaneRange b) {
+    const std::uint32_t begin = std::max(a.begin, b.begin);
+    return {begin, std::max(begin, std::min(a.end, b.end))};
+}
+
+/// The layers of a shape on the planes where it can have contours.
+struct ShapeLayers {
+    PlaneRange planes;
+    LayerStack layers;
+};
+
 /// Runs of planes on which all shapes together have no more points than that, where a single plane has not.
 /// One run where they need not be counted to know.
 std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint64_t most_points,
@@ -92,29 +120,38 @@ Execution without_slicing(const Execution& execution) {
     return run;
 }
 
-/// The layers of all parts on a run of planes, formatted in parallel, written in order. Empties the stacks.
-void emit(const PlateSink& sink, const Plate& plate, std::vector<LayerStack>& stacks, Executor& executor,
-          ProgressMeter* progress) {
-    const std::size_t planes = stacks.front().size();
-    const std::size_t at_once = std::size_t{4} * executor.workers(); // so that all workers have some
+/// The layers of all parts on a run of planes, formatted in parallel, written in order. Empties the shapes.
+void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRange run,
+          std::vector<ShapeLayers>& shapes, Executor& executor, ProgressMeter* progress) {
+    const std::uint32_t at_once = 4 * executor.workers(); // so that all workers have some
     std::vector<std::function<void()>> actions(at_once);
-    for (std::size_t first = 0; first < planes; first += at_once) {
-        const std::size_t count = std::min(at_once, planes - first);
-        executor.for_chunks(count, 1, [&](std::size_t i, std::size_t, unsigned) {
+    for (std::uint32_t first = run.begin; first < run.end; first += at_once) {
+        const PlaneRange now{first, std::min(first + at_once, run.end)};
+        executor.for_chunks(now.size(), 1, [&](std::size_t i, std::size_t, unsigned) {
+            const auto plane = static_cast<std::uint32_t>(first + i);
+            const PlannedLayer& planned = plan.layers[plane];
+            const Layer none{
+                .index = planned.index, .z = planned.z, .bottom = planned.bottom, .top = planned.top};
             std::vector<Layer> parts;
-            for (const PlatePart& part : plate.parts)
-                parts.push_back(moved(stacks[part.shape][first + i], part.dx, part.dy));
+            parts.reserve(plate.parts.size());
+            for (const PlatePart& part : plate.parts) {
+                const auto& [planes, layers] = shapes[part.shape];
+                const bool has = planes.begin <= plane && plane < planes.end;
+                parts.push_back(has ? moved(layers[plane - planes.begin], part.dx, part.dy) : none);
+            }
             actions[i] = sink(parts);
         });
         executor.check_cancelled();
-        for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t i = 0; i < now.size(); ++i)
             if (actions[i])
                 actions[i]();
-        for (LayerStack& stack : stacks) // what is written is not needed any more
-            for (std::size_t i = first; i < first + count; ++i)
-                stack[i] = {};
+        for (auto& [planes, layers] : shapes) { // what is written is not needed any more
+            const PlaneRange written = common(planes, now);
+            for (std::uint32_t plane = written.begin; plane < written.end; ++plane)
+                layers[plane - planes.begin] = {};
+        }
         if (progress != nullptr)
-            progress->add(count);
+            progress->add(now.size());
     }
 }
 
@@ -128,22 +165,31 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     const std::vector<PlaneRange> runs = engine.welds || points_in_flight == 0
                                              ? std::vector<PlaneRange>{{0, all}}
                                              : windows(plate, plan, share * points_in_flight, execution);
-    JointProgress progress(plate, plan, runs.size());
+    const std::vector<PlaneRange> planes = planes_of_shapes(plate, plan);
+    JointProgress progress;
+    for (const PlaneRange& run : runs)
+        for (std::size_t shape = 0; shape < planes.size(); ++shape)
+            if (const PlaneRange its = common(planes[shape], run); its.size() > 0)
+                progress.expect(plate.shapes[shape].mesh.size(), its.size());
     // Where the sink makes much of layers, that is what takes long.
     const bool sink_counts = yield == SinkYield::much_more;
     const Execution slicing = sink_counts ? without_slicing(execution) : execution;
     std::optional<ProgressMeter> emitted;
     Executor executor(execution);
     for (const PlaneRange& run : runs) {
-        std::vector<LayerStack> stacks;
-        for (const PlateShape& shape : plate.shapes) {
-            SliceReport ours;
-            stacks.push_back(slice(shape.mesh, part_of(plan, run), progress.next(slicing), &ours, engine));
-            report += ours;
-        }
+        std::vector<ShapeLayers> shapes(planes.size());
+        for (std::size_t shape = 0; shape < planes.size(); ++shape)
+            if (const PlaneRange its = common(planes[shape], run); its.size() > 0) {
+                SliceReport ours;
+                shapes[shape] = {its, slice(plate.shapes[shape].mesh, part_of(plan, its),
+                                            progress.next(slicing), &ours, engine)};
+                report += ours;
+            }
         if (sink_counts && !emitted)
             emitted.emplace(execution, Stage::slice, all);
-        emit(sink, plate, stacks, executor, emitted ? &*emitted : nullptr);
+        const Stopwatch emitting;
+        emit(sink, plate, plan, run, shapes, executor, emitted ? &*emitted : nullptr);
+        report.slice_seconds += emitting.seconds();
     }
     if (emitted)
         emitted->finish();

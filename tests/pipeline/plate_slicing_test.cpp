@@ -94,6 +94,31 @@ TEST(PlateSlicing, GivesEachPlaneOnceInOrderWithTheLayersOfItsPartsHoweverFewPoi
     }
 }
 
+TEST(PlateSlicing, SlicesAShapeOnlyWhereItStands) {
+    // Boxes on top of each other, and one beside them that reaches over all; planes on their faces, too.
+    std::vector<PlateInput> inputs(4);
+    std::vector<MeshFile> files(4);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        inputs[i] = {.path = "a.stl", .placement = translation(0, 0, i == 3 ? 0 : static_cast<double>(i))};
+        files[i].objects.push_back({"", i == 3 ? make_box(1, 1, 3) : make_box(1, 1, 1)});
+        files[i].instances.emplace_back();
+    }
+    const Plate plate = build_plate(inputs, std::move(files), {});
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
+        Plan plan = plan_uniform(-1, 4, {.layer_height = 0.25}, SliceAt::bottom);
+        plan.rule = rule;
+        for (const std::uint64_t points : {0U, 40U}) {
+            std::uint64_t sliced = 0;
+            const Execution told{.threads = 2, .progress = [&](const Progress& progress) {
+                                     if (progress.stage == Stage::slice)
+                                         sliced = progress.done;
+                                 }};
+            expect_layers(deliver(plate, plan, points, told), plate, plan);
+            EXPECT_EQ(sliced, 3 * 5 + 13U); // each on planes from its lower face to its upper one
+        }
+    }
+}
+
 TEST(PlateSlicing, GivesBrokenPartsTheLayersThatTheyHaveAlone) {
     test::Random random(2);
     for (int round = 0; round < 10; ++round) {
@@ -163,7 +188,11 @@ TEST(PlateSlicing, TellsProgressOfAllWindowsAsThatOfOneRunToItsEnd) {
         ASSERT_TRUE(last.contains(Stage::slice) && last.contains(Stage::link));
         for (const auto& [stage, progress] : last)
             EXPECT_EQ(progress.done, progress.total) << stage_name(stage);
-        EXPECT_EQ(last[Stage::slice].total, plate.shapes.size() * plan.layers.size());
+        // The torus has no layers above and below it.
+        const auto of_the_torus =
+            std::count_if(plan.layers.begin(), plan.layers.end(),
+                          [](const PlannedLayer& layer) { return -2 < layer.z && layer.z < 2; });
+        EXPECT_EQ(last[Stage::slice].total, plan.layers.size() + static_cast<std::uint64_t>(of_the_torus));
     }
 }
 
