@@ -225,20 +225,20 @@ class OvfReader {
         return static_cast<std::uint64_t>(position);
     }
 
-    /// The message at `place` that says where or at which height vectors lie. Any number of work planes may
-    /// name the same ones: were they read again each time, a small file would take long.
-    ProtobufReader head_at(std::uint64_t place) {
+    /// The message at `place`. Any number of tables may name the same one: were it read again each time, a
+    /// small file would take long.
+    ProtobufReader message_at(std::uint64_t place) {
         std::uint64_t end = place;
         ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
-        head_bytes_ += end - place;
-        if (head_bytes_ > bytes_.size())
-            fail(place, "a table or the head of a work plane once more", "work planes must share none");
+        read_bytes_ += end - place;
+        if (read_bytes_ > bytes_.size())
+            fail(place, "a message that was read before", "all that work planes name must fit the file");
         return fields;
     }
 
     Table read_table(std::uint64_t place) {
         Table table;
-        ProtobufReader fields = head_at(place);
+        ProtobufReader fields = message_at(place);
         while (fields.next()) {
             const auto position = [&](std::int64_t value) {
                 if (value < 0 || static_cast<std::uint64_t>(value) >= bytes_.size())
@@ -259,11 +259,12 @@ class OvfReader {
 
     void read_plane(std::uint64_t begin) {
         executor_.check_cancelled();
+        const std::uint64_t read_before = read_bytes_;
         const Table table = read_table(position_at(begin));
         limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
         raw.place = fmt::format("byte {}", begin);
-        ProtobufReader shell = head_at(table.shell);
+        ProtobufReader shell = message_at(table.shell);
         while (shell.next()) {
             if (shell.field() == ovf::work_plane::z)
                 raw.z = finite_real(shell);
@@ -277,17 +278,11 @@ class OvfReader {
         }
         for (const std::uint64_t block : table.positions)
             read_block(block, raw);
-        progress_.add(end_of_blocks_ - reported_);
-        reported_ = end_of_blocks_;
+        progress_.add(read_bytes_ - read_before);
     }
 
-    /// Blocks follow one another: so none is read twice.
     void read_block(std::uint64_t begin, RawLayer& raw) {
-        if (begin < end_of_blocks_)
-            fail(begin, "a block of vectors that lies before the end of another one",
-                 "they must follow each other");
-        end_of_blocks_ = begin;
-        ProtobufReader fields = ProtobufReader::delimited(bytes_, end_of_blocks_, name_);
+        ProtobufReader fields = message_at(begin);
         BlockKind kind;
         std::optional<ProtobufReader> lines;
         std::optional<ProtobufReader> hatches;
@@ -316,10 +311,10 @@ class OvfReader {
         if (!has_parameters && kind.parameters != 0)
             fail(begin, fmt::format("a block with parameters of the key {}", kind.parameters),
                  "the job must have them");
-        // Without metadata the vectors tell. Where there are no parameters, lines and hatches are of one
-        // part.
-        if (!says_kind && has_parameters && lines)
-            kind.area = ovf::block::lpbf::contour;
+        if (!has_parameters)
+            kind = {.part = kind.part}; // all that it has are of one part
+        else if (!says_kind && lines)
+            kind.area = ovf::block::lpbf::contour; // without metadata the vectors tell
         if (lines)
             add_line_sequence(*lines, begin, parts_.number_of(kind, at_byte(begin)), raw);
         if (hatches)
@@ -418,9 +413,7 @@ class OvfReader {
     JobShell job_;
     std::vector<RawLayer> layers_;
     PartNumbers<BlockKind> parts_;
-    std::uint64_t end_of_blocks_ = 0;
-    std::uint64_t head_bytes_ = 0; ///< of tables and heads of work planes, as often as they were read
-    std::uint64_t reported_ = 0;
+    std::uint64_t read_bytes_ = 0; ///< of messages, as often as they were read
     Oddity moved_{"work planes are moved or turned; their vectors were read as they stand"};
     Oddity other_vectors_{"blocks hold other vectors than lines and hatches; they were left out"};
     Oddity repeated_blocks_{"blocks are to be executed more than once; their vectors were read once"};

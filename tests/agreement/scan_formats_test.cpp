@@ -314,6 +314,41 @@ TEST(ScanFormats, KeepNamesOfVectorsWithoutParameters) {
     }
 }
 
+TEST(ScanFormats, KeepPartsOfOneLabelApart) {
+    Job job{.info = {.box = {{0, 0, 0}, {9, 9, 1}}, .layers = 1, .bottom = 0, .parts = {}}, .parts = {}};
+    for (const double x : {1.0, 3.0, 5.0}) {
+        LayerBuilder builder;
+        for (const Point2& p : {Point2{x, 1}, Point2{x + 1, 1}, Point2{x, 2}})
+            builder.add_point(p);
+        builder.end_contour(true);
+        job.info.parts.push_back({.label = "bracket"});
+        job.parts.push_back({builder.finish(0, 0.5, 0, 1)});
+    }
+    for (const ScanFormat& format : scan_formats()) {
+        const LayerFile back = read(written(format.name, job));
+        ASSERT_EQ(back.parts.size(), 3U) << format.name;
+        for (std::size_t part = 0; part < back.parts.size(); ++part)
+            EXPECT_EQ(back.parts[part].layers.at(0).points[0].x, job.parts[part][0].points[0].x)
+                << format.name;
+    }
+}
+
+TEST(ScanFormats, KeepExposuresOfPartsOfOneLabelApart) {
+    Job job = scanned();
+    const std::size_t exposures = job.parts.size();
+    for (std::size_t i = 0; i < exposures; ++i) { // all of it once more
+        job.info.parts.push_back(job.info.parts[i]);
+        job.parts.push_back(job.parts[i]);
+    }
+    for (const ScanFormat& format : scan_formats()) {
+        const LayerFile back = read(written(format.name, job));
+        ASSERT_EQ(back.parts.size(), 2 * exposures) << format.name;
+        for (std::size_t i = 0; i < back.parts.size(); ++i)
+            EXPECT_EQ(back.parts[i].layers[2].hatches.size(), job.parts[i].at(2).hatches.size())
+                << format.name;
+    }
+}
+
 TEST(ScanFormats, LeaveChainsOpenWhoseEndsRoundingMakesEqual) {
     for (const double apart : {1e-12, 0.0}) {
         for (const double x : {0.0, 1.0, -1.0}) {

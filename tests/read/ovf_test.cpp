@@ -50,10 +50,10 @@ std::string plane_named(std::size_t times) {
     return file + of_job.delimited();
 }
 
-TEST(ReadOvf, WorkPlanesShareNeitherTablesNorHeads) {
+TEST(ReadOvf, ReadsNoMoreThanTheFileHolds) {
     const std::string once = plane_named(1);
     EXPECT_EQ(read_layers(std::as_bytes(std::span(once)), "test.ovf").parts.at(0).layers.size(), 1U);
-    EXPECT_NE(error_of(plane_named(1000)).find("the head of a work plane once more"), std::string::npos);
+    EXPECT_NE(error_of(plane_named(1000)).find("found a message that was read before"), std::string::npos);
 }
 
 TEST(ReadOvf, ABrokenListOfPositionsHasItsPlace) {
@@ -72,6 +72,7 @@ struct Plane {
     double z;
     std::vector<ProtobufMessage> blocks;
     std::int64_t repeats = 0;
+    bool backwards = false; ///< the last block comes first in the file; the table has them in order
 };
 
 /// A job with the parameters 1, 2 and 3 and these parts.
@@ -82,10 +83,11 @@ std::string job_of(const std::vector<Plane>& planes, const std::vector<std::stri
     for (const Plane& plane : planes) {
         places.push_back(file.size());
         file.append(8, '\0');
-        std::vector<std::uint64_t> blocks;
-        for (const ProtobufMessage& block : plane.blocks) {
-            blocks.push_back(file.size());
-            file += block.delimited();
+        std::vector<std::uint64_t> blocks(plane.blocks.size());
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            const std::size_t next = plane.backwards ? blocks.size() - 1 - i : i;
+            blocks[next] = file.size();
+            file += plane.blocks[next].delimited();
         }
         ProtobufMessage head;
         head.real(ovf::work_plane::z, plane.z);
@@ -152,6 +154,22 @@ TEST(ReadOvf, SaysWhichLayersLoseTheOrderOfExecution) {
     // Plain contours have no order.
     const ProtobufMessage plain = block(ovf::block::line_sequence, 0);
     EXPECT_TRUE(read(job_of({{1, {hatch, plain}}})).warnings.empty());
+}
+
+TEST(ReadOvf, BlocksMayLieInAnotherOrderThanTheirTableHasThemIn) {
+    std::vector<ProtobufMessage> blocks;
+    for (std::int64_t part = 3; part > 0; --part)
+        blocks.push_back(block(ovf::block::hatches, 1, part));
+    const std::vector<std::string> parts{"a", "b", "c"};
+    const LayerFile in_order = read(job_of({{1, blocks}, {2, blocks}}, parts));
+    const LayerFile backwards = read(job_of({{1, blocks, 0, true}, {2, blocks, 0, true}}, parts));
+    EXPECT_EQ(backwards.warnings, in_order.warnings);
+    ASSERT_EQ(backwards.parts.size(), 3U);
+    for (std::size_t i = 0; i < backwards.parts.size(); ++i) {
+        EXPECT_EQ(backwards.parts[i].label, in_order.parts[i].label);
+        ASSERT_EQ(backwards.parts[i].layers.size(), 2U);
+        EXPECT_EQ(backwards.parts[i].layers[1].hatches.size(), 2U);
+    }
 }
 
 TEST(ReadOvf, TakesFromTheVectorsWhatTheMetadataDoNotSay) {
