@@ -221,8 +221,14 @@ void check_shard(const SliceArguments& arguments) {
         throw Error(ErrorKind::usage, "--resume goes with --output: a shard that is finished is a file");
     check_conflict(arguments.resume, arguments.stats == "-", "--resume and --stats -",
                    "a shard that is finished has no figures");
-    if (!arguments.output.empty() && layer_format(arguments.writing.format, arguments.output).directory)
-        throw Error(ErrorKind::usage, "--shard goes with formats of one file, not of a folder");
+    if (arguments.output.empty())
+        return;
+    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    if (format.directory || format.picture)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("--shard goes with files of contours, which lamella merge puts together; {} is none",
+                        format.name));
 }
 
 FileJob make_job(const SliceArguments& arguments) {

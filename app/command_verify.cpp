@@ -28,6 +28,7 @@ struct VerifyArguments {
     std::string slice_at;
     bool json = false;
     PlacementOptions placement;
+    LayerStepOptions making;
     bool scan = false;
     ScanArguments scanning;
     ReadLimits limits;
@@ -113,6 +114,7 @@ Json vectors_json(const VectorVerification& found) {
             {"misoriented", found.misoriented},
             {"outside", found.outside},
             {"too_short", found.too_short},
+            {"misplaced", found.misplaced},
             {"miscovered", found.miscovered},
             {"wrong_contours", found.wrong_contours},
             {"unbounded", found.unbounded},
@@ -153,6 +155,10 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (arguments.mesh.empty() && arguments.placement.given())
         throw Error(ErrorKind::usage,
                     "unit, pose and direction are those of a mesh: name it with --mesh part.stl");
+    const LayerSteps steps = arguments.making.steps();
+    if (arguments.mesh.empty() && steps.any())
+        throw Error(ErrorKind::usage, "what was made of the layers is checked against a mesh: name it with "
+                                      "--mesh part.stl");
     const Transform pose = arguments.placement.pose();
     const Execution execution = arguments.run.execution(context);
 
@@ -190,14 +196,16 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     std::string text;
     if (!plain.parts.empty()) {
         const Verification found =
-            verify(plain.merged(), {.mesh = mesh, .rule = rule, .rounding = file.rounding}, execution);
+            verify(plain.merged(), {.mesh = mesh, .rule = rule, .steps = steps, .rounding = file.rounding},
+                   execution);
         ok = found.ok();
         object.update(verification_json(found));
         text += verification_text(arguments.mesh, found);
     }
     if (!vectors.parts.empty()) {
         const VectorVerification found = verify_vectors(
-            vectors.parts, {.mesh = mesh, .rule = rule, .rounding = file.rounding, .strategy = strategy},
+            vectors.parts,
+            {.mesh = mesh, .rule = rule, .steps = steps, .rounding = file.rounding, .strategy = strategy},
             execution);
         ok = ok && found.ok();
         object["vectors"] = vectors_json(found);
@@ -227,9 +235,8 @@ Command verify_command() {
             "compared with the section of that mesh, computed straight from its triangles. Of scan vectors, "
             "contours are checked so, and all have to lie within the mesh, or without one within the "
             "outermost contour of their part; with the strategy by which they were made, as far from its "
-            "edges as that says, each contour there, no line shorter than the shortest, and enough of them "
-            "to "
-            "fill it. Exit code 4 says that the check failed.",
+            "edges as that says, each contour there, all lines at their distance and angle, none shorter "
+            "than the shortest, and enough of them to fill it. Exit code 4 says that the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =
@@ -244,6 +251,7 @@ Command verify_command() {
                             slice_at_names(), arguments->slice_at),
                      flag("json", "print JSON", arguments->json)}},
                    placement_options(arguments->placement),
+                   layer_step_options(arguments->making),
                    scan_options(
                        arguments->scanning,
                        {flag("scan", "hold scan vectors against a strategy, the one that is there by default",

@@ -83,6 +83,7 @@ class VectorVerification:
     misoriented: int  #: rings that run the wrong way round for where they lie
     outside: int  #: vectors that leave the material, or are nearer to its edges than the strategy says
     too_short: int  #: hatch lines shorter than the shortest of the strategy
+    misplaced: int  #: hatch lines beside those of the strategy, or turned otherwise
     miscovered: int  #: planes of a part whose lines cover more or less than they are to fill
     wrong_contours: int  #: that are missing on a plane, or of another area than the material has at their depth
     gaps: int  #: between layers, where the mesh has material; 0 without one
@@ -105,7 +106,8 @@ def verify_vectors(
 ) -> VectorVerification:
     """Checks a file of scan vectors: contours of each exposure closed, oriented and without crossings, and all vectors
     within the mesh, or without one within the outermost contours of their part; with the strategy by which they were
-    made, as far from its edges as that says, each contour there, no line shorter than the shortest, and enough of them to fill it.
+    made, as far from its edges as that says, each contour there, all lines at their distance and angle, none shorter than the
+    shortest, and enough of them to fill it.
 
     path: of a file that `lamella slice --scan` or `lamella scan` wrote, or other programs, with scan vectors.
     mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.

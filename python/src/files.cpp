@@ -366,6 +366,7 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     fields["misoriented"] = found.misoriented;
     fields["outside"] = found.outside;
     fields["too_short"] = found.too_short;
+    fields["misplaced"] = found.misplaced;
     fields["miscovered"] = found.miscovered;
     fields["wrong_contours"] = found.wrong_contours;
     fields["gaps"] = found.heights ? found.heights->gaps : 0;

@@ -1,14 +1,17 @@
 #pragma once
 
-// Where layers may have been cut that a format has rounded.
+// What layers are held against: those of a mesh, where they may have been cut before a format rounded that.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -38,6 +41,14 @@ auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, Plan
         }
     }
     return of_layer;
+}
+
+/// The layers of a mesh, after the steps.
+inline LayerStack layers_of(const Mesh& mesh, const Plan& plan, const LayerSteps& steps,
+                            const Execution& execution) {
+    LayerStack layers = slice(mesh, plan, execution);
+    LayerChanges changes;
+    return steps.any() ? take_steps(steps, std::move(layers), changes, execution) : layers;
 }
 
 } // namespace lamella

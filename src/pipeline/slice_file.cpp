@@ -54,15 +54,17 @@ void check_heights(const Plate& plate) {
 /// So many take nothing to speak of.
 constexpr std::uint32_t few_layers = 100'000;
 
-/// Of uniform layers. One that is a thousand times too small asks for more layers than memory has notes for.
-void check_layer_height(const FileJob& job, double layer_height, const Box3& box) {
+/// One that is a thousand times too small asks for more layers than memory has notes for.
+void check_layer_heights(const FileJob& job, const UniformLayers& layers, const Box3& box) {
     const double height = box.max.z - box.min.z;
-    if (layer_height > height)
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("the layer height of {:.6g} mm is above the part's height of {:.6g} mm; choose "
-                        "a smaller one, or check the unit of the file",
-                        layer_height, height));
+    const double layer_height = layers.layer_height;
+    for (const double one : {layer_height, layers.first_layer_height.value_or(layer_height)})
+        if (one > height)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("the layer height of {:.6g} mm is above the part's height of {:.6g} mm; choose "
+                            "a smaller one, or check the unit of the file",
+                            one, height));
     double count = height / layer_height;
     if (const auto& range = job.layering.only.z_range)
         count = std::min(count, (range->second - range->first) / layer_height);
@@ -89,7 +91,7 @@ void check_layer_height(const FileJob& job, double layer_height, const Box3& box
 Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
     check_heights(plate);
     if (const auto* const uniform = std::get_if<UniformLayers>(&job.layering.cut))
-        check_layer_height(job, uniform->layer_height, plate.box);
+        check_layer_heights(job, *uniform, plate.box);
     Plan plan = plan_of(
         job.layering, plate.box, [&] { return joined(plate, execution); }, execution);
     const JobMemory memory(job);
@@ -150,12 +152,29 @@ PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t pl
     return widened(planes, job.scan->downskin.layers, job.scan->upskin.layers, {0, last});
 }
 
+/// What layers of a body in this box reach when the steps have been taken: at most, as only sharp corners
+/// move farther than the sides.
+Box3 box_after(const LayerSteps& steps, Box3 box) {
+    const double reach = steps.offset_mm > 0 && steps.offset_corners.shape == OffsetCorner::mitre
+                             ? steps.offset_mm * steps.offset_corners.mitre_limit
+                             : steps.offset_mm;
+    const Box3 before = box;
+    box.min.x -= reach;
+    box.min.y -= reach;
+    box.max.x += reach;
+    box.max.y += reach;
+    return box.empty() ? before : box; // nothing is left
+}
+
 /// What the head of the slice file says.
 LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange written) {
-    LayerFileInfo info{
-        .box = plate.box, .layers = written.size(), .bottom = plan.layers[written.begin].bottom, .parts = {}};
+    LayerFileInfo info{.box = box_after(job.steps, plate.box),
+                       .layers = written.size(),
+                       .bottom = plan.layers[written.begin].bottom,
+                       .parts = {}};
     for (const PlatePart& part : plate.parts)
-        info.parts.push_back({.label = part.label, .box = part.box, .support = part.support});
+        info.parts.push_back(
+            {.label = part.label, .box = box_after(job.steps, part.box), .support = part.support});
     info.rule = plan.rule;
     return job.scan ? with_exposures(info, *job.scan) : info;
 }

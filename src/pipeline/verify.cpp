@@ -56,7 +56,12 @@ double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rou
 void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> checks,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
     const auto sections = at_moved_cuts(layers, options.rounding, options.rule, [&](const Plan& plan) {
-        return section_areas(*options.mesh, plan, execution);
+        if (!options.steps.any())
+            return section_areas(*options.mesh, plan, execution);
+        std::vector<double> areas;
+        for (const Layer& layer : layers_of(*options.mesh, plan, options.steps, execution))
+            areas.push_back(measure(layer).area_mm2);
+        return areas;
     });
     const Box3 box = bounding_box(*options.mesh, execution);
     const double extent = box.empty() ? 0 : std::max(box.max.x - box.min.x, box.max.y - box.min.y);

@@ -11,6 +11,8 @@
 #include "pipeline/length_around.hpp"
 #include "pipeline/moved_cuts.hpp"
 #include "polygon/edge_tree.hpp"
+#include "scan/hatch.hpp"
+#include "scan/hatch_lines.hpp"
 
 #include <fmt/format.h>
 
@@ -88,6 +90,7 @@ struct PlaneCheck {
     ContourFindings contours;
     Finding outside;
     Finding too_short;
+    Finding misplaced;
     Finding miscovered;
     std::map<std::uint32_t, ContourRow> rows; ///< by the numbers of contours, of those with findings
     std::uint64_t contour_vectors = 0;
@@ -139,10 +142,84 @@ double length_of(const PointArray& hatches) {
     return length;
 }
 
+/// The lines that a strategy asks for on a layer.
+class AskedLines {
+  public:
+    /// `tolerance`: by which ends may be off.
+    AskedLines(const HatchRule& rule, std::uint64_t layer, double tolerance)
+        : distance_(rule.distance), tolerance_(tolerance) {
+        for (const CosSin& angle : line_angles(rule, layer))
+            frames_.push_back({angle});
+    }
+
+    [[nodiscard]] bool have(const Point2& a, const Point2& b) const {
+        return std::any_of(frames_.begin(), frames_.end(), [&](const LineFrame& frame) {
+            const double v = std::nearbyint(frame.across(a) / distance_) * distance_;
+            return std::abs(frame.across(a) - v) <= tolerance_ && std::abs(frame.across(b) - v) <= tolerance_;
+        });
+    }
+
+  private:
+    std::vector<LineFrame> frames_;
+    double distance_;
+    double tolerance_;
+};
+
+/// A hatch line, and what it is of.
+struct HatchLine {
+    const Point2* ends = nullptr;
+    const HatchRule* rule = nullptr;
+    std::uint64_t layer = 0;
+
+    [[nodiscard]] double length() const noexcept { return ends == nullptr ? 0 : distance(ends[0], ends[1]); }
+};
+
+/// The longest line of each plane that has any.
+std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const ScanStrategy& strategy,
+                                     std::size_t planes) {
+    std::vector<HatchLine> lines;
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+        HatchLine longest;
+        for (const Group& group : groups)
+            for (const LayerPart* const part : group.exposures) {
+                const Layer& vectors = part->layers[plane];
+                for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
+                    if (const HatchLine line{&vectors.hatches[i], &hatch_of(strategy, part->exposure->region),
+                                             vectors.index};
+                        line.length() > longest.length())
+                        longest = line;
+            }
+        if (longest.ends != nullptr)
+            lines.push_back(longest);
+    }
+    return lines;
+}
+
+/// How many layers of the plan were before the first of these: that many with which most of the lowest lines
+/// are where they should be.
+std::uint64_t layers_before(const std::vector<HatchLine>& lines, double tolerance) {
+    constexpr std::uint64_t most = 1 << 20;
+    std::uint64_t best = 0;
+    std::ptrdiff_t most_fit = 0;
+    for (std::uint64_t before = 0; before < most; ++before) {
+        const auto misfit = std::find_if(lines.begin(), lines.end(), [&](const HatchLine& line) {
+            return !AskedLines(*line.rule, before + line.layer, tolerance).have(line.ends[0], line.ends[1]);
+        });
+        if (misfit - lines.begin() > most_fit) {
+            most_fit = misfit - lines.begin();
+            best = before;
+        }
+        if (misfit == lines.end())
+            break;
+    }
+    return best;
+}
+
 class VectorCheck {
   public:
-    VectorCheck(const VectorVerifyOptions& options, double tolerance)
-        : options_(options), tolerance_(tolerance) {}
+    /// `before`: layers of the plan, before the first of those to be checked.
+    VectorCheck(const VectorVerifyOptions& options, double tolerance, std::uint64_t before)
+        : options_(options), tolerance_(tolerance), before_(before) {}
 
     void check(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
         std::uint64_t all = 0;
@@ -157,7 +234,7 @@ class VectorCheck {
             found.hatch_vectors += vectors.hatches.size() / 2;
             all += of_contours + vectors.hatches.size() / 2;
             if (options_.strategy)
-                find_short(vectors, hatch_of(*options_.strategy, part->exposure->region), found.too_short);
+                check_lines(vectors, hatch_of(*options_.strategy, part->exposure->region), found);
         }
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0) {
             found.unbounded += all;
@@ -217,12 +294,15 @@ class VectorCheck {
         return found;
     }
 
-    void find_short(const Layer& vectors, const HatchRule& rule, Finding& too_short) const {
+    void check_lines(const Layer& vectors, const HatchRule& rule, PlaneCheck& found) const {
+        const AskedLines lines(rule, before_ + vectors.index, tolerance_);
         for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
             const Point2& a = vectors.hatches[i];
             const Point2& b = vectors.hatches[i + 1];
             if (distance(a, b) < rule.shortest - 2 * tolerance_)
-                too_short.add(vectors, a);
+                found.too_short.add(vectors, a);
+            if (!lines.have(a, b))
+                found.misplaced.add(vectors, a);
         }
     }
 
@@ -327,6 +407,7 @@ class VectorCheck {
 
     const VectorVerifyOptions& options_;
     double tolerance_; ///< by which vectors, and contours that stand for material, may be off
+    std::uint64_t before_;
 };
 
 void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
@@ -353,8 +434,9 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     result.layers = planes.size();
     std::vector<std::vector<Layer>> sections;
     if (options.mesh)
-        sections = at_moved_cuts(planes, options.rounding, options.rule,
-                                 [&](const Plan& plan) { return slice(*options.mesh, plan, execution); });
+        sections = at_moved_cuts(planes, options.rounding, options.rule, [&](const Plan& plan) {
+            return layers_of(*options.mesh, plan, options.steps, execution);
+        });
 
     double largest = 0;
     for (const Group& group : groups)
@@ -365,7 +447,10 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     // Ends of lines and points of contours, each moved along both axes; and what arithmetic moves.
     const double tolerance = std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest;
 
-    const VectorCheck vectors(options, tolerance);
+    const VectorCheck vectors(
+        options, tolerance,
+        options.strategy ? layers_before(longest_lines(groups, *options.strategy, planes.size()), tolerance)
+                         : 0);
     std::vector<PlaneCheck> checks(planes.size());
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, planes.size());
@@ -392,6 +477,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
         all.contours.add(check.contours);
         all.outside.add(check.outside);
         all.too_short.add(check.too_short);
+        all.misplaced.add(check.misplaced);
         all.miscovered.add(check.miscovered);
         for (const auto& row : check.rows)
             all.rows[row.first].add(row.second);
@@ -406,6 +492,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     result.misoriented = all.contours.misoriented.total;
     result.outside = all.outside.total;
     result.too_short = all.too_short.total;
+    result.misplaced = all.misplaced.total;
     result.miscovered = all.miscovered.total;
     if (options.strategy && all.filled_mm2 > 0)
         result.cover = all.covered_mm2 / all.filled_mm2;
@@ -422,6 +509,10 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
         result.findings);
     tell(all.too_short,
          {"hatch line is shorter than the strategy says;", "hatch lines are shorter than the strategy says;"},
+         result.findings);
+    tell(all.misplaced,
+         {"hatch line lies beside those of the strategy, or is turned otherwise;",
+          "hatch lines lie beside those of the strategy, or are turned otherwise;"},
          result.findings);
     tell(all.miscovered,
          {"layer has lines that cover more or less than they should fill;",

@@ -2,6 +2,7 @@
 
 #include "lamella/contour/normal_form.hpp"
 
+#include "contour/same_height.hpp"
 #include "polygon/edge_tree.hpp"
 
 #include <algorithm>
@@ -25,18 +26,18 @@ double moved_points(const RoundedLayers& stack) {
     return most;
 }
 
-/// Pairs the layers of two stacks, which both ascend.
-std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayers& second) {
+/// Pairs the layers of two stacks, which both ascend. `tolerance_mm`: of heights, beside rounding.
+std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayers& second,
+                                  double tolerance_mm) {
     const auto z = [](const RoundedLayers& stack, std::size_t i) {
         return i < stack.layers.size() ? stack.layers[i].z : infinity;
     };
     const auto belong_together = [&](std::size_t i, std::size_t j) {
         if (i == first.layers.size() || j == second.layers.size())
             return false;
-        constexpr double of_arithmetic = 1e-9; // a cut half-way up is computed
         const double apart = std::abs(z(first, i) - z(second, j));
         return apart <= moved_cut(first.layers[i], first.rounding) +
-                            moved_cut(second.layers[j], second.rounding) + of_arithmetic &&
+                            moved_cut(second.layers[j], second.rounding) + tolerance_mm &&
                apart <= std::abs(z(first, i + 1) - z(second, j)) &&
                apart <= std::abs(z(first, i) - z(second, j + 1));
     };
@@ -109,9 +110,9 @@ LayerDifference compare(const Layer& first, const Layer& second) {
 
 StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                         std::optional<double> tolerance_mm) {
-    StackComparison result{.tolerance_mm =
-                               tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
-                           .planes = paired(first, second)};
+    StackComparison result{
+        .tolerance_mm = tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
+        .planes = paired(first, second, std::max(same_height_mm, tolerance_mm.value_or(0)))};
     bool any_pair = false;
     for (ComparedPlane& plane : result.planes) {
         if (!plane.first || !plane.second)

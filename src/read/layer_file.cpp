@@ -41,6 +41,10 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
     }
     if (const MeshFormatRow* const format = layer_format_of(source))
         return format->read_layers(bytes, source.name, limits, execution);
+    if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = options.max_memory});
+        other != nullptr && other->read != nullptr)
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found a mesh; a slice file is expected: slice it first", source.name));
     if (const std::string_view other = other_slc(bytes); !other.empty())
         throw Error(ErrorKind::input,
                     fmt::format("{}: found {}; of the formats that go by this name, that of 3D Systems is "

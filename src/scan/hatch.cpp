@@ -19,14 +19,7 @@ namespace lamella {
 
 namespace {
 
-/// Of the lines of a layer, to which a pattern adds.
-double degrees_of(const HatchRule& rule, std::uint64_t layer) noexcept {
-    const double turned = std::fmod(rule.turn_degrees, 360) * static_cast<double>(layer);
-    return std::fmod(rule.angle_degrees, 360) + std::fmod(turned, 360);
-}
-
-HatchLines lines_in(const HatchArea& area, double degrees, double distance) {
-    const CosSin angle = cos_sin_degrees(degrees);
+HatchLines lines_in(const HatchArea& area, CosSin angle, double distance) {
     HatchLines lines(area.within, angle, distance);
     if (area.also_within != nullptr)
         lines.intersect(HatchLines(*area.also_within, angle, distance));
@@ -189,16 +182,29 @@ void check_pieces(const HatchLines& lines, const Layer& area, const HatchRule& r
 
 } // namespace
 
+std::vector<CosSin> line_angles(const HatchRule& rule, std::uint64_t layer) {
+    const double turned = std::fmod(rule.turn_degrees, 360) * static_cast<double>(layer);
+    const double degrees = std::fmod(rule.angle_degrees, 360) + std::fmod(turned, 360);
+    switch (rule.pattern) {
+    case HatchPattern::chessboard:
+        return {cos_sin_degrees(degrees), cos_sin_degrees(degrees + 90)};
+    case HatchPattern::hexagons:
+        return {cos_sin_degrees(degrees), cos_sin_degrees(degrees + 60), cos_sin_degrees(degrees + 120)};
+    default:
+        return {cos_sin_degrees(degrees)};
+    }
+}
+
 PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed) {
-    const double degrees = degrees_of(rule, area.within.index);
+    const std::vector<CosSin> angles = line_angles(rule, area.within.index);
     if (rule.pattern == HatchPattern::lines || rule.pattern == HatchPattern::meander)
-        return PointArray(line_by_line(lines_in(area, degrees, rule.distance), rule));
+        return PointArray(line_by_line(lines_in(area, angles.front(), rule.distance), rule));
     check_cells(area.within, rule);
     const bool stripes = rule.pattern == HatchPattern::stripes;
     const bool squares = rule.pattern == HatchPattern::chessboard;
     std::vector<HatchLines> lines; // in each direction
-    for (unsigned turns = 0; turns < (stripes ? 1 : squares ? 2 : 3); ++turns) {
-        lines.push_back(lines_in(area, degrees + turns * (squares ? 90 : 60), rule.distance));
+    for (const CosSin angle : angles) {
+        lines.push_back(lines_in(area, angle, rule.distance));
         check_pieces(lines.back(), area.within, rule);
     }
     Islands islands;

@@ -3,6 +3,7 @@
 // Lines that fill an area, in the order in which a beam follows them.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/unit_circle.hpp"
 #include "lamella/scan/strategy.hpp"
 
 #include <cstdint>
@@ -20,6 +21,10 @@ struct HatchArea {
     const Layer* also_within = nullptr;     ///< if given
     std::vector<const Layer*> without = {}; ///< nothing of these
 };
+
+/// Of the lines of a layer: islands have lines in two or three directions. Line k of each lies at v = k *
+/// distance in the LineFrame of its angle.
+[[nodiscard]] std::vector<CosSin> line_angles(const HatchRule& rule, std::uint64_t layer);
 
 /// Two points each, as Layer::hatches. The index of `within` says how far the lines are turned, and with the
 /// seed in which order islands come. Throws what HatchLines throws, and Error{limit} for more than 2^28

@@ -46,6 +46,7 @@ struct PlaneFacts {
 struct Picture {
     std::string bytes; ///< compressed
     std::uint64_t shown = 0;
+    std::uint64_t contours_shown = 0;
     std::uint64_t hatches_shown = 0;
     double tolerance_mm = 0;
 };
@@ -182,8 +183,10 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     const auto picture = [&](std::span<const Layer> layers, double tolerance) {
         Picture made{.bytes = {}, .tolerance_mm = tolerance};
         made.bytes = deflated(layer_numbers(layers, infos, places, grid, made.shown).view());
-        for (const Layer& layer : layers)
+        for (const Layer& layer : layers) {
+            made.contours_shown += layer.contours();
             made.hatches_shown += layer.hatches.size() / 2;
+        }
         return made;
     };
     std::vector<Picture> pictures{picture(parts, 0)};
@@ -218,10 +221,11 @@ class PlaneTable {
             page_number(facts.gaps.longest_mm),     page_number(facts.gaps.total_mm),
             std::to_string(facts.crossings),        std::to_string(facts.misoriented),
             std::to_string(facts.overlapping),      std::to_string(facts.hatches),
-            std::to_string(picture.shown),          std::to_string(picture.hatches_shown),
-            page_number(picture.tolerance_mm),      std::to_string(facts.scan.vectors),
-            page_number(facts.scan.marked_mm),      page_number(facts.scan.jumped_mm),
-            page_number(facts.scan.build_seconds),  page_number(facts.scan.energy_j)};
+            std::to_string(picture.shown),          std::to_string(picture.contours_shown),
+            std::to_string(picture.hatches_shown),  page_number(picture.tolerance_mm),
+            std::to_string(facts.scan.vectors),     page_number(facts.scan.marked_mm),
+            page_number(facts.scan.jumped_mm),      page_number(facts.scan.build_seconds),
+            page_number(facts.scan.energy_j)};
         for (std::size_t i = 0; i < shown_; ++i)
             append(texts_[i], values[i]);
         planes_.push_back({facts.place.index, facts.measure.area_mm2});
@@ -265,11 +269,12 @@ class PlaneTable {
         double area_mm2;
     };
     static constexpr std::size_t columns_of_scan = 5; // the last ones
-    static constexpr std::array<std::string_view, 24> columns{
-        "index",        "z",           "bottom",      "top",         "area_mm2",       "perimeter_mm",
-        "contours",     "holes",       "points",      "open_chains", "longest_gap_mm", "gaps_mm",
-        "crossings",    "misoriented", "overlapping", "hatches",     "shown",          "hatches_shown",
-        "tolerance_mm", "vectors",     "marked_mm",   "jumped_mm",   "build_seconds",  "energy_j"};
+    static constexpr std::array<std::string_view, 25> columns{
+        "index",          "z",         "bottom",         "top",           "area_mm2",
+        "perimeter_mm",   "contours",  "holes",          "points",        "open_chains",
+        "longest_gap_mm", "gaps_mm",   "crossings",      "misoriented",   "overlapping",
+        "hatches",        "shown",     "contours_shown", "hatches_shown", "tolerance_mm",
+        "vectors",        "marked_mm", "jumped_mm",      "build_seconds", "energy_j"};
     std::size_t shown_;
     std::array<std::string, columns.size()> texts_;
     std::vector<Plane> planes_;
@@ -320,9 +325,11 @@ class PageWriter final : public LayerPageWriter {
                             "small; figures are of all of them",
                             without_hatches_, order_.count()));
         if (thinned_ > 0)
-            told.push_back(fmt::format("{} of {} layers are shown thinned out, so that the page stays small: "
-                                       "contours are up to {:.6g} mm off, figures are of all of them",
-                                       thinned_, order_.count(), largest_tolerance_mm_));
+            told.push_back(fmt::format(
+                "{} of {} layers are shown thinned out, so that the page stays small: contours are up to "
+                "{:.6g} mm off{}, figures are of all of them",
+                thinned_, order_.count(), largest_tolerance_mm_,
+                not_shown_ > 0 ? fmt::format(" and {} small ones are not shown", not_shown_) : ""));
         return told;
     }
 
@@ -352,6 +359,7 @@ class PageWriter final : public LayerPageWriter {
         if (picture.tolerance_mm > 0) {
             ++thinned_;
             largest_tolerance_mm_ = std::max(largest_tolerance_mm_, picture.tolerance_mm);
+            not_shown_ += facts.measure.contours - picture.contours_shown;
         }
         file_.append(data_element(picture.bytes));
         table_.add(facts, picture);
@@ -365,6 +373,7 @@ class PageWriter final : public LayerPageWriter {
     Budget budget_;
     std::uint64_t without_hatches_ = 0;
     std::uint64_t thinned_ = 0;
+    std::uint64_t not_shown_ = 0; ///< contours
     double largest_tolerance_mm_ = 0;
     PlaneTable table_;
     PageNotes notes_;

@@ -5,7 +5,20 @@
 #include "container/inflate.hpp"
 #include "write/png.hpp"
 
+#include <algorithm>
+#include <vector>
+
 namespace lamella {
+
+namespace {
+
+/// Where contours are open, the outer one of a hole may be among them: alone, the hole would be drawn as a
+/// body.
+Layer without_lone_holes(const Layer& layer) {
+    return layer.open_chains() > 0 ? fill(layer, FillRule::positive).layer : layer;
+}
+
+} // namespace
 
 // Options that make no picture show before the first layer does.
 LayerPictures::LayerPictures(const PixelGrid& grid, const RasterOptions& options)
@@ -13,7 +26,9 @@ LayerPictures::LayerPictures(const PixelGrid& grid, const RasterOptions& options
     static_cast<void>(picture({}));
 }
 
-LayerPicture LayerPictures::picture(std::span<const Layer> parts) const {
+LayerPicture LayerPictures::picture(std::span<const Layer> all) const {
+    std::vector<Layer> parts(all.size());
+    std::transform(all.begin(), all.end(), parts.begin(), without_lone_holes);
     RasterOptions options = options_;
     // To look takes less than drawing, and contours finer than pixels are drawn in a fraction of the time
     // then.

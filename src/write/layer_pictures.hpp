@@ -29,7 +29,7 @@ class LayerPictures {
     LayerPictures(const PixelGrid& grid, const RasterOptions& options);
 
     /// All parts in one picture.
-    [[nodiscard]] LayerPicture picture(std::span<const Layer> parts) const;
+    [[nodiscard]] LayerPicture picture(std::span<const Layer> all) const;
 
     [[nodiscard]] const PixelGrid& grid() const noexcept { return grid_; }
     [[nodiscard]] const RasterOptions& options() const noexcept { return options_; }

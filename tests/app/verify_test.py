@@ -62,9 +62,24 @@ class Vectors(ProgramTest):
         self.assertGreater(self.verify("job.ilt", *right, "--hatch-border", "0.1", code=4)["outside"], 1000)
         self.assertGreater(self.verify("job.ilt", *right, "--shortest", "0.3", code=4)["too_short"], 10)
         self.assertGreater(self.verify("job.ilt", *right, "--hatch-distance", "0.05", code=4)["miscovered"], 10)
+        self.assertGreater(self.verify("job.ilt", *right, "--hatch-turn", "66", code=4)["misplaced"], 1000)
         self.assertGreater(self.verify("job.ilt", *right, "--rotate-x", "180", code=4)["outside"], 1000)
         text = self.run_program("verify", "job.ilt", *right, "--hatch-border", "0.1").text
         self.assertRegex(text, r"(?m)^  [\d]+ vectors are nearer to the edge of the material than the strategy says.*; the first in layer 0 ")
+
+    def test_what_was_made_of_the_layers_is_checked(self):
+        compensated = ["--offset=-0.2", "--offset-corners", "round"]
+        self.succeed("slice", "rook.stl", "--layer-height", "1", *compensated, "-o", "layers.npz")
+        self.succeed("slice", "rook.stl", "--layer-height", "1", *compensated, "--scan", "-o", "job.cli")
+        for name in ["layers.npz", "job.cli"]:
+            self.succeed("verify", name, "--mesh", "rook.stl", *compensated)
+        self.assertEqual(self.run_program("verify", "layers.npz", "--mesh", "rook.stl").code, 4)
+        self.assertEqual(self.run_program("verify", "layers.npz", "--mesh", "rook.stl", "--offset=-0.201").code, 4)
+        self.assertIn("--mesh part.stl", self.run_program("verify", "layers.npz", *compensated).err)
+
+    def test_a_part_of_the_layers_has_the_lines_of_the_whole(self):
+        self.succeed("slice", "rook.stl", "--scan", "--layers", "40:60", "-o", "part.cli")
+        self.verify("part.cli", "--mesh", "rook.stl", "--scan")
 
     def test_only_what_was_checked_is_told(self):
         self.succeed("slice", "rook.stl", "--layer-height", "1", "--scan", "--contours", "0", "-o", "job.cli")

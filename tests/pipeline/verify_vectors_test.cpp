@@ -162,6 +162,53 @@ TEST_F(VerifyVectors, FindsLinesThatAreTooShort) {
     EXPECT_TRUE(with_mesh().ok());
 }
 
+TEST_F(VerifyVectors, FindsLinesThatAreTurnedOrLieBesideWhatTheStrategySays) {
+    for (const HatchPattern pattern :
+         {HatchPattern::stripes, HatchPattern::chessboard, HatchPattern::hexagons}) {
+        for (HatchRule* const rule : {&strategy_.hatch, &strategy_.upskin.hatch, &strategy_.downskin.hatch})
+            rule->pattern = pattern;
+        const auto scanned_by = [&](double angle, double turn, double distance) {
+            ScanStrategy other = strategy_;
+            for (HatchRule* const rule : {&other.hatch, &other.upskin.hatch, &other.downskin.hatch}) {
+                rule->angle_degrees = angle;
+                rule->turn_degrees = turn;
+                rule->distance = distance;
+            }
+            parts_ = scanned(slice(mesh_, plan_), other, "block");
+            const VectorVerification found = with_all();
+            EXPECT_EQ(with_strategy().misplaced, found.misplaced);
+            EXPECT_EQ(found.misplaced == 0, found.ok());
+            EXPECT_EQ(with_mesh().misplaced + with_nothing().misplaced, 0U);
+            return found.misplaced;
+        };
+        EXPECT_EQ(scanned_by(0, 67, 0.1), 0U);
+        EXPECT_GT(scanned_by(0.5, 67, 0.1), 1000U);
+        EXPECT_GT(scanned_by(0, 66, 0.1), 1000U);
+        EXPECT_GT(scanned_by(0, 67, 0.101), 1000U);
+    }
+}
+
+TEST_F(VerifyVectors, AFileMayBeginWithAnyLayerOfItsPlan) {
+    strategy_.hatch.turn_degrees = 33.3;
+    for (const std::uint64_t first : {1U, 100U, 5000U}) {
+        Plan later = plan_;
+        for (PlannedLayer& layer : later.layers)
+            layer.index += first;
+        parts_ = scanned(slice(mesh_, later), strategy_, "block");
+        for (LayerPart& part : parts_)
+            for (std::size_t i = 0; i < part.layers.size(); ++i)
+                part.layers[i].index = i; // as files number them
+        EXPECT_TRUE(with_all().ok()) << first;
+        // A layer that is not at its place is one, all others are right.
+        std::swap(part("core hatch").layers[5].hatches, part("core hatch").layers[6].hatches);
+        EXPECT_GT(with_all().misplaced, 100U) << first;
+        EXPECT_LE(
+            with_all().misplaced,
+            (part("core hatch").layers[5].hatches.size() + part("core hatch").layers[6].hatches.size()) / 2)
+            << first;
+    }
+}
+
 TEST_F(VerifyVectors, FindsWhatIsNotFilledAndWhatIsFilledTwice) {
     const std::vector<LayerPart> sound = parts_;
     change_hatches("core hatch", 4,

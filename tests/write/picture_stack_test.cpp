@@ -86,6 +86,20 @@ TEST(LayerPictures, CoverOnceWhatOverlaps) {
     EXPECT_LT(overlapping, 59);
 }
 
+TEST(LayerPictures, AHoleWhoseOuterContourIsOpenIsNoBody) {
+    const LayerPictures pictures({.width = 60, .height = 60, .u0 = 0, .v0 = 0}, {});
+    const auto covered = [&](bool torn) {
+        LayerBuilder builder;
+        add_contour(builder, {{5, 5}, {5, 15}, {15, 15}, {15, 5}});
+        add_contour(builder, {{0, 0}, {20, 0}, {20, 20}, {0, 20}}, !torn);
+        add_contour(builder, {{30, 0}, {34, 0}, {34, 5}, {30, 5}});
+        const std::vector<Layer> parts{builder.finish(0, 0.5, 0, 1)};
+        return pictures.picture(parts).covered;
+    };
+    EXPECT_EQ(covered(false), 20 * 20 - 10 * 10 + 4 * 5);
+    EXPECT_EQ(covered(true), 4 * 5) << "what is whole is drawn";
+}
+
 TEST(PictureFolder, PutsAllPartsIntoOnePicture) {
     const TemporaryFolder folder;
     LayerBuilder left;

@@ -117,12 +117,15 @@ function accuracy(head, table) {
   const rounded = `coordinates are rounded to ${brief(head.step_mm)} mm`;
   if (thinned.length === 0) return { tone: 'plain', text: `The page shows every point; ${rounded}.` };
   const worst = Math.max(...table.tolerance_mm);
+  const contours = sum(table.contours);
+  const missing = contours - sum(table.contours_shown);
   return {
     tone: 'warning',
     text:
       `To keep the page small, ${counted(thinned.length, 'layer')} of ${count(table.z.length)} ` +
       `${thinned.length === 1 ? 'is' : 'are'} drawn with fewer points, up to ${brief(worst)} mm off ` +
-      `(${count(sum(table.shown))} of ${count(sum(table.points))} points in all); ${rounded}. ` +
+      `(${count(sum(table.shown))} of ${count(sum(table.points))} points in all)` +
+      `${missing > 0 ? `, and ${count(missing)} of ${counted(contours, 'contour')}, all small, are not drawn` : ''}; ${rounded}. ` +
       'All figures are of the full contours.',
     layer: thinned[0],
   };

@@ -44,11 +44,11 @@ test('an axis maps layers to pixels and back, and a plot loses no peak', () => {
   assert.equal(Math.min(...columns.map((column) => column.low)), 1);
 });
 
-const columns = ['area_mm2', 'contours', 'points', 'shown', 'open_chains', 'longest_gap_mm', 'gaps_mm', 'crossings', 'misoriented', 'overlapping', 'tolerance_mm', 'hatches', 'hatches_shown'];
+const columns = ['area_mm2', 'contours', 'points', 'shown', 'open_chains', 'longest_gap_mm', 'gaps_mm', 'crossings', 'misoriented', 'overlapping', 'tolerance_mm', 'hatches', 'hatches_shown', 'contours_shown'];
 const columnsOfVectors = ['vectors', 'marked_mm', 'jumped_mm', 'build_seconds', 'energy_j'];
 function pageOf(layers, notes = { sections: [], places: [] }, parts = [{}]) {
   const table = { z: [], bottom: [], top: [] };
-  for (const column of [...columns, ...(parts.some(({ exposure }) => exposure) ? columnsOfVectors : [])]) table[column] = layers.map((layer) => layer[column] ?? (column === 'contours' ? 1 : 0));
+  for (const column of [...columns, ...(parts.some(({ exposure }) => exposure) ? columnsOfVectors : [])]) table[column] = layers.map((layer) => layer[column] ?? (column.startsWith('contours') ? (layer.contours ?? 1) : 0));
   layers.forEach((_, i) => {
     table.bottom.push(i);
     table.z.push(i + 0.5);
@@ -108,6 +108,8 @@ test('a sound stack is called sound, and thinning is said', () => {
   assert.equal(told[0].tone, 'good');
   assert.match(told.at(-1).text, /1 layer of 2 is drawn with fewer points, up to 0\.04 mm off \(120 of 200 points in all\)/);
   assert.equal(firstLayer(page), 1);
+  const specks = pageOf([{ points: 100, shown: 20, contours: 12, contours_shown: 9, tolerance_mm: 0.04 }]);
+  assert.match(findings(specks).at(-1).text, /\(20 of 100 points in all\), and 3 of 12 contours, all small, are not drawn;/);
   const flawed = pageOf([{}], { sections: [], places: [{ kind: 'boundary loop' }] });
   assert.equal(verdict(flawed).tone, 'warning');
 });

@@ -7,6 +7,7 @@
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -24,6 +25,8 @@ struct VerifyOptions {
     std::optional<Mesh> mesh = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
+    LayerSteps steps = {}; ///< that were taken with the layers of the mesh, one part; without any, areas are
+                           ///< computed without linking
     /// How the format rounds coordinates and heights. The area tolerance grows with it and the layer's
     /// perimeter; and rings so thin that it can turn them over are not held to an orientation.
     Rounding rounding = {};
@@ -90,11 +93,11 @@ struct VectorVerifyOptions {
     /// of their part.
     std::optional<Mesh> mesh = {};
     PlaneRule rule = PlaneRule::section_above; ///< as VerifyOptions::rule
+    LayerSteps steps = {};                     ///< as VerifyOptions::steps
     Rounding rounding = {};                    ///< of coordinates and heights: vectors may be off by so much
     /// By which the vectors were made. With it they are to be as far from the edges of the material as it
-    /// says, each of its contours there and at its depth, no hatch line shorter than `shortest`, and lines
-    /// times their distance are to be the area that they fill. How far lines are apart, and how they are
-    /// turned, is not looked at.
+    /// says, each of its contours there and at its depth, no hatch line shorter than `shortest`, all of them
+    /// turned and apart as it says, and lines times their distance are to be the area that they fill.
     std::optional<ScanStrategy> strategy = {};
 };
 
@@ -109,6 +112,10 @@ struct VectorVerification {
     /// Vectors that leave the material, or are nearer to its edges than the strategy says.
     std::uint64_t outside = 0;
     std::uint64_t too_short = 0; ///< hatch lines
+    /// Hatch lines that have another direction than those of their layer and region, or do not lie at a
+    /// multiple of the distance. Where a file begins with a later layer of its plan, it does not say with
+    /// which: with that by which most of the lowest layers are right.
+    std::uint64_t misplaced = 0;
     /// Planes of a part, of all parts with a mesh, whose lines cover more or less than they are to fill. What
     /// may be off: along the edges of that, and of skins, half a distance and as wide a strip as the shortest
     /// line is long, and what stripes, islands and skins overlap.
@@ -129,7 +136,7 @@ struct VectorVerification {
 
     [[nodiscard]] bool ok() const noexcept {
         return open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 && too_short == 0 &&
-               miscovered == 0 && wrong_contours == 0 && (!heights || heights->gaps == 0);
+               misplaced == 0 && miscovered == 0 && wrong_contours == 0 && (!heights || heights->gaps == 0);
     }
 };
 

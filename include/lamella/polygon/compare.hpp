@@ -56,10 +56,10 @@ struct StackComparison {
 };
 
 /// Compares two stacks plane by plane. Layers belong together when their cuts are no further apart than the
-/// rounding of both formats explains, and neither is nearer to another layer; one without contours and hatch
-/// lines needs no partner. Hatch lines and heights of layers that belong together do not count: see
-/// `compare_files`. `tolerance_mm` is for LayerDifference::within; unless given, it is what the rounding of
-/// both formats explains.
+/// rounding of both formats explains, or `tolerance_mm` where given, and neither is nearer to another layer;
+/// one without contours and hatch lines needs no partner. Hatch lines and heights of layers that belong
+/// together do not count: see `compare_files`. `tolerance_mm` is for LayerDifference::within; unless given,
+/// it is what the rounding of both formats explains.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                                       std::optional<double> tolerance_mm = {});
 
