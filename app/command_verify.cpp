@@ -65,15 +65,11 @@ std::string heights_text(const std::optional<CoveredHeights>& heights) {
 }
 
 Json verification_json(const Verification& found) {
-    Json object{{"layers", found.layers},
-                {"contours", found.contours},
-                {"open_chains", found.open_chains},
-                {"crossings", found.crossings},
-                {"misoriented", found.misoriented},
-                {"overlapping", found.overlapping},
-                {"volume_mm3", found.volume_mm3},
-                {"max_area_error_mm2", nullptr},
-                {"heights", heights_json(found.heights)}};
+    Json object{{"layers", found.layers},           {"contours", found.contours},
+                {"open_chains", found.open_chains}, {"crossings", found.crossings},
+                {"misoriented", found.misoriented}, {"overlapping", found.overlapping},
+                {"volume_mm3", found.volume_mm3},   {"max_area_error_mm2", nullptr},
+                {"displaced", found.displaced},     {"heights", heights_json(found.heights)}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
@@ -232,7 +228,8 @@ Command verify_command() {
             "holes "
             "clockwise by their nesting, no contour crossing another or itself. With --mesh the area of "
             "every layer is "
-            "compared with the section of that mesh, computed straight from its triangles. Of scan vectors, "
+            "compared with the section of that mesh, computed straight from its triangles, and so are their "
+            "centres: a layer that is turned about its centre is not told. Of scan vectors, "
             "contours are checked so, and all have to lie within the mesh, or without one within the "
             "outermost contour of their part; with the strategy by which they were made, as far from its "
             "edges as that says, each contour there, all lines at their distance and angle, none shorter "

@@ -25,7 +25,7 @@ from ._warning import warn
 class Verification:
     """What `verify` finds. Lengths are millimetres."""
 
-    ok: bool  #: no open chains, no crossings, no misoriented rings, no gaps, and areas agree
+    ok: bool  #: no open chains, no crossings, no misoriented rings, no gaps, and areas and centres agree
     layers: int
     contours: int
     points: int
@@ -36,6 +36,7 @@ class Verification:
     volume: float  #: mm^3, the sum of area times thickness
     max_area_error: Optional[float]  #: mm^2, the largest difference from the section of the mesh, if one was given
     areas_agree: bool  #: those differences are no larger than rounding explains
+    displaced: int  #: layers of the right area that lie elsewhere than the mesh's section, as their centres tell
     gaps: int  #: between layers, where the mesh has material; 0 without one
     findings: List[str]  #: one line for each kind of finding, with the first layer and place
 
@@ -150,7 +151,7 @@ class LayerDifference:
     """How far two layers on one plane are from each other."""
 
     z: float  #: of the plane, in millimetres
-    distance: float  #: mm, from a corner of one to the nearest contour of the other; inf where one has none
+    distance: float  #: mm, from a point of one's contours to the nearest contour of the other; inf where one has none
     where: Optional[Tuple[float, float]]  #: where that distance begins
     first: Optional[Layer]  #: None where only the second stack has contours there
     second: Optional[Layer]

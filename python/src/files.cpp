@@ -332,6 +332,7 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
     fields["volume"] = found.volume_mm3;
     fields["max_area_error"] = found.max_area_error_mm2;
     fields["areas_agree"] = found.areas_agree;
+    fields["displaced"] = found.displaced;
     fields["gaps"] = found.heights ? found.heights->gaps : 0;
     fields["findings"] = found.findings;
     return fields;

@@ -2,10 +2,12 @@
 
 #include "lamella/contour/measure.hpp"
 
+#include "contour/area_moments.hpp"
 #include "core/executor.hpp"
 #include "pipeline/covered_heights.hpp"
 #include "pipeline/layer_check.hpp"
 #include "pipeline/moved_cuts.hpp"
+#include "slicing/section_moments.hpp"
 
 #include <fmt/format.h>
 
@@ -55,40 +57,75 @@ double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rou
 
 void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> checks,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
-    const auto sections = at_moved_cuts(layers, options.rounding, options.rule, [&](const Plan& plan) {
-        if (!options.steps.any())
-            return section_areas(*options.mesh, plan, execution);
-        std::vector<double> areas;
-        for (const Layer& layer : layers_of(*options.mesh, plan, options.steps, execution))
-            areas.push_back(measure(layer).area_mm2);
-        return areas;
-    });
     const Box3 box = bounding_box(*options.mesh, execution);
     const double extent = box.empty() ? 0 : std::max(box.max.x - box.min.x, box.max.y - box.min.y);
+    // About the middle of the part, so that a part far from the origin loses no digits.
+    const Point2 origin =
+        box.empty() ? Point2{} : Point2{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
+    const auto sections = at_moved_cuts(layers, options.rounding, options.rule, [&](const Plan& plan) {
+        if (!options.steps.any())
+            return section_moments(*options.mesh, plan, origin, execution);
+        std::vector<AreaMoments> made;
+        for (const Layer& layer : layers_of(*options.mesh, plan, options.steps, execution))
+            made.push_back(area_moments(layer, origin));
+        return made;
+    });
     double largest_error = 0;
+    std::uint64_t compared = 0;
     std::uint64_t differing = 0;
     std::size_t first = 0;
+    std::size_t first_displaced = 0;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (checks[i].found.open_chains.total > 0)
             continue; // its area is not known
+        ++compared;
+        const AreaMoments own = area_moments(layers[i], origin);
+        const auto beyond = [&](double AreaMoments::*sum) {
+            const auto [least, greatest] = std::minmax_element(
+                sections[i].begin(), sections[i].end(),
+                [&](const AreaMoments& a, const AreaMoments& b) { return a.*sum < b.*sum; });
+            return std::max((*least).*sum - own.*sum, own.*sum - (*greatest).*sum);
+        };
         const double area = checks[i].measure.area_mm2;
-        largest_error = std::max(largest_error, std::abs(area - sections[i].front()));
-        const auto [least, greatest] = std::minmax_element(sections[i].begin(), sections[i].end());
-        const double beyond = std::max(*least - area, area - *greatest);
-        if (beyond > area_tolerance(layers[i], checks[i].measure, options.rounding, extent)) {
-            if (differing == 0)
+        largest_error = std::max(largest_error, std::abs(area - sections[i].front().area_mm2));
+        const double tolerance = area_tolerance(layers[i], checks[i].measure, options.rounding, extent);
+        // What moves an edge moves a strip of area, which has its moment from where it lies.
+        double reach = extent;
+        for (const Point2& p : layers[i].points)
+            reach = std::max({reach, std::abs(p.x - origin.x), std::abs(p.y - origin.y)});
+        if (beyond(&AreaMoments::area_mm2) > tolerance) {
+            if (differing++ == 0)
                 first = i;
-            ++differing;
+        } else if (std::max(beyond(&AreaMoments::x_mm3), beyond(&AreaMoments::y_mm3)) > tolerance * reach) {
+            if (result.displaced++ == 0)
+                first_displaced = i;
         }
     }
-    result.max_area_error_mm2 = largest_error;
+    if (compared > 0)
+        result.max_area_error_mm2 = largest_error;
+    if (compared < layers.size())
+        result.findings.push_back(fmt::format("{} layer{} with open contours {} not compared with the mesh",
+                                              layers.size() - compared, plural(layers.size() - compared),
+                                              layers.size() - compared == 1 ? "was" : "were"));
     if (differing > 0) {
         result.areas_agree = false;
         result.findings.push_back(fmt::format("{} layer{} of another area than the mesh's section, the first "
                                               "is {}: {:.7g} mm^2 instead of {:.7g} mm^2",
                                               differing, differing == 1 ? " is" : "s are",
                                               where(layers[first]), checks[first].measure.area_mm2,
-                                              sections[first].front()));
+                                              sections[first].front().area_mm2));
+    }
+    if (result.displaced > 0) {
+        const auto centre = [&](const AreaMoments& section) {
+            return fmt::format("({:.7g}, {:.7g})", origin.x + section.x_mm3 / section.area_mm2,
+                               origin.y + section.y_mm3 / section.area_mm2);
+        };
+        result.findings.push_back(fmt::format(
+            "{} layer{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
+            "instead of {}",
+            result.displaced, result.displaced == 1 ? " lies" : "s lie", where(layers[first_displaced]),
+            centre(area_moments(layers[first_displaced], origin)),
+            centre(sections[first_displaced].front())));
     }
 }
 

@@ -2,7 +2,9 @@
 
 #include "lamella/contour/normal_form.hpp"
 
+#include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
+#include "polygon/box2.hpp"
 #include "polygon/edge_tree.hpp"
 
 #include <algorithm>
@@ -71,6 +73,82 @@ void farthest(const Layer& from, const EdgeTree& to, double& largest, Point2& wh
     }
 }
 
+/// The same of all points of an edge, where they are farther than `least` allows, too. To a thousandth.
+void farthest(const Point2& a, const Point2& b, const EdgeTree& to, double least, double& largest,
+              Point2& where) {
+    const Point2 middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
+    const auto [s, t] = to.nearest(middle);
+    const double known = 1.002 * std::max(largest, least);
+    // From an edge on which points move evenly, distances to another one are convex: the ends are farthest.
+    if (std::max(distance_squared(a, s, t), distance_squared(b, s, t)) <= known)
+        return;
+    if (const double squared = distance_squared(middle, s, t); squared > std::max(largest, least)) {
+        largest = squared;
+        where = middle;
+    }
+    if (middle == a || middle == b)
+        return;
+    farthest(a, middle, to, least, largest, where);
+    farthest(middle, b, to, least, largest, where);
+}
+
+/// Also between corners: where contours that are as far apart as `least` would count as one.
+void farthest_between_corners(const Layer& from, const EdgeTree& to, double least, double& largest,
+                              Point2& where) {
+    if (to.empty())
+        return;
+    for (std::size_t i = 0; i < from.contours(); ++i) {
+        const auto contour = from.contour(i);
+        for (std::size_t k = 1; k < contour.size(); ++k)
+            farthest(contour[k - 1], contour[k], to, least, largest, where);
+        if (from.closed(i))
+            farthest(contour.back(), contour.front(), to, least, largest, where);
+    }
+}
+
+/// How much area has to move across both layers to make their first moments so different.
+double displaced(const Layer& first, const Layer& second) {
+    if (first.points.empty() || second.points.empty())
+        return 0; // infinitely far away
+    Box2 box = box_of(first.points);
+    box.add(box_of(second.points));
+    const Point2 middle{box.x0 + box.width() / 2, box.y0 + box.height() / 2};
+    const AreaMoments one = area_moments(first, middle);
+    const AreaMoments other = area_moments(second, middle);
+    const auto per = [](double moment, double width) {
+        return width > 0 ? std::abs(moment) / width : 0;
+    };
+    return std::max(per(one.x_mm3 - other.x_mm3, box.width()), per(one.y_mm3 - other.y_mm3, box.height()));
+}
+
+/// Distances up to the tolerance are those of corners.
+LayerDifference compare_beyond(const Layer& first, const Layer& second, double tolerance_mm) {
+    LayerDifference difference;
+    if (same_contours(first, second)) {
+        difference.same = true;
+        return difference;
+    }
+    difference.first = measure(first);
+    difference.second = measure(second);
+    const EdgeTree first_edges(first);
+    const EdgeTree second_edges(second);
+    double largest = 0;
+    farthest(first, second_edges, largest, difference.where);
+    farthest(second, first_edges, largest, difference.where);
+    // Nor what arithmetic moves.
+    double coordinate = 0;
+    for (const Layer* const layer : {&first, &second})
+        if (!layer->points.empty())
+            coordinate = std::max(coordinate, box_of(layer->points).largest_coordinate());
+    const double beyond = std::max(tolerance_mm, 0x1p-36 * coordinate);
+    const double least = beyond * beyond;
+    farthest_between_corners(first, second_edges, least, largest, difference.where);
+    farthest_between_corners(second, first_edges, least, largest, difference.where);
+    difference.distance_mm = std::sqrt(largest);
+    difference.displaced_mm2 = displaced(first, second);
+    return difference;
+}
+
 /// Whether the lowest layers lie between the same heights and are not cut at the same one.
 bool lowest_cut_apart(const RoundedLayers& first, const RoundedLayers& second) {
     if (first.layers.empty() || second.layers.empty())
@@ -90,22 +168,11 @@ bool LayerDifference::within(double tolerance_mm) const noexcept {
     const double rounding = 1e-12 * (std::abs(first.area_mm2) + std::abs(second.area_mm2));
     const double moved = tolerance_mm * (first.perimeter_mm + second.perimeter_mm) + rounding;
     return distance_mm <= tolerance_mm && first.open_chains == second.open_chains &&
-           std::abs(first.area_mm2 - second.area_mm2) <= moved;
+           std::abs(first.area_mm2 - second.area_mm2) <= moved && displaced_mm2 <= moved;
 }
 
 LayerDifference compare(const Layer& first, const Layer& second) {
-    LayerDifference difference;
-    if (same_contours(first, second)) {
-        difference.same = true;
-        return difference;
-    }
-    difference.first = measure(first);
-    difference.second = measure(second);
-    double largest = 0;
-    farthest(first, EdgeTree(second), largest, difference.where);
-    farthest(second, EdgeTree(first), largest, difference.where);
-    difference.distance_mm = std::sqrt(largest);
-    return difference;
+    return compare_beyond(first, second, 0);
 }
 
 StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
@@ -118,7 +185,8 @@ StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
         if (!plane.first || !plane.second)
             continue;
         any_pair = true;
-        plane.difference = compare(first.layers[*plane.first], second.layers[*plane.second]);
+        plane.difference =
+            compare_beyond(first.layers[*plane.first], second.layers[*plane.second], result.tolerance_mm);
         plane.agree = plane.difference.within(result.tolerance_mm);
     }
     result.cut_apart = !any_pair && lowest_cut_apart(first, second);

@@ -1,6 +1,7 @@
 #include "polygon/edge_tree.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,6 +17,17 @@ double squared(double dx, double dy) noexcept {
     return dx * dx + dy * dy;
 }
 
+/// How far boxes are apart along an axis.
+double gap(double least, double most, double other_least, double other_most) noexcept {
+    return std::max({other_least - most, 0.0, least - other_most});
+}
+
+double apart_squared(const Box2& a, const Box2& b) noexcept {
+    return squared(gap(a.x0, a.x1, b.x0, b.x1), gap(a.y0, a.y1, b.y0, b.y1));
+}
+
+} // namespace
+
 double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexcept {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;
@@ -24,17 +36,6 @@ double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexc
     const double t = std::clamp(along, 0.0, 1.0);
     return squared(p.x - (a.x + t * dx), p.y - (a.y + t * dy));
 }
-
-/// How far boxes are apart along an axis.
-double gap(double least, double most, double other_least, double other_most) noexcept {
-    return std::max({other_least - most, 0.0, least - other_most});
-}
-
-double distance_squared(const Box2& a, const Box2& b) noexcept {
-    return squared(gap(a.x0, a.x1, b.x0, b.x1), gap(a.y0, a.y1, b.y0, b.y1));
-}
-
-} // namespace
 
 EdgeTree::EdgeTree(const Layer& layer) {
     edges_.reserve(layer.points.size());
@@ -98,9 +99,26 @@ double EdgeTree::distance_squared(const Point2& p, double enough) const {
     const Box2 own = Box2::of(p);
     if (!empty())
         search(
-            0, enough, [&](const Box2& box) { return lamella::distance_squared(own, box); },
+            0, enough, [&](const Box2& box) { return apart_squared(own, box); },
             [&](const Edge& edge) { return lamella::distance_squared(p, edge.a, edge.b); }, best);
     return best;
+}
+
+std::pair<Point2, Point2> EdgeTree::nearest(const Point2& p) const {
+    assert(!empty());
+    double best = far_away;
+    std::pair<Point2, Point2> nearest;
+    const Box2 own = Box2::of(p);
+    search(
+        0, 0, [&](const Box2& box) { return apart_squared(own, box); },
+        [&](const Edge& edge) {
+            const double squared = lamella::distance_squared(p, edge.a, edge.b);
+            if (squared < best)
+                nearest = {edge.a, edge.b};
+            return squared;
+        },
+        best);
+    return nearest;
 }
 
 double EdgeTree::distance_squared(const Segment& s, double enough) const {
@@ -122,9 +140,7 @@ double EdgeTree::distance_squared(const Segment& s, double enough) const {
     if (!empty())
         search(
             0, enough,
-            [&](const Box2& box) {
-                return std::max(lamella::distance_squared(own, box), squared_from_line(box));
-            },
+            [&](const Box2& box) { return std::max(apart_squared(own, box), squared_from_line(box)); },
             [&](const Edge& edge) {
                 return meet(s, segment_between(edge.a, edge.b))
                            ? 0

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -26,6 +27,9 @@ class EdgeTree {
     [[nodiscard]] double distance_squared(const Point2& p, double enough) const;
     /// The same from all of a segment: 0 where it meets an edge.
     [[nodiscard]] double distance_squared(const Segment& s, double enough) const;
+
+    /// The nearest edge, from end to end. There is one.
+    [[nodiscard]] std::pair<Point2, Point2> nearest(const Point2& p) const;
 
     /// How often the edges go around p, of rings alone. Exact; of a point on an edge counts what is above it,
     /// or to the right of it. It takes the edges to the right of p that it is beside.
@@ -52,5 +56,8 @@ class EdgeTree {
     std::vector<Edge> edges_;
     std::vector<Node> nodes_;
 };
+
+/// The square of the distance of p from the segment from a to b.
+[[nodiscard]] double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexcept;
 
 } // namespace lamella

@@ -3,6 +3,7 @@
 #include "core/executor.hpp"
 #include "slicing/edge_cut.hpp"
 #include "slicing/ranks.hpp"
+#include "slicing/section_moments.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +12,9 @@ namespace lamella {
 
 namespace {
 
-/// Sums twice the area swept from an origin by the directed cut segments of the triangles [begin, end).
-void add_sections(const Mesh& mesh, const Ranks& ranks, const Point3& origin, std::uint64_t begin,
-                  std::uint64_t end, std::vector<double>& twice) {
+/// Sums what the directed cut segments of the triangles [begin, end) sweep from an origin.
+void add_sections(const Mesh& mesh, const Ranks& ranks, const Point2& origin, std::uint64_t begin,
+                  std::uint64_t end, std::vector<AreaMoments>& sections) {
     const bool above = ranks.rule() == PlaneRule::section_above;
     for (std::uint64_t i = begin; i < end; ++i) {
         const Triangle3 corner = mesh.triangle(i);
@@ -38,38 +39,45 @@ void add_sections(const Mesh& mesh, const Ranks& ranks, const Point3& origin, st
                 const EdgeCut edge = above ? EdgeCut(low, high) : EdgeCut(high, low);
                 (starts_above ? from : to) = edge.at(ranks.z(plane));
             }
-            twice[plane] += (from.x - origin.x) * (to.y - origin.y) - (from.y - origin.y) * (to.x - origin.x);
+            sections[plane].add_edge(from, to, origin);
         }
     }
 }
 
 } // namespace
 
-std::vector<double> section_areas(const Mesh& mesh, const Plan& plan, const Execution& execution) {
+std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan, const Point2& origin,
+                                         const Execution& execution) {
     const Ranks ranks(plan);
     Executor executor(execution);
-    const Box3 box = bounding_box(mesh, execution);
-    std::vector<double> areas(ranks.count(), 0.0);
-    if (box.empty())
-        return areas;
-    // About the middle of the part, so that a part far from the origin loses no digits.
-    const Point3 origin{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, 0};
-
+    std::vector<AreaMoments> sections(ranks.count());
     // A fixed number of pieces, added up in their order: the same bits for any number of threads.
     const std::uint64_t pieces =
-        std::clamp<std::uint64_t>((std::uint64_t{1} << 22) / (areas.size() + 1), 1, 64);
+        std::clamp<std::uint64_t>((std::uint64_t{1} << 22) / (sections.size() + 1), 1, 64);
     const std::uint64_t n = mesh.size();
     const std::uint64_t piece = n / pieces + 1;
-    std::vector<std::vector<double>> parts(pieces);
+    std::vector<std::vector<AreaMoments>> parts(pieces);
     executor.for_chunks(pieces, 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t p = begin; p < end; ++p) {
-            parts[p].assign(ranks.count(), 0.0);
+            parts[p].resize(ranks.count());
             add_sections(mesh, ranks, origin, std::min(n, p * piece), std::min(n, (p + 1) * piece), parts[p]);
         }
     });
-    for (const std::vector<double>& part : parts)
-        for (std::size_t i = 0; i < areas.size(); ++i)
-            areas[i] += part[i] / 2;
+    for (const std::vector<AreaMoments>& part : parts)
+        for (std::size_t i = 0; i < sections.size(); ++i)
+            sections[i].add(part[i]);
+    return sections;
+}
+
+std::vector<double> section_areas(const Mesh& mesh, const Plan& plan, const Execution& execution) {
+    const Box3 box = bounding_box(mesh, execution);
+    if (box.empty())
+        return std::vector<double>(plan.layers.size());
+    // About the middle of the part, so that a part far from the origin loses no digits.
+    const Point2 origin{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
+    std::vector<double> areas;
+    for (const AreaMoments& section : section_moments(mesh, plan, origin, execution))
+        areas.push_back(section.area_mm2);
     return areas;
 }
 

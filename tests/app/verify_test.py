@@ -5,7 +5,7 @@ import json
 from program import ProgramTest, main
 
 KEYS = ["path", "ok", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
-        "volume_mm3", "max_area_error_mm2", "heights"]
+        "volume_mm3", "max_area_error_mm2", "displaced", "heights"]
 
 
 def ascii_cli(*polylines):

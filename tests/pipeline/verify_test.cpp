@@ -173,7 +173,31 @@ TEST(Verify, ComparesNoAreaOfLayersWithOpenChains) {
     const Verification found = verify(LayerStack{at(0, layer_of({}, {{{0, 0}, {4, 0}}}))}, {.mesh = mesh});
     EXPECT_FALSE(found.ok());
     EXPECT_TRUE(found.areas_agree);
-    EXPECT_EQ(found.max_area_error_mm2, 0);
+    EXPECT_FALSE(found.max_area_error_mm2);
+    EXPECT_EQ(found.findings.back(), "1 layer with open contours was not compared with the mesh");
+}
+
+TEST(Verify, ComparesWhereLayersLieWithTheMesh) {
+    const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
+    const auto moved_by = [&](double dx, double dy) {
+        const LayerStack layers{at(0, layer_of({rectangle(0, 0, 4, 4)})),
+                                at(1, layer_of({rectangle(dx, dy, 4 + dx, 4 + dy)}))};
+        return verify(layers, {.mesh = mesh});
+    };
+    EXPECT_TRUE(moved_by(0, 0).ok());
+    for (const Verification& found : {moved_by(1e-6, 0), moved_by(0, 0.5), moved_by(-500, 20)}) {
+        EXPECT_FALSE(found.ok());
+        EXPECT_TRUE(found.areas_agree);
+        EXPECT_EQ(found.displaced, 1U);
+    }
+    EXPECT_EQ(
+        moved_by(0.5, -1).findings,
+        std::vector<std::string>{"1 layer lies elsewhere than the mesh's section, the first is layer 1 (z "
+                                 "1.5 mm): its centre is at (2.5, 1) mm instead of (2, 2)"});
+    // What a format rounds is granted.
+    const LayerStack rounded{at(0, layer_of({rectangle(0.0004, 0, 4.0004, 4)}))};
+    EXPECT_FALSE(verify(rounded, {.mesh = mesh}).ok());
+    EXPECT_TRUE(verify(rounded, {.mesh = mesh, .rounding = {.step_mm = 0.001}}).ok());
 }
 
 TEST(Verify, ReportsProgressToTheEndAndCanBeCancelled) {

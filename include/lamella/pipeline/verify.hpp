@@ -21,7 +21,8 @@
 namespace LAMELLA_API lamella {
 
 struct VerifyOptions {
-    /// Compare each layer's area with the section of this mesh at the layer's z. It should be closed.
+    /// Compare each layer's area, and its centre, with the section of this mesh at the layer's z. It should
+    /// be closed.
     std::optional<Mesh> mesh = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
@@ -65,11 +66,14 @@ struct Verification {
     std::uint64_t overlapping = 0;
     double volume_mm3 = 0; ///< sum of area times thickness
     /// Largest difference between a layer's area and the mesh's section, layers with open chains left out;
-    /// with VerifyOptions::mesh.
+    /// with VerifyOptions::mesh, where there are others.
     std::optional<double> max_area_error_mm2;
     /// Whether each area lies within its tolerance: the rounding of the format and of sums, times the
     /// perimeter.
     bool areas_agree = true;
+    /// Layers of the right area that lie elsewhere than the mesh's section, as the centres of both tell; with
+    /// VerifyOptions::mesh. One that is turned about its centre is not told.
+    std::uint64_t displaced = 0;
     /// With VerifyOptions::mesh, where there are layers. Layers of a part of the mesh's height are no error,
     /// gaps between them are.
     std::optional<CoveredHeights> heights = {};
@@ -77,7 +81,7 @@ struct Verification {
     std::vector<std::string> findings;
 
     [[nodiscard]] bool ok() const noexcept {
-        return open_chains == 0 && crossings == 0 && misoriented == 0 && areas_agree &&
+        return open_chains == 0 && crossings == 0 && misoriented == 0 && areas_agree && displaced == 0 &&
                (!heights || heights->gaps == 0);
     }
 };

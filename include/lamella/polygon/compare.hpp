@@ -16,15 +16,19 @@ namespace LAMELLA_API lamella {
 struct LayerDifference {
     /// The same contours, bit for bit: everything below is 0.
     bool same = false;
-    /// The largest way from a corner of one layer to the nearest contour of the other (Hausdorff distance, of
-    /// corners), and where it begins. Infinite where one layer has contours and the other has none.
+    /// The largest way from a point of one layer's contours to the nearest contour of the other (Hausdorff
+    /// distance), to a thousandth, and where it begins. Infinite where one layer has contours and the other
+    /// has none.
     double distance_mm = 0;
     Point2 where = {};
     LayerMeasure first = {}; ///< of both layers, unless they are the same
     LayerMeasure second = {};
+    /// How much area would have to move from end to end of both layers for such different centres.
+    double displaced_mm2 = 0;
 
-    /// No point is further away than the tolerance, there are as many open chains, and areas differ by no
-    /// more than contours moved by it explain: a ring that runs the other way round is told by its area.
+    /// No point is further away than the tolerance, there are as many open chains, and areas and their
+    /// centres differ by no more than contours moved by it explain: by these, rings are told that run the
+    /// other way round.
     [[nodiscard]] bool within(double tolerance_mm) const noexcept;
 };
 
@@ -59,7 +63,8 @@ struct StackComparison {
 /// rounding of both formats explains, or `tolerance_mm` where given, and neither is nearer to another layer;
 /// one without contours and hatch lines needs no partner. Hatch lines and heights of layers that belong
 /// together do not count: see `compare_files`. `tolerance_mm` is for LayerDifference::within; unless given,
-/// it is what the rounding of both formats explains.
+/// it is what the rounding of both formats explains. Distances of layers that are below it are those of
+/// corners.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                                       std::optional<double> tolerance_mm = {});
 
