@@ -315,7 +315,8 @@ def test_verification_finds_what_is_wrong(program, rook, tmp_path):
 
     moved = lamella.Stack([lamella.Layer([ring + (i % 2) for ring in layer], layer.z, layer.bottom, layer.top)
                            for i, layer in enumerate(lamella.slice(box_arrays(), 1))])
-    assert lamella.verify(moved, box_arrays()).ok
+    found = lamella.verify(moved, box_arrays())
+    assert (found.ok, found.areas_agree, found.displaced) == (False, True, len(moved) // 2)
     grown = lamella.Stack([lamella.Layer([ring * 1.01 for ring in layer], layer.z, layer.bottom, layer.top)
                            for layer in moved])
     found = lamella.verify(grown, box_arrays())
