@@ -185,8 +185,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
     const LayerFile second = read_layers(arguments.inputs[1], arguments.limits.of_layers(), execution);
     for (const LayerFile* file : {&first, &second})
-        for (const std::string& warning : file->warnings)
-            context.messages.warn(warning);
+        context.messages.warn_of(file->path, file->warnings);
 
     const FileComparison files = compare_files(first, second, arguments.tolerance);
     const StackComparison& found = files.layers;

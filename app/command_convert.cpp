@@ -49,8 +49,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
-    for (const std::string& warning : file.warnings)
-        context.messages.warn(warning);
+    context.messages.warn_of(file.path, file.warnings);
     check_steps(file, arguments.making.steps());
     LayerChanges changes;
     for (LayerPart& part : file.parts) {

@@ -47,8 +47,7 @@ struct InfoArguments {
 
 int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
               const Execution& execution) {
-    for (const std::string& warning : file.warnings)
-        context.messages.warn(warning);
+    context.messages.warn_of(file.path, file.warnings);
     const Plate plate =
         load_plate({.path = file.path, .unit_mm = arguments.placement.unit_mm()}, file, execution);
     const IndexedMesh mesh = weld(joined(plate, execution), execution);
@@ -173,8 +172,7 @@ Json layers_json(const LayerFile& file, const Figures& figures) {
 }
 
 int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context) {
-    for (const std::string& warning : file.warnings)
-        context.messages.warn(warning);
+    context.messages.warn_of(file.path, file.warnings);
     if (arguments.placement.given())
         throw Error(ErrorKind::usage,
                     fmt::format("{}: --unit is for meshes; a slice file knows its unit", file.path));

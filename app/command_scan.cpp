@@ -143,8 +143,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         check_writable(arguments.stats);
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
-    for (const std::string& warning : file.warnings)
-        context.messages.warn(warning);
+    context.messages.warn_of(file.path, file.warnings);
     for (const std::string& lost : losses(file)) {
         if (arguments.strict)
             throw Error(ErrorKind::defect, lost);

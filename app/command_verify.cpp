@@ -159,8 +159,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
-    for (const std::string& warning : file.warnings)
-        context.messages.warn(warning);
+    context.messages.warn_of(file.path, file.warnings);
     std::optional<ScanStrategy> strategy;
     if (arguments.scan || arguments.scanning.given())
         strategy = arguments.scanning.strategy();
@@ -176,8 +175,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         const std::array inputs{
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
         const Plate plate = load_plate(inputs, arguments.limits.of_meshes(), execution);
-        for (const std::string& warning : plate.files.front().warnings)
-            context.messages.warn(warning);
+        context.messages.warn_of(arguments.mesh, plate.files.front().warnings);
         mesh = joined(plate, execution);
     }
 

@@ -184,7 +184,7 @@ Figures mesh_figures(const Inspection& found) {
         count("vertices", found.vertices, "vertices"),
         {"bbox", box_json(found.box), "size", size_text(found.box)},
         {"place", {}, "from", fmt::format("{} to {}", point_text(found.box.min), point_text(found.box.max))},
-        {"volume_mm3", found.volume_mm3, "volume",
+        {"volume_mm3", closed ? Json(found.volume_mm3) : Json(), "volume",
          closed ? fmt::format("{} mm3", brief(found.volume_mm3)) : "none: the surface is not closed"},
         {"area_mm2", found.area_mm2, "area", fmt::format("{} mm2", brief(found.area_mm2))},
         {"closed", closed, "closed", closed ? "yes" : "no"},

@@ -72,6 +72,11 @@ void Messages::result(std::string_view text) {
     print(text);
 }
 
+void Messages::warn_of(const std::string& path, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+        warn(input_name(path) + ": " + warning);
+}
+
 void Messages::warn(const std::string& text) {
     if (is_silent())
         return;

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lamella::app {
 
@@ -51,6 +52,8 @@ class Messages {
     void result(std::string_view text);
     /// "lamella: warning: ...", on one line.
     void warn(const std::string& text);
+    /// Those of a file: each names it.
+    void warn_of(const std::string& path, const std::vector<std::string>& warnings);
     /// "lamella: error: ...", on one line.
     void error(const std::string& text, int exit_code);
     /// What is no result here because standard output carries data. Programs are spared it.
