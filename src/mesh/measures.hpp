@@ -4,6 +4,7 @@
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lamella {
@@ -23,6 +24,13 @@ namespace lamella {
 
 [[nodiscard]] inline Point3 middle(const Triangle3& t) noexcept {
     return {(t[0].x + t[1].x + t[2].x) / 3, (t[0].y + t[1].y + t[2].y) / 3, (t[0].z + t[1].z + t[2].z) / 3};
+}
+
+/// The same corners, the lexicographically smallest one first: what is computed from these depends neither on
+/// which corner came first nor on the way round.
+[[nodiscard]] inline Triangle3 in_order(Triangle3 t) noexcept {
+    std::sort(t.begin(), t.end());
+    return t;
 }
 
 [[nodiscard]] inline double distance(const Point3& a, const Point3& b) noexcept {

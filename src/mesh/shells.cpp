@@ -76,22 +76,23 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
                         const std::vector<Box3>& boxes, const std::vector<bool>& asked,
                         const std::function<void(const Enclosure&)>& visit) {
     std::vector<double> largest(shells.size(), -1);
-    std::vector<Point3> middles(shells.size());
+    std::vector<Triangle3> first(shells.size()); // of those
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::uint32_t shell = shells.of_triangle[i];
         if (shell == no_shell || !asked[shell])
             continue;
-        const Triangle3 t = corners(mesh, i);
-        if (const double size = area(t); size > largest[shell]) {
+        const Triangle3 t = in_order(corners(mesh, i));
+        if (const double size = area(t);
+            size > largest[shell] || (size == largest[shell] && t < first[shell])) {
             largest[shell] = size;
-            middles[shell] = middle(t);
+            first[shell] = t;
         }
     }
     std::vector<Point3> points;
     std::vector<std::uint32_t> shell_of_point;
     for (std::uint32_t s = 0; s < shells.size(); ++s)
         if (asked[s]) {
-            points.push_back(middles[s]);
+            points.push_back(middle(first[s]));
             shell_of_point.push_back(s);
         }
     const auto holds = [](const Box3& box, const Point3& p) {

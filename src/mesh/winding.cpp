@@ -33,11 +33,13 @@ int projected_winding(const std::array<Point3, 3>& t, const Point3& p) {
 }
 
 /// For a triangle whose projection holds p.
-bool above(const std::array<Point3, 3>& t, const Point3& p) {
-    if (std::min({t[0].z, t[1].z, t[2].z}) > p.z)
+bool above(const Triangle3& triangle, const Point3& p) {
+    const auto [low, high] = std::minmax({triangle[0].z, triangle[1].z, triangle[2].z});
+    if (low > p.z)
         return true;
-    if (std::max({t[0].z, t[1].z, t[2].z}) <= p.z)
+    if (high <= p.z)
         return false;
+    const Triangle3 t = in_order(triangle);
     const Point3 n = normal(t);
     const Point3 w{p.x - t[0].x, p.y - t[0].y, p.z - t[0].z};
     const double side = w.x * n.x + w.y * n.y + w.z * n.z;
