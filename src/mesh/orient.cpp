@@ -1,24 +1,36 @@
-// Consistent orientation, in three steps:
+// Consistent orientation, in four steps:
 //
 //     flood   from the first triangle of each patch over edges of two triangles, noting which triangles run
 //             against it; the smaller of both sets is turned
-//     close   which patches are closed now, and what is around the edges where others are not
-//     turn    patches as a whole, by their volumes and by what they lie in
+//     fit     patches over edges of more triangles: those that balance at such an edge stay as they are to
+//     one
+//             another, and two that would balance if one of them were turned are tied so
+//     close   which patches tied to one another are closed now, and what is around the edges where others are
+//     not turn    them as a whole, by their volumes and by what they lie in
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/repair.hpp"
 
 #include "core/executor.hpp"
+#include "mesh/box_tree.hpp"
+#include "mesh/edge_survey.hpp"
 #include "mesh/edge_uses.hpp"
 #include "mesh/folds.hpp"
 #include "mesh/measures.hpp"
 #include "mesh/shells.hpp"
+#include "mesh/triangle_contact.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 
 namespace lamella {
@@ -68,14 +80,11 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
             continue;
         const auto patch = static_cast<std::uint32_t>(shells.first.size());
         shells.first.push_back(start);
-        shells.closed.push_back(true);
         patches.one_sided.push_back(false);
         members.assign(1, start);
         shells.of_triangle[start] = patch;
-        std::size_t turned = 0;
         for (std::size_t next = 0; next < members.size(); ++next) {
             const std::uint32_t i = members[next];
-            turned += patches.turned[i] ? 1 : 0;
             for (std::size_t side = 0; side < 3; ++side) {
                 const std::uint32_t neighbour = neighbours[std::size_t{3} * i + side];
                 if (neighbour == no_neighbour)
@@ -91,69 +100,418 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
                 }
             }
         }
-        if (2 * turned > members.size())
+        if (patches.one_sided[patch])
             for (const std::uint32_t i : members)
-                patches.turned[i] = !patches.turned[i];
+                patches.turned[i] = false;
     }
     return patches;
 }
 
-/// Marks patches that are not closed; the box around the ends of their open edges for each.
-std::vector<Box3> find_open_edges(Executor& executor, const IndexedMesh& mesh, Patches& patches) {
-    struct OpenEdge {
-        std::uint32_t patch;
-        std::uint32_t low;
-        std::uint32_t high;
-    };
-    std::vector<std::vector<OpenEdge>> found(executor.workers());
-    for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
-        if (uses.size() == 2 && uses[0].upwards() != uses[1].upwards())
-            return;
-        const auto [low, high] = ends_of(mesh, uses[0]);
-        std::vector<std::pair<std::uint32_t, int>> balance; // by patch
-        for (const EdgeUse& use : uses)
-            balance.emplace_back(patches.shells.of_triangle[use.triangle], use.upwards() ? 1 : -1);
-        std::sort(balance.begin(), balance.end());
-        for (std::size_t begin = 0; begin < balance.size();) {
-            int sum = 0;
-            std::size_t end = begin;
-            for (; end < balance.size() && balance[end].first == balance[begin].first; ++end)
-                sum += balance[end].second;
-            if (sum != 0)
-                found[worker].push_back({balance[begin].first, low, high});
-            begin = end;
-        }
+/// Of a shell of which just half is turned.
+struct TiedTriangle {
+    std::uint32_t shell;
+    Triangle3 corners; ///< the lexicographically smallest first
+    int way;           ///< 1 where it runs through them in this order, or -1
+};
+
+/// Of the shells asked for, turns back what was turned, and the rest instead, where more than half is turned.
+/// A tie is decided by the way round of the lexicographically smallest triangle that is not there the other
+/// way, too: so the order of triangles does not matter, nor which corner of one comes first.
+void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, const std::vector<bool>& asked,
+                       std::vector<bool>& turned) {
+    const std::size_t n = mesh.triangles.size();
+    std::vector<std::int64_t> lead(shells.size(), 0);
+    for (std::size_t i = 0; i < n; ++i)
+        if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && asked[s])
+            lead[s] += turned[i] ? 1 : -1;
+    std::vector<TiedTriangle> tied;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::uint32_t s = shells.of_triangle[i];
+        if (s == no_shell || !asked[s] || lead[s] != 0)
+            continue;
+        const Triangle3 t = corners(mesh, i);
+        const bool odd = (t[1] < t[0]) != ((t[2] < t[0]) != (t[2] < t[1]));
+        tied.push_back({s, in_order(t), odd == turned[i] ? 1 : -1});
+    }
+    std::sort(tied.begin(), tied.end(), [](const TiedTriangle& a, const TiedTriangle& b) {
+        return std::tie(a.shell, a.corners) < std::tie(b.shell, b.corners);
     });
-    std::vector<Box3> boxes(patches.shells.size());
-    for (const std::vector<OpenEdge>& part : found)
-        for (const OpenEdge& edge : part) {
-            patches.shells.closed[edge.patch] = false;
-            boxes[edge.patch].add(mesh.vertices[edge.low]);
-            boxes[edge.patch].add(mesh.vertices[edge.high]);
-        }
-    return boxes;
+    for (std::size_t begin = 0; begin < tied.size();) {
+        const std::uint32_t s = tied[begin].shell;
+        const Triangle3& first = tied[begin].corners;
+        int way = 0;
+        for (; begin < tied.size() && tied[begin].shell == s && tied[begin].corners == first; ++begin)
+            way += tied[begin].way;
+        if (lead[s] == 0)
+            lead[s] = -way;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+        if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && lead[s] > 0)
+            turned[i] = !turned[i];
 }
 
-/// Signed volumes; of an open patch as if fans from the middle of the box around its open edges closed it.
-std::vector<double> patch_volumes(const IndexedMesh& mesh, const Shells& patches,
-                                  const std::vector<Box3>& open) {
-    std::vector<Point3> origins(patches.size());
-    for (std::size_t p = 0; p < patches.size(); ++p)
-        origins[p] = open[p].empty() ? mesh.vertices[mesh.triangles[patches.first[p]][0]]
-                                     : Point3{open[p].min.x / 2 + open[p].max.x / 2,
-                                              open[p].min.y / 2 + open[p].max.y / 2,
-                                              open[p].min.z / 2 + open[p].max.z / 2};
-    std::vector<double> volumes(patches.size(), 0);
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-        if (const std::uint32_t p = patches.of_triangle[i]; p != no_shell)
-            volumes[p] += six_volumes(corners(mesh, i), origins[p]) / 6;
-    return volumes;
+using Balance = std::pair<std::uint32_t, int>;
+
+/// Sorts by the first and adds up the second of equal ones; leaves out those of 0.
+void add_up(std::vector<Balance>& balances) {
+    std::sort(balances.begin(), balances.end());
+    std::size_t kept = 0;
+    for (std::size_t begin = 0; begin < balances.size();) {
+        Balance sum{balances[begin].first, 0};
+        for (; begin < balances.size() && balances[begin].first == sum.first; ++begin)
+            sum.second += balances[begin].second;
+        if (sum.second != 0)
+            balances[kept++] = sum;
+    }
+    balances.resize(kept);
+}
+
+/// A patch uses an edge so many times oftener upwards than downwards.
+struct UnevenUse {
+    VertexPair edge;
+    std::uint32_t patch;
+    int balance; ///< not 0
+};
+
+/// Those of each edge together; without one-sided patches.
+std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& mesh, const Patches& patches) {
+    std::vector<std::vector<UnevenUse>> found(executor.workers());
+    for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
+        const auto upwards = [&](const EdgeUse& use) {
+            return use.upwards() != patches.turned[use.triangle];
+        };
+        if (uses.size() == 2 && upwards(uses[0]) != upwards(uses[1]))
+            return;
+        std::vector<Balance> patches_here;
+        for (const EdgeUse& use : uses)
+            patches_here.emplace_back(patches.shells.of_triangle[use.triangle], upwards(use) ? 1 : -1);
+        add_up(patches_here);
+        for (const auto& [patch, balance] : patches_here)
+            if (!patches.one_sided[patch])
+                found[worker].push_back({ends_of(mesh, uses[0]), patch, balance});
+    });
+    std::vector<UnevenUse> all;
+    for (std::vector<UnevenUse>& part : found) {
+        all.insert(all.end(), part.begin(), part.end());
+        part = {};
+    }
+    return all;
+}
+
+/// visit(uses) for those of each edge.
+template <class Visit>
+void for_each_uneven_edge(const std::vector<UnevenUse>& uneven, const Visit& visit) {
+    for (std::size_t begin = 0; begin < uneven.size();) {
+        std::size_t end = begin + 1;
+        while (end < uneven.size() && uneven[end].edge == uneven[begin].edge)
+            ++end;
+        visit(std::span(uneven).subspan(begin, end - begin));
+        begin = end;
+    }
+}
+
+/// Patches that are tied to one another, each the way round of the first of them or the other way.
+class Ties {
+  public:
+    struct Place {
+        std::uint32_t first; ///< names those tied to one another
+        bool against;        ///< turned, compared with the first
+    };
+
+    explicit Ties(std::size_t patches) : next_(patches), against_(patches, false) {
+        std::iota(next_.begin(), next_.end(), 0U);
+    }
+
+    [[nodiscard]] Place place(std::uint32_t patch) {
+        Place end{patch, false};
+        while (next_[end.first] != end.first)
+            end = {next_[end.first], end.against != against_[end.first]};
+        bool against = end.against;
+        while (patch != end.first) { // the way is shorter from now on
+            const bool step = against_[patch];
+            against_[patch] = against;
+            against = against != step;
+            patch = std::exchange(next_[patch], end.first);
+        }
+        return end;
+    }
+
+    /// False where they are tied the other way already.
+    bool tie(std::uint32_t a, std::uint32_t b, bool against) {
+        const Place at_a = place(a);
+        const Place at_b = place(b);
+        const bool turn = (at_a.against != at_b.against) != against;
+        if (at_a.first == at_b.first)
+            return !turn;
+        next_[at_a.first] = at_b.first;
+        against_[at_a.first] = turn;
+        return true;
+    }
+
+  private:
+    std::vector<std::uint32_t> next_;
+    std::vector<bool> against_;
+};
+
+/// Of an edge, by the first of those tied to one another, as it runs.
+std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, Ties& ties) {
+    std::vector<Balance> all;
+    for (const UnevenUse& use : uses) {
+        const Ties::Place at = ties.place(use.patch);
+        all.emplace_back(at.first, at.against ? -use.balance : use.balance);
+    }
+    add_up(all);
+    return all;
+}
+
+/// Ties the patches at an edge that balances as they are; and where just two, or two such groups, would
+/// balance if one of them were turned, ties them so. Where such turns contradict one another, none of those
+/// that hang together is made.
+Ties fit(std::size_t patches, const std::vector<UnevenUse>& uneven) {
+    Ties ties(patches);
+    for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {
+        int sum = 0;
+        for (const UnevenUse& use : uses)
+            sum += use.balance;
+        if (sum == 0)
+            for (const UnevenUse& use : uses)
+                (void)ties.tie(use.patch, uses[0].patch, false);
+    });
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> turns;
+    for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {
+        const std::vector<Balance> here = tied_balances(uses, ties);
+        if (here.size() == 2 && here[0].second == here[1].second)
+            turns.emplace_back(here[0].first, here[1].first);
+    });
+    if (turns.empty())
+        return ties;
+    Ties together(patches);
+    std::vector<std::uint32_t> contradicted;
+    for (const auto& [a, b] : turns)
+        if (!together.tie(a, b, true))
+            contradicted.push_back(a);
+    std::vector<bool> refused(patches, false);
+    for (const std::uint32_t a : contradicted)
+        refused[together.place(a).first] = true;
+    for (const auto& [a, b] : turns)
+        if (!refused[together.place(a).first])
+            (void)ties.tie(a, b, true);
+    return ties;
+}
+
+/// What is tied together, as shells; all of them closed so far.
+Shells tied_shells(const Shells& patches, Ties& ties) {
+    Shells shells;
+    shells.of_triangle = PageArray<std::uint32_t>(patches.of_triangle.size());
+    std::vector<std::uint32_t> number(patches.size(), no_shell);
+    for (std::size_t i = 0; i < patches.of_triangle.size(); ++i) {
+        shells.of_triangle[i] = no_shell;
+        if (patches.of_triangle[i] == no_shell)
+            continue;
+        std::uint32_t& shell = number[ties.place(patches.of_triangle[i]).first];
+        if (shell == no_shell) {
+            shell = static_cast<std::uint32_t>(shells.size());
+            shells.first.push_back(static_cast<std::uint32_t>(i));
+        }
+        shells.of_triangle[i] = shell;
+    }
+    shells.closed.assign(shells.size(), true);
+    return shells;
+}
+
+Point3 middle(const Box3& box) noexcept {
+    return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
+}
+
+/// How much a shell holds; an open one as if fans from the middle of the box around its open edges closed it.
+struct Content {
+    double six_volumes = 0;
+    double rounding = 0; ///< of that: times the machine's epsilon, no more
+    double area = 0;
+    double fans = 0; ///< their area
+
+    /// Which sign the volume has is certain, and mostly by what is there. (Not by more than half of it: a box
+    /// four times as wide as high, without a lid, would have just that, and rounding the last word.)
+    [[nodiscard]] bool certain() const noexcept {
+        return std::abs(six_volumes) > std::numeric_limits<double>::epsilon() * rounding &&
+               fans < 0.45 * area;
+    }
+};
+
+/// Marks shells that are not closed.
+std::vector<Content> measure_shells(const IndexedMesh& mesh, const std::vector<Box3>& boxes,
+                                    const std::vector<UnevenUse>& uneven, const Shells& patches, Ties& ties,
+                                    Shells& shells) {
+    struct OpenEdge {
+        std::uint32_t shell;
+        int times;
+        VertexPair ends;
+    };
+    std::vector<OpenEdge> open;
+    for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {
+        for (const Balance& balance : tied_balances(uses, ties))
+            open.push_back(
+                {shells.of_triangle[patches.first[balance.first]], std::abs(balance.second), uses[0].edge});
+    });
+    std::vector<Box3> around(shells.size());
+    for (const OpenEdge& edge : open) {
+        shells.closed[edge.shell] = false;
+        around[edge.shell].add(mesh.vertices[edge.ends.first]);
+        around[edge.shell].add(mesh.vertices[edge.ends.second]);
+    }
+    std::vector<Point3> origins;
+    for (std::size_t s = 0; s < shells.size(); ++s)
+        origins.push_back(middle(shells.closed[s] ? boxes[s] : around[s]));
+
+    std::vector<Content> contents(shells.size());
+    std::vector<double> additions(shells.size(), 32);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const std::uint32_t s = shells.of_triangle[i];
+        if (s == no_shell)
+            continue;
+        const Triangle3 t = corners(mesh, i);
+        const Point3 n = normal(t);
+        const Point3 w{t[0].x - origins[s].x, t[0].y - origins[s].y, t[0].z - origins[s].z};
+        contents[s].six_volumes += w.x * n.x + w.y * n.y + w.z * n.z;
+        contents[s].rounding += distance(t[0], origins[s]) * distance(t[0], t[1]) * distance(t[0], t[2]);
+        contents[s].area += area(t);
+        ++additions[s];
+    }
+    for (const OpenEdge& edge : open)
+        contents[edge.shell].fans +=
+            edge.times *
+            area({mesh.vertices[edge.ends.first], mesh.vertices[edge.ends.second], origins[edge.shell]});
+    for (std::size_t s = 0; s < shells.size(); ++s)
+        contents[s].rounding *= additions[s];
+    return contents;
 }
 
 bool holds(const Box3& outer, const Box3& inner) noexcept {
     Box3 both = outer;
     both.add(inner);
     return both == outer;
+}
+
+using ShellPair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Of the involved shells those that have points in common and one of which has its box in that of the other,
+/// which is closed: by (inner, outer), true where triangles cross. What they share by a vertex counts, too.
+std::map<ShellPair, bool> find_contacts(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
+                                        const std::vector<Box3>& boxes, const std::vector<bool>& involved) {
+    Box3 box;
+    for (std::size_t s = 0; s < shells.size(); ++s)
+        if (involved[s])
+            box.add(boxes[s]);
+    const BoxTree tree(executor, mesh, box, [&](std::uint32_t i) {
+        const std::uint32_t s = shells.of_triangle[i];
+        return s != no_shell && involved[s] && !flat(corners(mesh, i));
+    });
+    std::vector<std::map<ShellPair, bool>> found(executor.workers());
+    const auto compare = [&](std::uint32_t a, std::uint32_t b, unsigned worker) {
+        ShellPair pair{shells.of_triangle[a], shells.of_triangle[b]};
+        if (pair.first == pair.second)
+            return;
+        const auto may_lie = [&](std::uint32_t inner, std::uint32_t outer) {
+            return shells.closed[outer] && holds(boxes[outer], boxes[inner]);
+        };
+        const bool first = may_lie(pair.first, pair.second);
+        const bool second = may_lie(pair.second, pair.first);
+        if (!first && !second)
+            return;
+        const std::optional<MeetingKind> kind =
+            contact({corners(mesh, a), {0, 1, 2}}, {corners(mesh, b), {3, 4, 5}});
+        if (!kind)
+            return;
+        if (first)
+            found[worker][pair] |= *kind == MeetingKind::crossing;
+        if (second)
+            found[worker][{pair.second, pair.first}] |= *kind == MeetingKind::crossing;
+    };
+    executor.for_chunks(tree.leaves(), 256, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        for (std::size_t leaf = begin; leaf < end && !executor.stopping(); ++leaf)
+            tree.close_to_leaf(leaf, [&](std::size_t place_a, std::size_t place_b) {
+                compare(tree.triangle(place_a), tree.triangle(place_b), worker);
+            });
+    });
+    executor.check_cancelled();
+    std::map<ShellPair, bool> all;
+    for (const std::map<ShellPair, bool>& part : found)
+        for (const auto& [pair, crossing] : part)
+            all[pair] |= crossing;
+    return all;
+}
+
+/// Which way a shell is to run.
+enum class Sense : std::uint8_t { as_it_is, outward, inward };
+
+/// Of the shells asked for.
+std::vector<Sense> find_senses(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
+                               const std::vector<Box3>& boxes, const std::vector<bool>& asked) {
+    const std::size_t count = shells.size();
+    std::vector<std::uint32_t> depth(count, 0);
+    std::vector<bool> involved(count, false);
+    bool any = false;
+    const auto for_each_closed = [&](const std::vector<bool>& inner, const auto& visit) {
+        for_each_enclosure(executor, mesh, shells, boxes, inner, [&](const Enclosure& enclosure) {
+            if (shells.closed[enclosure.encloser] && holds(boxes[enclosure.encloser], boxes[enclosure.shell]))
+                visit(enclosure.shell, enclosure.encloser);
+        });
+    };
+    if (count > 1)
+        for_each_closed(asked, [&](std::uint32_t shell, std::uint32_t encloser) {
+            ++depth[shell];
+            involved[shell] = involved[encloser] = any = true;
+        });
+    // What has been seen of a shell was one point of it. Where surfaces meet, others may lie elsewhere.
+    std::vector<bool> touching(count, false);
+    if (any) {
+        const std::map<ShellPair, bool> contacts = find_contacts(executor, mesh, shells, boxes, involved);
+        std::vector<bool> again(count, false);
+        for (const auto& contact : contacts)
+            again[contact.first.first] = asked[contact.first.first];
+        if (!contacts.empty())
+            for_each_closed(again, [&](std::uint32_t shell, std::uint32_t encloser) {
+                const auto contact = contacts.find({shell, encloser});
+                if (contact == contacts.end())
+                    return;
+                if (contact->second)
+                    --depth[shell];
+                else
+                    touching[shell] = true;
+            });
+    }
+    std::vector<Sense> senses(count, Sense::as_it_is);
+    for (std::size_t s = 0; s < count; ++s)
+        if (asked[s] && !touching[s])
+            senses[s] = depth[s] % 2 != 0 ? Sense::inward : Sense::outward;
+    return senses;
+}
+
+/// Shells as a whole, as far as their volumes are certain.
+void turn_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patches,
+                    const std::vector<UnevenUse>& uneven, Ties& ties, Shells& shells, OrientedMesh& result) {
+    IndexedMesh now = mesh;
+    for (std::size_t i = 0; i < now.triangles.size(); ++i)
+        if (patches.turned[i])
+            std::swap(now.triangles[i][1], now.triangles[i][2]);
+    const std::vector<Box3> boxes = shell_boxes(now, shells);
+    const std::vector<Content> contents = measure_shells(now, boxes, uneven, patches.shells, ties, shells);
+    std::vector<bool> asked;
+    for (const Content& content : contents)
+        asked.push_back(content.certain());
+    for (std::size_t p = 0; p < patches.shells.size(); ++p)
+        if (const std::uint32_t s = shells.of_triangle[patches.shells.first[p]]; patches.one_sided[p])
+            asked[s] = shells.closed[s] = false;
+    const std::vector<Sense> senses = find_senses(executor, now, shells, boxes, asked);
+    const auto turns = [&](std::uint32_t s) {
+        return senses[s] == (contents[s].six_volumes < 0 ? Sense::outward : Sense::inward);
+    };
+    for (std::size_t i = 0; i < now.triangles.size(); ++i)
+        if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && turns(s))
+            patches.turned[i] = !patches.turned[i];
+    for (const std::uint32_t first : patches.shells.first)
+        if (const std::uint32_t s = shells.of_triangle[first]; turns(s))
+            ++(senses[s] == Sense::inward ? result.turned_inward : result.turned_outward);
 }
 
 } // namespace
@@ -164,54 +522,50 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
         throw Error(ErrorKind::limit,
                     fmt::format("cannot orient {} triangles: at most {} can be indexed", n, 0x7fffffff));
     Executor executor(execution);
-    OrientedMesh result;
-    result.mesh = mesh;
     Patches patches = flood(mesh, find_neighbours(executor, mesh));
-    const auto turn = [&](std::size_t i) {
-        std::swap(result.mesh.triangles[i][1], result.mesh.triangles[i][2]);
-    };
-    for (std::size_t i = 0; i < n; ++i)
-        if (patches.turned[i])
-            turn(i);
-
-    const std::vector<Box3> open = find_open_edges(executor, result.mesh, patches);
-    const std::vector<double> volumes = patch_volumes(result.mesh, patches.shells, open);
     const std::size_t count = patches.shells.size();
-    std::vector<std::uint32_t> depth(count, 0);
-    if (count > 1) {
-        const std::vector<Box3> boxes = shell_boxes(result.mesh, patches.shells);
-        for_each_enclosure(executor, result.mesh, patches.shells, boxes, std::vector<bool>(count, true),
-                           [&](const Enclosure& enclosure) {
-                               if (patches.shells.closed[enclosure.encloser] &&
-                                   !patches.one_sided[enclosure.encloser] &&
-                                   holds(boxes[enclosure.encloser], boxes[enclosure.shell]))
-                                   ++depth[enclosure.shell];
-                           });
-    }
-    std::vector<bool> turn_patch(count, false);
-    for (std::size_t p = 0; p < count; ++p) {
-        const bool inward = depth[p] % 2 != 0;
-        result.one_sided_patches += patches.one_sided[p] ? 1 : 0;
-        if (patches.one_sided[p] || volumes[p] == 0 || (volumes[p] < 0) == inward)
-            continue;
-        turn_patch[p] = true;
-        ++(inward ? result.turned_inward : result.turned_outward);
-    }
+    const std::vector<std::uint32_t>& first = patches.shells.first;
+    std::vector<bool>& turned = patches.turned;
+    turn_the_minority(mesh, patches.shells, std::vector<bool>(count, true), turned);
+    std::vector<UnevenUse> uneven = find_uneven_uses(executor, mesh, patches);
+
+    OrientedMesh result;
     result.patches = count;
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::uint32_t p = patches.shells.of_triangle[i];
-        if (p == no_shell)
-            continue;
-        if (turn_patch[p])
-            turn(i);
-        if (patches.turned[i] != turn_patch[p]) {
+    for (std::size_t settled = 0;;) {
+        Ties ties = fit(count, uneven);
+        Shells shells = tied_shells(patches.shells, ties);
+        if (shells.size() == settled)
+            break; // what was turned last made nothing fit that did not before
+        std::vector<bool> before;
+        std::vector<bool> fitted(shells.size(), false);
+        for (std::size_t p = 0; p < count; ++p) {
+            before.push_back(turned[first[p]]);
+            if (ties.place(static_cast<std::uint32_t>(p)).against)
+                fitted[shells.of_triangle[first[p]]] = true;
+        }
+        for (std::size_t i = 0; i < n; ++i)
+            if (const std::uint32_t p = patches.shells.of_triangle[i]; p != no_shell && ties.place(p).against)
+                turned[i] = !turned[i];
+        turn_the_minority(mesh, shells, fitted, turned);
+        if (std::find(fitted.begin(), fitted.end(), true) == fitted.end()) {
+            settled = shells.size();
+            turn_by_volume(executor, mesh, patches, uneven, ties, shells, result);
+        }
+        for (UnevenUse& use : uneven)
+            if (turned[first[use.patch]] != before[use.patch])
+                use.balance = -use.balance;
+    }
+
+    result.one_sided_patches =
+        static_cast<std::uint64_t>(std::count(patches.one_sided.begin(), patches.one_sided.end(), true));
+    result.mesh = mesh;
+    for (std::size_t i = 0; i < n; ++i)
+        if (turned[i]) {
+            std::swap(result.mesh.triangles[i][1], result.mesh.triangles[i][2]);
             ++result.turned_triangles;
             if (result.places.size() < repair_places)
                 result.places.push_back(middle(corners(mesh, i)));
-        } else {
-            result.mesh.triangles[i] = mesh.triangles[i]; // turned twice: the same corner first again
         }
-    }
     return result;
 }
 

@@ -341,6 +341,45 @@ TEST(RepairedMeshes, SeveralFaultsAtOnceMoveTheUnionByNoMoreThanTheirWidth) {
     EXPECT_GT(closed_layers, all_layers * 95 / 100);
 }
 
+TEST(RepairedMeshes, LayersDoNotDependOnTheOrderOfTrianglesAndCorners) {
+    Random random(107);
+    for (int round = 0; round < rounds_within_reason(500); ++round) {
+        SCOPED_TRACE(round);
+        std::vector<Soup> solids(static_cast<std::size_t>(random.integer(1, 4)));
+        for (Soup& solid : solids) {
+            // On a grid they share vertices, edges and sides.
+            const bool grid = round % 2 == 0;
+            const auto place = [&] {
+                return grid ? static_cast<double>(random.integer(0, 2)) : random.real(0, 4);
+            };
+            const double x = place();
+            const double y = place();
+            const Transform moved = translation(x, y, place());
+            if (grid)
+                add(solid, make_box(1 + place(), 1 + place(), 1 + place()).transformed(moved));
+            else
+                add(solid, random_solid(random).transformed(compose(moved, random_turn(random))));
+        }
+        Soup broken = with_faults(solids, 1, 0, random);
+        const auto repaired = [&] {
+            return orient(welded(broken)).mesh;
+        };
+        const Plan plan = plan_listed(random_heights(broken, random, 5));
+        const LayerStack expected = slice(repaired(), plan);
+        for (int k = 0; k < 3; ++k) {
+            for (std::size_t i = broken.size(); i > 0; --i) {
+                std::swap(broken[i - 1],
+                          broken[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
+                std::rotate(broken[i - 1].begin(), broken[i - 1].begin() + random.integer(0, 2),
+                            broken[i - 1].end());
+            }
+            const LayerStack layers = slice(repaired(), plan);
+            for (std::size_t i = 0; i < layers.size(); ++i)
+                ASSERT_EQ(content_hash(layers[i]), content_hash(expected[i]));
+        }
+    }
+}
+
 class DiagnosedMesh : public testing::TestWithParam<test::SharedMesh> {};
 
 INSTANTIATE_TEST_SUITE_P(Shared, DiagnosedMesh, testing::ValuesIn(test::shared_meshes()),

@@ -59,7 +59,7 @@ struct OrientedMesh {
     IndexedMesh mesh;
     std::uint64_t patches = 0;
     std::uint64_t turned_triangles = 0;  ///< that now run the other way round
-    std::uint64_t turned_outward = 0;    ///< patches turned as a whole, beyond what made them consistent
+    std::uint64_t turned_outward = 0;    ///< patches turned with all tied to them, once these agree
     std::uint64_t turned_inward = 0;     ///< likewise
     std::uint64_t one_sided_patches = 0; ///< that cannot be made consistent, such as a Moebius strip
     std::vector<Point3> places;          ///< middles of the first few triangles turned
@@ -68,15 +68,22 @@ struct OrientedMesh {
 /// Turns triangles so that neighbours agree and material lies inside.
 ///
 /// A patch is a part of the mesh connected over edges of exactly two triangles. Within a patch all triangles
-/// are made to run like the majority (a tie goes to its first triangle). Then the patch as a whole is turned,
-/// if need be: outward, or inward when it lies in an odd number of other closed patches: a void. (It lies in
-/// a patch whose surface winds around the middle of its largest triangle, and whose box holds its box.)
-/// Outward means of positive volume; that of a patch with open edges is measured from the middle of the box
-/// around these. One-sided patches are left consistent as far as they go.
+/// are made to run like the majority. Patches that meet at edges of more triangles are tied to one another as
+/// they are, where such an edge is used as often one way as the other, or with one of them turned, where that
+/// makes it so; again, the smaller part is turned. Thus where no edge
+/// is in conflict, none is afterwards.
+///
+/// Then what is tied together is turned as a whole, if need be: outward, or inward when it lies in an odd
+/// number of others that are closed: a void. (It lies in what winds around the middle of its largest
+/// triangle, and whose box holds its box, and whose surface it does not cross. If it touches that, it stays.)
+/// Outward means of positive volume; that of what has open edges is measured from the middle of the box
+/// around these. What has a volume of the size of its rounding, or would be closed by fans of nearly half its
+/// area or more, stays; so do one-sided patches.
 ///
 /// So a body within a body, both outward, becomes a void in it: who means the inner one to be filled does not
-/// call this. Expected O(n), for patches that few triangles lie above or below. Throws Error{limit} beyond
-/// 2^31 - 1 triangles.
+/// call this. The same result for any order of triangles and for any of their corners first: ties are decided
+/// by the lexicographically smallest triangle. Expected O(n), for patches that few triangles lie above or
+/// below, and O(n log n) for those that lie in one another. Throws Error{limit} beyond 2^31 - 1 triangles.
 [[nodiscard]] OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella
