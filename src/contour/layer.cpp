@@ -60,7 +60,8 @@ Layer LayerBuilder::finish_as_added(std::uint64_t index, double z, double bottom
 }
 
 Layer merged(std::span<const Layer> layers) {
-    assert(!layers.empty());
+    if (layers.empty())
+        return {};
     LayerBuilder builder;
     std::vector<Point2> hatches;
     for (const Layer& layer : layers) {

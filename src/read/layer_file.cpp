@@ -70,9 +70,17 @@ LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions&
 LayerStack LayerFile::merged() const {
     if (parts.size() == 1)
         return parts.front().layers;
+    const std::size_t planes = parts.empty() ? 0 : parts.front().layers.size();
+    for (const LayerPart& part : parts)
+        if (part.layers.size() != planes)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: the part \"{}\" has {} layers and the first one has {}; parts can be "
+                            "put together where all have the same planes",
+                            path, part.label, part.layers.size(), planes));
     LayerStack all;
     std::vector<Layer> plane(parts.size());
-    for (std::size_t i = 0; !parts.empty() && i < parts.front().layers.size(); ++i) {
+    for (std::size_t i = 0; i < planes; ++i) {
         for (std::size_t part = 0; part < parts.size(); ++part)
             plane[part] = parts[part].layers[i];
         all.push_back(lamella::merged(plane));

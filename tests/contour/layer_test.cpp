@@ -82,6 +82,12 @@ TEST(LayerBuilder, IsEmptyAndReadyAgainAfterwards) {
     EXPECT_EQ(builder.finish(0, 0, 0, 0).points[0], (Point2{2, 0}));
 }
 
+TEST(MergedLayers, OfNoneAreAnEmptyLayer) {
+    const Layer none = merged({});
+    EXPECT_EQ(none.contours(), 0U);
+    EXPECT_EQ(none.hatches.size(), 0U);
+}
+
 TEST(LayerBuilder, TurnsNegativeZeroIntoPositiveZero) {
     LayerBuilder builder;
     add(builder, {{-0.0, 0}, {1, -0.0}, {0, 1}}, true);

@@ -55,6 +55,15 @@ TEST(LayerFile, IsOfTheKindThatItsBeginningSaysWhateverItsTextsHold) {
     EXPECT_EQ(text.find("$$"), std::string::npos) << text;
 }
 
+TEST(LayerFile, WhosePartsTheCallerMadeUnequalIsNotMerged) {
+    LayerFile file = read_text(square);
+    file.parts.push_back({.label = "other", .layers = {}});
+    test::expect_error(ErrorKind::usage, {"layers", "\"other\" has 0 layers", "has 1"},
+                       [&] { static_cast<void>(file.merged()); });
+    file.parts = {};
+    EXPECT_TRUE(file.merged().empty());
+}
+
 TEST(LayerFile, MayBePackedWithGzip) {
     const std::string content = packed(square);
     if (content.empty())

@@ -98,7 +98,8 @@ class LayerBuilder {
 };
 
 /// The contours of all these layers in one, in normal form, and their hatches one after the other; index, z,
-/// bottom and top are those of the first. O(n + c log c) for n points in c contours.
+/// bottom and top are those of the first; of no layers, an empty one. O(n + c log c) for n points in c
+/// contours.
 [[nodiscard]] Layer merged(std::span<const Layer> layers);
 
 } // namespace lamella

@@ -45,6 +45,7 @@ struct LayerFile {
     std::vector<std::string> warnings = {}; ///< one line each: what was odd and what was made of it
 
     /// All parts as one: the layers of the only part, or for each plane the contours of all. O(points).
+    /// Throws Error{usage} where the caller has made the parts differ in the number of their layers.
     [[nodiscard]] LayerStack merged() const;
 };
 
