@@ -11,6 +11,7 @@
 namespace lamella {
 Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& options,
                  const Execution& execution) {
+    check_inputs(inputs);
     std::vector<MeshFile> files;
     for (const PlateInput& input : inputs)
         files.push_back(read_mesh(input.path, options, execution));
@@ -18,6 +19,7 @@ Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& opti
 }
 
 Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution) {
+    check_inputs(std::span(&input, 1));
     std::vector<MeshFile> files;
     files.push_back(std::move(file));
     return build_plate(std::span(&input, 1), std::move(files), execution);

@@ -89,6 +89,23 @@ constexpr std::uint64_t most_parts = std::uint64_t{1} << 20;
 
 } // namespace
 
+void check_inputs(std::span<const PlateInput> inputs) {
+    if (inputs.empty())
+        throw Error(ErrorKind::usage, "there is no mesh file to put on the plate; name at least one");
+    for (const PlateInput& input : inputs) {
+        if (input.unit_mm && !(*input.unit_mm > 0 && std::isfinite(*input.unit_mm)))
+            throw Error(ErrorKind::usage, fmt::format("{}: the unit is {} mm; it must be a number above 0",
+                                                      input.path, *input.unit_mm));
+        if (input.copies == 0)
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: 0 copies are asked for; 1 is the part alone", input.path));
+        if (!(input.spacing_mm >= 0 && std::isfinite(input.spacing_mm)))
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: copies cannot stand {} mm apart; it must be 0 or more", input.path,
+                                    input.spacing_mm));
+    }
+}
+
 void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_of) {
     const std::size_t index = plate_.files.size();
     const double unit = unit_of(file, input);

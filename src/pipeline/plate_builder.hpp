@@ -18,6 +18,9 @@
 
 namespace lamella {
 
+/// Throws Error{usage} where there is none, and for what none of them can mean.
+void check_inputs(std::span<const PlateInput> inputs);
+
 /// Collects the instances of all files.
 class PlateBuilder {
   public:

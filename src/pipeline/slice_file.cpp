@@ -15,6 +15,7 @@
 #include "pipeline/layer_window.hpp"
 #include "pipeline/packed.hpp"
 #include "pipeline/plane_scan.hpp"
+#include "pipeline/plate_builder.hpp"
 #include "pipeline/plate_slicing.hpp"
 
 #include <fmt/format.h>
@@ -418,6 +419,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     FileResult result;
 
     // Errors of the job itself are found before a large file is read.
+    check_inputs(job.inputs);
     if (processes.size() > 1 && job.shard)
         throw Error(ErrorKind::usage,
                     "processes share out all layers among themselves, not those of a shard");
@@ -430,6 +432,11 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         static_cast<void>(layer_format(job.format, job.output));
     if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
         check_list(listed->z);
+    if (job.repair.weld_tolerance_mm)
+        static_cast<void>(weld_within({}, *job.repair.weld_tolerance_mm));
+    if (job.repair.close_gaps_mm)
+        static_cast<void>(close_gaps({}, *job.repair.close_gaps_mm));
+    check_steps(job.steps);
     if (job.scan)
         check_strategy(*job.scan);
     result.engine = engine.name;

@@ -38,7 +38,18 @@ LayerChanges& LayerChanges::operator+=(const LayerChanges& other) noexcept {
     return *this;
 }
 
+void check_steps(const LayerSteps& steps) {
+    const Layer none; // the steps look at what they are asked before they look at a layer
+    if (steps.offset_mm != 0)
+        static_cast<void>(offset(none, steps.offset_mm, steps.offset_corners));
+    if (steps.min_area_mm2 != 0)
+        static_cast<void>(without_small_rings(none, steps.min_area_mm2));
+    if (steps.simplify_mm != 0)
+        static_cast<void>(simplify(none, steps.simplify_mm));
+}
+
 Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
+    check_steps(steps);
     changes = {};
     if (!steps.any())
         return layer;
@@ -65,9 +76,9 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
     };
     if (steps.largest_only)
         select(largest_body(layer));
-    if (steps.min_area_mm2 > 0)
+    if (steps.min_area_mm2 != 0)
         select(without_small_rings(layer, steps.min_area_mm2));
-    if (steps.simplify_mm > 0) {
+    if (steps.simplify_mm != 0) {
         Layer simplified = simplify(layer, steps.simplify_mm);
         changes.points_dropped = layer.points.size() - simplified.points.size();
         changed = changed || changes.points_dropped > 0;
@@ -85,6 +96,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
 
 LayerStack take_steps(const LayerSteps& steps, LayerStack layers, std::vector<LayerChanges>& each,
                       const Execution& execution) {
+    check_steps(steps);
     each.assign(layers.size(), {});
     if (!steps.any())
         return layers;

@@ -1,7 +1,10 @@
 #include "lamella/polygon/selection.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
 #include "lamella/polygon/nesting.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +37,10 @@ Layer selected(const Layer& layer, const Wanted& wanted) {
 } // namespace
 
 Layer without_small_rings(const Layer& layer, double mm2) {
+    if (!(mm2 >= 0))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("rings below an area of {} mm^2 cannot be dropped; it must be 0 or more", mm2));
     return selected(layer, [&](std::size_t ring) { return std::abs(ring_area(layer.contour(ring))) >= mm2; });
 }
 

@@ -63,5 +63,19 @@ TEST_F(PlateOfFiles, FitsABuildVolumeToTheLastBitAndElseNamesThePartThatReachesO
     }
 }
 
+TEST_F(PlateOfFiles, RefusesInputsThatNoPlateCanHave) {
+    test::error_of(ErrorKind::usage, [] { static_cast<void>(load_plate({})); });
+    const double nan = std::nan("");
+    for (PlateInput input : {PlateInput{.unit_mm = 0.0}, PlateInput{.unit_mm = -1.0},
+                             PlateInput{.unit_mm = nan}, PlateInput{.copies = 0},
+                             PlateInput{.spacing_mm = -0.1}, PlateInput{.copies = 2, .spacing_mm = nan}}) {
+        input.path = folder_.file("box.obj");
+        test::expect_error(ErrorKind::usage, {"box.obj: "},
+                           [&] { static_cast<void>(load_plate(std::array{input})); });
+        test::expect_error(ErrorKind::usage, {"box.obj: "},
+                           [&] { static_cast<void>(load_plate(input, read_mesh(input.path))); });
+    }
+}
+
 } // namespace
 } // namespace lamella::plate_cases

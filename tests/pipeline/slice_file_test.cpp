@@ -127,6 +127,20 @@ TEST_F(Processes, FailOnAllWithTheSameWords) {
     FileJob job = plain;
     job.inputs.front().path = path("missing.stl");
     expect_failure(job, "no such file");
+    // What is impossible in any file is found before that.
+    job.inputs.front().copies = 0;
+    expect_failure(job, "0 copies");
+    job.inputs.front().copies = 1;
+    job.repair.close_gaps_mm = -1;
+    expect_failure(job, "gaps up to -1 mm");
+    job.repair = {};
+    job.repair.weld_tolerance_mm = 0;
+    expect_failure(job, "weld tolerance");
+    job.repair = {};
+    job.steps.simplify_mm = -1;
+    expect_failure(job, "simplified");
+    job.inputs = {};
+    expect_failure(job, "at least one");
     job = plain;
     job.inputs.front().path = "-";
     expect_failure(job, "standard input");

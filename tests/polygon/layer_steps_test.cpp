@@ -1,9 +1,12 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace lamella {
 namespace {
@@ -17,6 +20,22 @@ TEST(LayerSteps, NoneChangesNothing) {
     LayerChanges changes;
     EXPECT_EQ(take_steps({}, layer, changes).points.data(), layer.points.data());
     EXPECT_EQ(changes.changed_layers, 0U);
+}
+
+TEST(LayerSteps, ThatAreImpossibleAreRefusedWhateverTheLayer) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const LayerSteps& steps :
+         {LayerSteps{.offset_mm = nan}, LayerSteps{.offset_mm = -1, .offset_corners = {.mitre_limit = 0}},
+          LayerSteps{.min_area_mm2 = nan}, LayerSteps{.min_area_mm2 = -1}, LayerSteps{.simplify_mm = nan},
+          LayerSteps{.simplify_mm = -1}}) {
+        LayerChanges changes;
+        EXPECT_TRUE(steps.any());
+        test::error_of(ErrorKind::usage, [&] { check_steps(steps); });
+        test::error_of(ErrorKind::usage, [&] { static_cast<void>(take_steps(steps, Layer{}, changes)); });
+        test::error_of(ErrorKind::usage,
+                       [&] { static_cast<void>(take_steps(steps, LayerStack{}, changes)); });
+    }
+    check_steps({.offset_mm = -1, .min_area_mm2 = 1, .simplify_mm = 0.1});
 }
 
 TEST(LayerSteps, AreTakenInOrderAndToldAbout) {

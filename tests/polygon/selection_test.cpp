@@ -1,9 +1,12 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/selection.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace lamella::selection_cases {
 namespace {
@@ -44,6 +47,11 @@ TEST(Selection, KeepsTheLargestBodyWithItsHolesButNotWhatLiesInThem) {
     const Layer alone = normal_layer({rectangle(0, 0, 1, 1)});
     EXPECT_EQ(largest_body(alone).points.data(), alone.points.data());
     EXPECT_EQ(largest_body(Layer{}).contours(), 0U);
+}
+
+TEST(Selection, ByAnAreaBelowZeroIsRefused) {
+    for (const double area : {-1.0, std::numeric_limits<double>::quiet_NaN()})
+        test::error_of(ErrorKind::usage, [&] { static_cast<void>(without_small_rings(Layer{}, area)); });
 }
 
 TEST(Selection, TakesTheFirstOfEquallyLargeBodies) {

@@ -68,7 +68,8 @@ struct Plate {
 };
 
 /// Reads all inputs. Instances of one mesh that differ in x and y only share a shape: they are sliced once.
-/// Throws what `read_mesh` throws, and Error{usage} for places beyond the range of numbers.
+/// Throws what `read_mesh` throws, and Error{usage} where there are no inputs, for a unit, copies or spacing
+/// that none can have, and for places beyond the range of numbers.
 [[nodiscard]] Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& options = {},
                                const Execution& execution = {});
 

@@ -22,8 +22,8 @@ struct LayerSteps {
     double simplify_mm = 0;    ///< see `simplify`; 0 is none
 
     [[nodiscard]] bool any() const noexcept {
-        return fill != FillRule::none || offset_mm != 0 || largest_only || min_area_mm2 > 0 ||
-               simplify_mm > 0;
+        return fill != FillRule::none || offset_mm != 0 || largest_only || min_area_mm2 != 0 ||
+               simplify_mm != 0;
     }
     friend bool operator==(const LayerSteps&, const LayerSteps&) = default;
 };
@@ -43,6 +43,9 @@ struct LayerChanges {
 
     LayerChanges& operator+=(const LayerChanges& other) noexcept;
 };
+
+/// Throws Error{usage} for an impossible step, as the functions of the steps do: before there is a layer.
+void check_steps(const LayerSteps& steps);
 
 /// Takes the steps. A layer that none of them changes is passed through, bit for bit; one that they change
 /// has no hatches any more, as these filled other contours. The result is in normal form when the layer was.

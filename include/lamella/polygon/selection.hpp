@@ -7,7 +7,8 @@
 namespace LAMELLA_API lamella {
 
 /// The layer without the rings whose area is below `mm2`, bodies and holes alike: what lies within a dropped
-/// ring is smaller and goes with it. Open chains stay. O(n).
+/// ring is smaller and goes with it. Open chains stay. O(n). Throws Error{usage} for an area that is negative
+/// or NaN.
 [[nodiscard]] Layer without_small_rings(const Layer& layer, double mm2);
 
 /// The body with the largest outer ring, and its holes. All other rings are dropped, also bodies that lie
