@@ -5,6 +5,7 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace lamella {
@@ -59,9 +60,17 @@ void Executor::work(unsigned worker) {
     }
 }
 
-void Executor::run(const std::function<void(unsigned)>& body) {
+void Executor::start_threads() {
     for (auto worker = static_cast<unsigned>(threads_.size()) + 1; worker < workers_; ++worker)
-        threads_.emplace_back([this, worker] { work(worker); });
+        try {
+            threads_.emplace_back([this, worker] { work(worker); });
+        } catch (const std::system_error&) { // no more are allowed here, or there is no room for their stacks
+            workers_ = worker;
+        }
+}
+
+void Executor::run(const std::function<void(unsigned)>& body) {
+    start_threads();
     body_ = &body;
     failed_.store(false, std::memory_order_relaxed);
     {

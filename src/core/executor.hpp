@@ -20,7 +20,8 @@ namespace lamella {
 [[nodiscard]] unsigned thread_count(const Execution& execution) noexcept;
 
 /// A team of workers. Worker 0 is the calling thread; the others are started at the first parallel region and
-/// sleep between regions. A team belongs to the thread that made it; regions do not nest.
+/// sleep between regions. Where the system gives fewer threads than were asked for, the team is those that
+/// there are. A team belongs to the thread that made it; regions do not nest.
 ///
 /// When the body throws, the others are asked to stop at their next chunk, and the first exception is
 /// rethrown after all of them have returned.
@@ -31,6 +32,7 @@ class Executor {
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
+    /// How many there are. A parallel region may find that there are fewer; never more.
     [[nodiscard]] unsigned workers() const noexcept { return workers_; }
 
     /// body(worker) once for each worker, at the same time.
@@ -50,6 +52,7 @@ class Executor {
     }
 
   private:
+    void start_threads();
     void work(unsigned worker);
     void guarded(unsigned worker) noexcept;
 

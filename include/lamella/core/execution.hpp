@@ -42,7 +42,8 @@ class CancelFlag {
 
 /// Handed to every long computation. Results never depend on it: any number of threads gives the same bytes.
 struct Execution {
-    /// Threads to use; 0 means one per processor available to this process.
+    /// Threads to use; 0 means one per processor available to this process. Fewer are used where the system
+    /// lets no more be started.
     unsigned threads = 0;
 
     /// Called now and then (some ten to a hundred times per stage), from one thread at a time, but not always
