@@ -4,6 +4,7 @@
 
 #include "core/stopwatch.hpp"
 #include "pipeline/plane_scan.hpp"
+#include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -45,15 +46,12 @@ using StackedPlanes = std::vector<std::vector<ScanLayer>>; // of all parts
 
 StackedPlanes stacked(std::span<const LayerStack> parts, const Rounding& rounding) {
     StackedPlanes planes(parts.empty() ? 0 : parts.front().size());
-    for (const LayerStack& part : parts) {
-        if (part.size() != planes.size())
-            throw Error(ErrorKind::usage, "parts of one file must have the same planes");
+    for (const LayerStack& part : parts)
         for (std::size_t i = 0; i < part.size(); ++i) {
             ScanLayer& layer = planes[i].emplace_back(part[i], rounding);
             if (i > 0)
                 layer.share_points(planes[i - 1][planes[i].size() - 1]);
         }
-    }
     return planes;
 }
 
@@ -73,6 +71,7 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
                        const Rounding& rounding, const LayerFileInfo& info, const ScanStrategy& strategy,
                        const LayerWriteOptions& options, const Execution& execution) {
     check_strategy(strategy);
+    check_same_planes(parts, info);
     const StackedPlanes planes = stacked(parts, rounding);
     ScanResult result;
     std::vector<bool> supports;

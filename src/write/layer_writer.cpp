@@ -6,6 +6,7 @@
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
 #include "write/layer_writers.hpp"
+#include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -299,11 +300,9 @@ std::vector<std::string> write_layers(const std::string& path, const LayerFormat
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const LayerStack> parts, const LayerFileInfo& info,
                                       const LayerWriteOptions& options, const Execution& execution) {
+    check_same_planes(parts, info);
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
     const std::size_t planes = parts.empty() ? 0 : parts.front().size();
-    if (std::any_of(parts.begin(), parts.end(),
-                    [&](const LayerStack& part) { return part.size() != planes; }))
-        throw Error(ErrorKind::usage, "parts of one file must have the same planes");
     const auto parts_of = [&](std::size_t i) {
         std::vector<Layer> plane;
         plane.reserve(parts.size());

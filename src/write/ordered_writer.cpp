@@ -4,11 +4,40 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstddef>
+#include <string>
+
 namespace lamella {
 
 PlanePlace plane_place(std::span<const Layer> parts) {
     const Layer& layer = parts.front();
     return {0, layer.index, layer.z, layer.bottom, layer.top};
+}
+
+void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& info) {
+    const auto refuse = [&](std::size_t part, const std::string& difference) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("the part \"{}\" has other planes than the first one: {}",
+                                part < info.parts.size() ? info.parts[part].label : "", difference));
+    };
+    const auto same = [](double a, double b) {
+        return std::abs(a - b) <= same_height_mm;
+    };
+    for (std::size_t part = 1; part < parts.size(); ++part) {
+        const LayerStack& first = parts.front();
+        const LayerStack& other = parts[part];
+        if (other.size() != first.size())
+            refuse(part, fmt::format("{} layers, and not {}", other.size(), first.size()));
+        for (std::size_t i = 0; i < first.size(); ++i) {
+            const Layer& a = first[i];
+            const Layer& b = other[i];
+            if (a.index != b.index || !same(a.z, b.z) || !same(a.bottom, b.bottom) || !same(a.top, b.top))
+                refuse(part, fmt::format("layer {} at z = {} mm (from {} to {}), and not layer {} at {} "
+                                         "(from {} to {})",
+                                         b.index, b.z, b.bottom, b.top, a.index, a.z, a.bottom, a.top));
+        }
+    }
 }
 
 PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)

@@ -30,6 +30,10 @@ struct PlanePlace {
 /// Of what the layers of a plane have in common.
 [[nodiscard]] PlanePlace plane_place(std::span<const Layer> parts);
 
+/// Throws Error{usage} that names the first layer of a part which has not the heights of the first part's, by
+/// which a plane is written.
+void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& info);
+
 /// What must ascend from plane to plane.
 enum class Ascending {
     z,

@@ -222,6 +222,24 @@ TEST(LayerWriter, SaysWhichPartsAreSupportsWhereTheFormatCannot) {
         "supports"));
 }
 
+TEST(LayerWriter, RefusesPartsThatHaveOtherPlanesThanTheFirstOne) {
+    const TemporaryFolder folder;
+    const LayerStack stack = random_layers(2, 10, 30, {0, 0}, false);
+    LayerFileInfo info = info_of(stack);
+    info.parts = {{.label = "body"}, {.label = "foot"}};
+    const auto write = [&](const std::function<void(LayerStack&)>& change) {
+        std::vector<LayerStack> parts(2, stack);
+        change(parts[1]);
+        write_layers(folder.file("out.json"), layer_format("json", ""), parts, info);
+    };
+    for (const auto height : {&Layer::z, &Layer::bottom, &Layer::top})
+        test::expect_error(ErrorKind::usage, {"\"foot\"", "layer"},
+                           [&] { write([&](LayerStack& part) { part[1].*height += 0.001; }); });
+    error_of(ErrorKind::usage, [&] { write([](LayerStack& part) { ++part[1].index; }); });
+    error_of(ErrorKind::usage, [&] { write([](LayerStack& part) { part.pop_back(); }); });
+    write([](LayerStack& part) { part[1].z += 1e-9; });
+}
+
 TEST(LayerWriter, CountsContoursThatVanishHoweverFineTheFormatIs) {
     const TemporaryFolder folder;
     LayerBuilder builder;

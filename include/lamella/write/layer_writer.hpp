@@ -176,7 +176,8 @@ std::vector<std::string> write_layers(const std::string& path, const LayerFormat
                                       std::span<const Layer> layers, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
-/// The same for several parts, whose stacks have the same planes.
+/// The same for several parts, whose stacks have the same planes: Error{usage} names the first layer with
+/// another index or other heights than that of the first part.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const LayerStack> parts, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
