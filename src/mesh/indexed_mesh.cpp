@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
+#include "core/farthest.hpp"
 #include "core/pages.hpp"
 #include "mesh/folds.hpp"
 #include "mesh/used_vertices.hpp"
@@ -26,10 +27,10 @@ void check(const IndexedMesh& mesh) {
                                 mesh.vertices.size(), mesh.triangles.size(), limit));
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         const Point3& p = mesh.vertices[i];
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            throw Error(
-                ErrorKind::input,
-                fmt::format("vertex {} is ({}, {}, {}): expected finite coordinates", i, p.x, p.y, p.z));
+        if (!(std::abs(p.x) <= farthest_mm && std::abs(p.y) <= farthest_mm && std::abs(p.z) <= farthest_mm))
+            throw Error(ErrorKind::input,
+                        fmt::format("vertex {} is ({}, {}, {}): expected finite coordinates within {} mm", i,
+                                    p.x, p.y, p.z, farthest_mm));
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (const std::uint32_t v : mesh.triangles[i])

@@ -1,7 +1,10 @@
 #include "pipeline/layer_check.hpp"
 
+#include "lamella/core/error.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
+
+#include "core/farthest.hpp"
 
 #include <fmt/format.h>
 
@@ -28,6 +31,29 @@ double largest_coordinate(std::span<const Point2> points) noexcept {
     for (const Point2& p : points)
         largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
     return largest;
+}
+
+void check_coordinates(std::span<const Layer> layers) {
+    const auto is_far = [](double length) {
+        return !(std::abs(length) <= farthest_mm);
+    };
+    const auto refuse = [](const Layer& layer, const std::string& thing, double length) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("layer {}, {}: found {}; coordinates must be finite and within {} mm",
+                                layer.index, thing, length, farthest_mm));
+    };
+    for (const Layer& layer : layers) {
+        for (const double height : {layer.z, layer.bottom, layer.top})
+            if (is_far(height))
+                refuse(layer, "its heights", height);
+        for (std::size_t i = 0; i < layer.contours(); ++i)
+            for (const Point2& p : layer.contour(i))
+                if (is_far(p.x) || is_far(p.y))
+                    refuse(layer, fmt::format("contour {}", i), is_far(p.x) ? p.x : p.y);
+        for (const Point2& p : layer.hatches)
+            if (is_far(p.x) || is_far(p.y))
+                refuse(layer, "its hatches", is_far(p.x) ? p.x : p.y);
+    }
 }
 
 LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {

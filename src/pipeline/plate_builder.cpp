@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/farthest.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,12 +65,11 @@ void check_range(const Box3& box, const std::string& path) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double from = std::array{box.min.x, box.min.y, box.min.z}[axis];
         const double to = std::array{box.max.x, box.max.y, box.max.z}[axis];
-        if (!std::isfinite(from) || !std::isfinite(to))
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("{}: unit, scale and translation move the mesh beyond the largest number; "
-                            "choose smaller ones",
-                            path));
+        if (!(std::abs(from) <= farthest_mm && std::abs(to) <= farthest_mm))
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: unit, scale and translation move the mesh beyond {} mm, to {} mm; "
+                                    "choose smaller ones",
+                                    path, farthest_mm, std::abs(from) > std::abs(to) ? from : to));
         farthest = std::max({farthest, std::abs(from), std::abs(to)});
         extent = std::max(extent, to - from);
     }

@@ -132,6 +132,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
 } // namespace
 
 Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {
+    check_coordinates(layers);
     std::vector<LayerCheck> checks(layers.size());
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, layers.size());

@@ -9,6 +9,7 @@
 #include "lamella/read/layer_file.hpp"
 
 #include "container/common_layer_format.hpp"
+#include "core/farthest.hpp"
 #include "read/common_layer_header.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/read_limits.hpp"

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/farthest.hpp"
 #include "core/pages.hpp"
 #include "mesh/polygon_triangulation.hpp"
 #include "mesh/used_vertices.hpp"
@@ -26,6 +27,10 @@ bool finite(const Point3& p) {
     return (p.x * 0 + p.y * 0 + p.z * 0) == 0;
 }
 
+bool is_near(const Point3& p) {
+    return std::abs(p.x) <= farthest_mm && std::abs(p.y) <= farthest_mm && std::abs(p.z) <= farthest_mm;
+}
+
 void keep_least(std::atomic<std::uint64_t>& least, std::uint64_t value) {
     std::uint64_t known = least.load();
     while (value < known && !least.compare_exchange_weak(known, value)) {
@@ -48,13 +53,13 @@ std::uint64_t first_triangle(const IndexedMesh& mesh, Executor& executor, IsBad 
     return first;
 }
 
-bool all_finite(const std::vector<Point3>& vertices, Executor& executor) {
+bool all_near(const std::vector<Point3>& vertices, Executor& executor) {
     std::atomic<bool> all{true};
     executor.for_chunks(vertices.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        double sum = 0;
+        bool near = true;
         for (std::uint64_t i = begin; i < end; ++i)
-            sum += vertices[i].x * 0 + vertices[i].y * 0 + vertices[i].z * 0;
-        if (!(sum == 0))
+            near = near && is_near(vertices[i]);
+        if (!near)
             all = false;
     });
     return all;
@@ -199,7 +204,15 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
                                                      "no surface to slice)",
                                                      vertices)));
     cut_polygons(faces, executor);
-    if (!all_finite(mesh.vertices, executor)) {
+    if (!all_near(mesh.vertices, executor)) {
+        const auto is_far = [&](const Corners& t) {
+            return std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
+                return finite(mesh.vertices[v]) && !is_near(mesh.vertices[v]);
+            });
+        };
+        if (const std::uint64_t far = first_triangle(mesh, executor, is_far); far != none)
+            fail(fmt::format("{}: a corner lies further away than {}; coordinates must lie within that",
+                             place(far), farthest_mm));
         const auto unusable = [&](const Corners& t) {
             return !finite(mesh.vertices[t[0]]) || !finite(mesh.vertices[t[1]]) ||
                    !finite(mesh.vertices[t[2]]);

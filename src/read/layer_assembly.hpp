@@ -16,9 +16,6 @@
 
 namespace lamella {
 
-/// What lies further away, in a slice file, could make sums and areas overflow; no part is near it.
-inline constexpr double farthest_mm = 1e100;
-
 /// Counts of one kind of oddity, said once for the whole file.
 class Oddity {
   public:

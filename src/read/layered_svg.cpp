@@ -3,6 +3,7 @@
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
+#include "core/farthest.hpp"
 #include "core/parse_number.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"

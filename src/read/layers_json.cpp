@@ -1,6 +1,7 @@
 #include "container/json_text.hpp"
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
+#include "core/farthest.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"

@@ -3,6 +3,7 @@
 #include "container/text_place.hpp"
 #include "container/utf8.hpp"
 #include "core/executor.hpp"
+#include "core/farthest.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"

@@ -88,8 +88,8 @@ class Plate(ProgramTest):
                        "box.stl", "--copies", "99999999999", "-o", "a.cli")
         self.fail_with(5, "ball.stl: 2 copies of 1 part are too many", "slice", "box.stl", "--copies", "1048575", "ball.stl",
                        "--copies", "2", "-o", "a.cli", "--spacing", "0")
-        self.fail_with(2, "the mesh is 20 mm wide and lies 1e\\+200 mm away, where numbers are .* apart", "slice", "box.stl",
-                       "--translate", "1e200,0,0", "-o", "a.cli")
+        self.fail_with(2, "the mesh is 20 mm wide and lies 1e\\+50 mm away, where numbers are .* apart", "slice", "box.stl",
+                       "--translate", "1e50,0,0", "-o", "a.cli")
         self.fail_with(5, "makes 5e\\+07 layers of this part .* GB of memory, above", "slice", "box.stl", "--layer-height", "1e-7",
                        "-o", "a.cli", "--max-memory", "10G")
         self.fail_with(2, "one file only", "slice", "-", "-", "-o", "a.cli")

@@ -40,6 +40,16 @@ TEST(IndexedMesh, CheckNamesTheFirstVertexThatIsNotFinite) {
     EXPECT_NE(complaint(mesh).find("vertex 3 "), std::string::npos);
 }
 
+TEST(IndexedMesh, CheckNamesTheFirstVertexThatIsSoFarAwayThatSumsOverflow) {
+    IndexedMesh mesh = naive_weld(make_box(1, 2, 3));
+    mesh.vertices[2].x = -1e100;
+    check(mesh);
+    mesh.vertices[5].z = 1.7e308;
+    EXPECT_EQ(complaint(mesh).find("vertex 5 "), 0U);
+    EXPECT_NE(complaint(mesh).find("1.7e+308"), std::string::npos);
+    EXPECT_NE(complaint(mesh).find("within 1e+100 mm"), std::string::npos);
+}
+
 TEST(IndexedMesh, HasTheBoxAndTheBitsOfTheVolumeOfItsSoup) {
     for (const TriangleSoup& soup : {make_rook(), make_sphere(3, 6).transformed(upright({1, 2, 3}))}) {
         const IndexedMesh mesh = naive_weld(soup);

@@ -177,8 +177,10 @@ TEST(PlateBuilder, RefusesPlacesThatNumbersCannotTellApart) {
     placed(translation(1e9, 0, 0));
     test::expect_error(ErrorKind::usage, {"a.stl", "lies 1e+12 mm away", "closer to the origin"},
                        [&] { placed(translation(0, -1e12, 0)); });
-    test::expect_error(ErrorKind::usage, {"a.stl", "beyond the largest number"},
+    test::expect_error(ErrorKind::usage, {"a.stl", "beyond 1e+100 mm"},
                        [&] { placed(scaling(1e308, 1, 1)); });
+    test::expect_error(ErrorKind::usage, {"a.stl", "beyond 1e+100 mm"},
+                       [&] { placed(scaling(1e101, 1e101, 1e101)); });
 }
 
 TEST(PlateBuilder, HoldsAMillionPartsAndNoMore) {

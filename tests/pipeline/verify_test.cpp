@@ -1,13 +1,16 @@
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/verify.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/meshes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -36,6 +39,28 @@ TEST(Verify, FindsNothingInSoundLayers) {
     EXPECT_EQ(found.volume_mm3, 12 + 16);
     EXPECT_FALSE(found.max_area_error_mm2.has_value());
     EXPECT_TRUE(found.findings.empty());
+}
+
+TEST(Verify, NamesTheContourOfACoordinateThatIsNoLength) {
+    for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1.7e308}) {
+        Layer layer = at(7, layer_of({rectangle(0, 0, 9, 9)}));
+        std::vector<Point2> points(layer.points.begin(), layer.points.end());
+        points.insert(points.end(), {{1, 1}, {bad, 2}, {2, 1}});
+        layer.points = PointArray(points);
+        layer.offsets.push_back(points.size());
+        layer.rings = 2;
+        const LayerStack layers{at(6, layer_of({rectangle(0, 0, 9, 9)})), layer};
+        test::expect_error(ErrorKind::usage, {"layer 7, contour 1", "within 1e+100 mm"},
+                           [&] { static_cast<void>(verify(layers)); });
+        const LayerPart part{
+            .label = "a", .layers = layers, .exposure = Exposure{.part = "a", .parameters = {}}};
+        test::expect_error(ErrorKind::usage, {"layer 7, contour 1"},
+                           [&] { static_cast<void>(verify_vectors(std::span(&part, 1))); });
+        Layer high = at(8, layer_of({rectangle(0, 0, 9, 9)}));
+        high.top = bad;
+        test::expect_error(ErrorKind::usage, {"layer 8", "heights"},
+                           [&] { static_cast<void>(verify(std::span(&high, 1))); });
+    }
 }
 
 TEST(Verify, OfNothingFindsNothing) {

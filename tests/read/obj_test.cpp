@@ -97,6 +97,14 @@ TEST(Obj, LeavesOutTrianglesThatAreNotFinite) {
                   ": line 2: holds no usable triangle: each of the 1 has a corner that is NaN or infinite");
 }
 
+TEST(Obj, RefusesCornersSoFarAwayThatSumsOverflow) {
+    EXPECT_EQ(error_of(triangle + "v 1.7e308 0 0\nf 1 2 3\nf 1 2 4\n", name),
+              name + ": line 7: a corner lies further away than 1e+100; coordinates must lie within that");
+    expect_warning(triangle + "v 1e100 0 0\nv nan 0 0\nf 1 2 5\nf 1 2 4\n", name, 2,
+                   "line 7: left out 1 of 3 triangles, which have a corner that is NaN or infinite (this is "
+                   "the first)");
+}
+
 TEST(Obj, WarnsOfFreeFormSurfaces) {
     expect_warning(triangle + "surf 0 1 0 1 1 2 3\n", name, 1,
                    "line 5: left out free-form curves and surfaces; only faces are read");

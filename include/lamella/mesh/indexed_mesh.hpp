@@ -41,7 +41,8 @@ struct IndexedMesh {
 [[nodiscard]] IndexedMesh weld(IndexedMesh mesh, const Execution& execution = {});
 
 /// Throws Error{input} naming the first triangle whose index is out of range or the first vertex that is not
-/// finite. Everything else in this library takes a mesh that passes.
+/// finite, or further away than 1e100 mm, where sums overflow. Everything else in this library takes a mesh
+/// that passes.
 void check(const IndexedMesh& mesh);
 
 /// Drops vertices that no triangle names; the others keep their order. In place, O(vertices + triangles).

@@ -87,7 +87,8 @@ struct Verification {
 };
 
 /// Checks layers in any order. Expected O(points + triangles). Parallel over layers; the same result for any
-/// number of threads.
+/// number of threads. Throws Error{usage} that names layer and contour of a coordinate that is not finite, or
+/// further away than 1e100 mm.
 [[nodiscard]] Verification verify(std::span<const Layer> layers, const VerifyOptions& options = {},
                                   const Execution& execution = {});
 
@@ -146,7 +147,8 @@ struct VectorVerification {
 
 /// Checks the parts of a file that have an exposure; the others do not count. All have the same planes.
 /// O(n log n) for n points and vectors of a layer, beside what slicing and offsets take. Parallel over
-/// layers; the same result for any number of threads. Throws what `slice` and `offset` throw.
+/// layers; the same result for any number of threads. Throws what `slice` and `offset` throw, and as `verify`
+/// for a coordinate that is not finite.
 [[nodiscard]] VectorVerification verify_vectors(std::span<const LayerPart> parts,
                                                 const VectorVerifyOptions& options = {},
                                                 const Execution& execution = {});
