@@ -1,11 +1,15 @@
 #include "lamella/mesh/self_intersections.hpp"
 
+#include "lamella/core/error.hpp"
+
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/edge_uses.hpp"
 #include "mesh/folds.hpp"
 #include "mesh/triangle_contact.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -67,6 +71,12 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
     Executor executor(execution);
     SelfIntersections result;
     const std::size_t n = mesh.triangles.size();
+    if (!options.parts.empty() && options.parts.size() != n)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format(
+                "MeetingOptions::parts has {} numbers and the mesh {} triangles; it needs one for each",
+                options.parts.size(), n));
 
     const PageArray<std::uint8_t> without_area(n, Fill::zero);
     const auto piece = [&](std::size_t begin, std::size_t end) {

@@ -182,7 +182,13 @@ Plan plan_listed(const std::vector<double>& z, SliceAt slice_at, double single_h
         const double below = i > 0 ? z[i] - z[i - 1] : first_gap;
         const double above = i + 1 < n ? z[i + 1] - z[i] : last_gap;
         const double f = fraction(slice_at);
-        plan.layers[i] = {i, z[i], z[i] - f * below, z[i] + (1 - f) * above};
+        const PlannedLayer& layer = plan.layers[i] = {i, z[i], z[i] - f * below, z[i] + (1 - f) * above};
+        if (!(layer.bottom < layer.top))
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("a layer of {} mm is too low for coordinates around {} mm: its bottom and "
+                            "its top fall on the same number",
+                            f * below + (1 - f) * above, z[i]));
     }
     return plan;
 }

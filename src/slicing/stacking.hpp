@@ -37,7 +37,11 @@ inline void require_height(double height, const char* what) {
 
 /// Fails where there is nothing between the ends of a part.
 inline void require_part(double z_min, double z_max) {
-    if (!(std::isfinite(z_min) && std::isfinite(z_max) && z_min < z_max))
+    if (z_min < z_max && !(std::isfinite(z_min) && std::isfinite(z_max)))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("the part reaches from z = {} to {} mm; both heights must be finite", z_min, z_max));
+    if (!(z_min < z_max))
         throw Error(ErrorKind::usage,
                     fmt::format("the mesh has no height (z from {} to {}), so there is nothing to slice; "
                                 "another slicing direction may have some",

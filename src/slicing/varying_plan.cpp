@@ -40,7 +40,7 @@ Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at,
             throw Error(ErrorKind::usage,
                         fmt::format("a layer height of {} mm is too small for coordinates around {} mm: "
                                     "neighbouring cuts fall on the same number",
-                                    height, z));
+                                    std::max(height, lowest_height), z)); // that may be rounded to 0
         // A remainder that counts as nothing must not lift the last cut off the top face.
         if (at_top && z > z_max - negligible * height)
             z = z_max;

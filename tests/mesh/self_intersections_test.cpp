@@ -54,6 +54,15 @@ TEST(SelfIntersections, SoundSolidsHaveNone) {
     }
 }
 
+TEST(SelfIntersections, RefusesPartsOfOtherTrianglesThanThereAre) {
+    const IndexedMesh mesh = weld(make_box(4, 4, 4));
+    for (const std::size_t count : {1U, 11U, 13U}) {
+        const std::vector<std::uint32_t> parts(count, 0);
+        test::expect_error(ErrorKind::usage, {"MeetingOptions::parts", "12"},
+                           [&] { static_cast<void>(find_self_intersections(mesh, {.parts = parts})); });
+    }
+}
+
 TEST(SelfIntersections, BoxesThatOverlapCross) {
     // The smaller one sticks out of the right side of the larger one.
     const IndexedMesh mesh = weld(assemble({make_box(4, 4, 4), moved(make_box(4, 2, 2), 2, 1, 1)}));

@@ -222,6 +222,12 @@ TEST(PlanUniform, RefusesAPartWithoutHeight) {
     expect_error(ErrorKind::usage, {"nan"}, [] { (void)plan_uniform(0, nan, {}); });
 }
 
+TEST(PlanUniform, RefusesAPartThatReachesToInfinity) {
+    expect_error(ErrorKind::usage, {"from z = 0 to inf", "finite"},
+                 [] { (void)plan_uniform(0, infinity, {}); });
+    expect_error(ErrorKind::usage, {"-inf", "finite"}, [] { (void)plan_uniform(-infinity, 0, {}); });
+}
+
 TEST(PlanUniform, RefusesALayerHeightThatMissesThePart) {
     expect_error(ErrorKind::usage, {"z = 4 mm", "from 0 to 3 mm", "below 3 mm"},
                  [] { (void)plan_uniform(0, 3, {.layer_height = 4}, SliceAt::top); });
@@ -382,6 +388,16 @@ TEST(PlanListed, TakesNeighboursAsNearAsDoublesGo) {
     const Plan plan = plan_listed({z, std::nextafter(z, 2.0)});
     EXPECT_EQ(plan.layers.size(), 2U);
     expect_sound(plan);
+}
+
+TEST(PlanListed, RefusesLayersWhoseBottomAndTopAreOneNumber) {
+    for (const SliceAt at : everywhere)
+        expect_error(ErrorKind::usage, {"a layer of 0.1 mm", "around 1e+20 mm"},
+                     [&] { (void)plan_listed({1e20}, at, 0.1); });
+    const double next = std::nextafter(1.0, 2.0);
+    expect_error(ErrorKind::usage, {"too low", "around 1.0000000000000004 mm"}, [&] {
+        (void)plan_listed({1, next, std::nextafter(next, 2.0)});
+    });
 }
 
 TEST(PlanListed, RefusesAnEmptyList) {

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/slicing/varying_plan.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/named_solids.hpp"
 #include "parts/shapes.hpp"
 
@@ -76,6 +77,13 @@ TEST(PlanByRanges, RefusesRangesThatMakeNoSense) {
     EXPECT_THROW((void)plan_by_ranges(0, 0, {}, 0.1), Error);
     EXPECT_THROW((void)plan_by_ranges(0, 1e9, {{0, 1, 1e-3}}, 0.1), Error);
     EXPECT_THROW((void)plan_by_ranges(0, 1, {}, 5, SliceAt::top), Error);
+}
+
+TEST(PlanByRanges, NamesAHeightThatIsTooSmallForTheCoordinates) {
+    test::expect_error(ErrorKind::usage, {"a layer height of 1e-09 mm is too small", "around 1000000000"},
+                       [] {
+                           (void)plan_by_ranges(1e9, 1e9 + 1e-6, {{0, 1e-7, 1e-9}}, 1e-8);
+                       });
 }
 
 /// The largest |n.z| of the triangles that reach into a layer.

@@ -79,7 +79,8 @@ struct MeetingOptions {
 /// coordinates are two vertices, and their triangles touch. Flat triangles are left out.
 ///
 /// O(n log n + pairs of triangles whose boxes overlap), on all threads; the same result for any number of
-/// them. Long triangles aslant in boxes full of others are the slow case.
+/// them. Long triangles aslant in boxes full of others are the slow case. Throws Error{usage} for `parts` of
+/// more or fewer triangles than there are.
 [[nodiscard]] SelfIntersections find_self_intersections(const IndexedMesh& mesh,
                                                         const MeetingOptions& options = {},
                                                         const Execution& execution = {});

@@ -66,8 +66,9 @@ struct PlaneSelection {
 /// middle), from the cut to the next cut (bottom), or from the previous cut to this one (top); the outermost
 /// layers continue with the neighbouring thickness. A single cut has no neighbours: its layer is
 /// `single_height` thick. Throws Error{usage} when the list is empty, not strictly
-/// ascending or not finite, naming the first offender, when it reaches further than a double can say, or when
-/// the height is not a positive finite number.
+/// ascending or not finite, naming the first offender, when it reaches further than a double can say, when a
+/// layer is so low that its bottom and its top are one number, or when the height is not a positive finite
+/// number.
 [[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle,
                                double single_height = UniformLayers{}.layer_height);
 

@@ -279,7 +279,7 @@ TEST(EdgePairing, WorksOnEdgesOfAnySize) {
         IndexedMesh mesh = test::indexed(bodies);
         for (Point3& p : mesh.vertices)
             p = {p.x * unit, p.y * unit, p.z * unit};
-        const Layer layer = slice(mesh, plan_listed({0.5 * unit})).front();
+        const Layer layer = slice(mesh, plan_listed({0.5 * unit}, SliceAt::middle, unit)).front();
         EXPECT_EQ(layer.rings, 3U) << unit;
         EXPECT_EQ(layer.open_chains(), 0U) << unit;
     }
