@@ -26,7 +26,9 @@ cmake_path(GET pc_file PARENT_PATH pc_dir)
 set(ENV{PKG_CONFIG_PATH} ${pc_dir})
 execute_process(COMMAND pkg-config --cflags --libs lamella OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
 separate_arguments(flags UNIX_COMMAND ${flags})
-run(${COMPILER} -std=c++20 ${CONSUMER_DIR}/main.cpp -o ${WORK_DIR}/pkg_config_consumer ${flags})
+# The headers are no system headers here: they warn of nothing, whatever the consumer asks for.
+set(warnings -Werror -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow)
+run(${COMPILER} -std=c++20 ${warnings} ${CONSUMER_DIR}/main.cpp -o ${WORK_DIR}/pkg_config_consumer ${flags})
 file(GLOB shared_library ${prefix}/lib*/liblamella.so ${prefix}/lib*/*/liblamella.so)
 if(shared_library)
     # It shows what its public headers declare, and nothing of its own.

@@ -5,6 +5,7 @@
 #include "lamella/core/point.hpp"
 
 #include <array>
+#include <cstddef>
 
 namespace LAMELLA_API lamella {
 
@@ -14,7 +15,7 @@ struct Transform {
     std::array<double, 3> offset{0, 0, 0};
 
     [[nodiscard]] Point3 operator()(const Point3& p) const noexcept {
-        const auto row = [&](int r) {
+        const auto row = [&](std::size_t r) {
             return linear[r][0] * p.x + linear[r][1] * p.y + linear[r][2] * p.z + offset[r];
         };
         // Adding zero keeps -0 out of the mesh: it would not weld to +0.

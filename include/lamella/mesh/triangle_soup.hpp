@@ -65,7 +65,7 @@ class TriangleSoup {
     /// mirrors.
     [[nodiscard]] Triangle3 placed(std::size_t i) const noexcept {
         const Triangle3f t = stored(i);
-        const auto corner = [&](int k) {
+        const auto corner = [&](std::size_t k) {
             const Point3 p{t[k].x, t[k].y, t[k].z};
             return has_placement_ ? placement_(p) : p;
         };
