@@ -13,9 +13,10 @@
 // Lengths are millimetres. Failures are lamella::Error. Nothing here prints, exits or keeps global state,
 // but for the temporary names in use (remove_unfinished).
 
-// What all have in common: failures, threads and progress, the version.
+// What all have in common: failures, threads and progress, cosines of the same bits everywhere, the version.
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/unit_circle.hpp"
 #include "lamella/core/version.hpp"
 
 // A mesh: read it, or make it of arrays; inspect, repair and place it.
@@ -45,17 +46,15 @@
 // What can be made of layers.
 #include "lamella/contour/close_gaps.hpp"
 #include "lamella/polygon/boolean.hpp"
-#include "lamella/polygon/fill.hpp"
-#include "lamella/polygon/layer_steps.hpp"
-#include "lamella/polygon/offset.hpp"
-#include "lamella/polygon/simplify.hpp"
+#include "lamella/polygon/layer_steps.hpp" // and each step by itself: fill, offset, selection, simplify
 
 // What machines that expose them execute.
 #include "lamella/scan/scan.hpp"
+#include "lamella/scan/strategy_fields.hpp"
 
 // Files of layers, meshes, pictures and pages.
 #include "lamella/raster/picture.hpp"
-#include "lamella/read/layer_file.hpp"
+#include "lamella/read/any_file.hpp" // and of layers only, read/layer_file.hpp
 #include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"

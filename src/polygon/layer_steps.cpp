@@ -1,8 +1,6 @@
 #include "lamella/polygon/layer_steps.hpp"
 
 #include "lamella/contour/measure.hpp"
-#include "lamella/polygon/selection.hpp"
-#include "lamella/polygon/simplify.hpp"
 
 #include "core/executor.hpp"
 

@@ -65,6 +65,17 @@ class Documentation(unittest.TestCase):
         left_out = {"", "int main() {", "}"}
         self.assertEqual(shown, [line.strip() for line in self.example.splitlines() if line not in left_out])
 
+    def test_the_door_opens_all_rooms(self):
+        opened, coming = set(), ["lamella/lamella.hpp"]
+        while coming:
+            header = coming.pop()
+            if header not in opened:
+                opened.add(header)
+                text = (ROOT / "include" / header).read_text(encoding="utf-8")
+                coming += re.findall(r'^#include "(lamella/[^"]+)"', text, re.MULTILINE)
+        headers = {str(path.relative_to(ROOT / "include")) for path in ROOT.glob("include/**/*.hpp")}
+        self.assertEqual(headers - opened, set())
+
     def test_the_example_slices_a_part(self):
         self.run_here(PROGRAM, "make", "rook", "-o", "part.stl")
         self.run_here(EXAMPLES / "lamella_example_slice_part")

@@ -6,6 +6,8 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
+#include "lamella/polygon/selection.hpp"
+#include "lamella/polygon/simplify.hpp"
 
 #include <cstdint>
 #include <vector>
