@@ -2,6 +2,7 @@
 #include <lamella/lamella.hpp>
 
 #include <iostream>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -100,7 +101,10 @@ void tour() {
 int main() {
     try {
         tour();
-    } catch (const Error& error) { // the only exception; its kind says what a caller can do about it
+    } catch (const Error& error) { // its kind says what a caller can do about it
+        std::cerr << error.what() << "\n";
+        return 1;
+    } catch (const std::bad_alloc& error) { // the only other one: memory ran out
         std::cerr << error.what() << "\n";
         return 1;
     }

@@ -10,8 +10,8 @@
 //     const lamella::LayerStack layers = lamella::slice(part.mesh(), plan);
 //     lamella::write_layers("part.cli", layers);
 //
-// Lengths are millimetres. Failures are lamella::Error. Nothing here prints, exits or keeps global state,
-// but for the temporary names in use (remove_unfinished).
+// Lengths are millimetres. Failures are lamella::Error, or std::bad_alloc where memory runs out. Nothing here
+// prints, exits or keeps global state, but for the temporary names in use (remove_unfinished).
 
 // What all have in common: failures, threads and progress, cosines of the same bits everywhere, the version.
 #include "lamella/core/error.hpp"

@@ -16,8 +16,9 @@ enum class Stage { read, weld, link, slice, polygon, write };
 /// The stage's name as users meet it in progress lines and statistics, such as "link".
 [[nodiscard]] const char* stage_name(Stage stage) noexcept;
 
-/// How far a stage has come. `done` never falls within a stage and reaches `total` at its end; the unit is
-/// the stage's own (bytes, triangles or layers).
+/// How far a stage has come. `done` does not fall before it has reached `total`, at the end of the stage; the
+/// unit is the stage's own (bytes, triangles or layers). A stage that runs several times, as for each of
+/// several files or parts, begins anew each time.
 struct Progress {
     Stage stage = Stage::read;
     std::uint64_t done = 0;
@@ -50,8 +51,10 @@ struct Execution {
     /// the same one. May throw: the computation stops and the exception reaches the caller.
     std::function<void(const Progress&)> progress = {};
 
-    /// Once this is requested the computation ends with Error{ErrorKind::cancelled} within a fraction of a
-    /// second. The flag must outlive the computation; nullptr: nobody will ask.
+    /// Once this is requested the computation ends with Error{ErrorKind::cancelled} at its next step: mostly
+    /// within a fraction of a second, but one step is all that is made of a layer, and what some readers do
+    /// with a file, which takes longer where these are very large. The flag must outlive the computation;
+    /// nullptr: nobody will ask.
     const CancelFlag* cancel = nullptr;
 
     [[nodiscard]] bool cancelled() const noexcept { return cancel != nullptr && cancel->requested(); }
