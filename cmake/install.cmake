@@ -10,6 +10,13 @@ install(TARGETS lamella EXPORT lamella-targets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lamella DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The pages that headers refer to, without their pictures.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md
+        PATTERN images EXCLUDE)
+# PageOptions::viewer: what the program carries in itself. Absent where it could not be built.
+if(LAMELLA_VIEWER_HTML)
+    install(FILES ${LAMELLA_VIEWER_HTML} DESTINATION ${CMAKE_INSTALL_DATADIR}/lamella RENAME viewer.html OPTIONAL)
+endif()
 
 set(pc_packages "expat fmt libdeflate zlib")
 # A static library leaves it to its user to link what it needs; a shared one has done so itself.

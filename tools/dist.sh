@@ -27,6 +27,7 @@ trap 'rm -rf "$work"' EXIT
 
 git -c safe.directory="$PWD" archive --prefix="$name/" "$tree" | tar --extract --directory "$work"
 cp "$page" "$work/$name/viewer/"
+cp "$build/viewer/packages/dist/index.html" "$work/$name/viewer/viewer.html"
 # Root's tar keeps the modes of files where that of others takes the umask.
 tar --create --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=a+rX,u+w,go-w \
     --directory "$work" "$name" |

@@ -15,6 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(sys.argv[1]).resolve()
 PAGE = "viewer/viewer_page.cpp"
+HTML = "viewer/viewer.html"
 
 # As BUILD is, where it was built from nothing: a compiler cache has the objects of these sources.
 ALIKE = ["-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_UNITY_BUILD=ON", "-D", "LAMELLA_WERROR=ON"]
@@ -65,7 +66,7 @@ class Dist(unittest.TestCase):
             members = tar.getmembers()
         files = [member.name for member in members if not member.isdir()]
         tracked = run("git", "-c", f"safe.directory={ROOT}", "ls-files", "-z", cwd=ROOT).split("\0")[:-1]
-        self.assertEqual(sorted(files), sorted(f"{name}/{file}" for file in [*tracked, PAGE]))
+        self.assertEqual(sorted(files), sorted(f"{name}/{file}" for file in [*tracked, PAGE, HTML]))
         self.assertEqual({(member.uid, member.gid, member.uname, member.gname) for member in members}, {(0, 0, "", "")})
         self.assertEqual({oct(member.mode) for member in members}, {"0o644", "0o755"})
         self.assertEqual(len({member.mtime for member in members}), 1)

@@ -54,7 +54,8 @@ struct LayerFileInfo {
 
 /// html: see lamella/write/layer_page.hpp.
 struct PageOptions {
-    /// The built viewer, an HTML page with a place for the data (viewer/). It must outlive the writer.
+    /// The built viewer, an HTML page with a place for the data: the text of share/lamella/viewer.html of an
+    /// installation. It must outlive the writer.
     std::string_view viewer = {};
     /// Why `viewer` is empty, for the error when a page is asked for. It must outlive the options.
     std::string_view no_viewer = "PageOptions::viewer is empty";
