@@ -228,14 +228,15 @@ std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& option
     return stored;
 }
 
-/// Of `stored` triangles, `count` are not finite; `first` is the first of those.
+/// Of `stored` triangles, those of the file or of a share of it, `count` are not finite; `first` is the first
+/// of those.
 void judge_nonfinite(const ByteSource& source, std::uint64_t count, std::uint64_t first, std::uint64_t stored,
-                     Remarks& remarks) {
+                     bool is_share, Remarks& remarks) {
     if (count == 0)
         return;
     const std::string where = fmt::format("the first is triangle {} at byte {}", first + 1,
                                           stl_head_bytes + stl_record_bytes * first);
-    if (count == stored)
+    if (count == stored && !is_share)
         throw Error(ErrorKind::input,
                     fmt::format("{}: holds no usable triangle: each of the {} has a corner that is NaN or "
                                 "infinite ({})",
@@ -266,7 +267,7 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
     const auto [owner, corners, nonfinite] = read_records(source, stored, options, executor, progress);
-    judge_nonfinite(source, nonfinite.total, nonfinite.first, stored, remarks);
+    judge_nonfinite(source, nonfinite.total, nonfinite.first, stored, false, remarks);
     if (nonfinite.total != 0) // the others are copied
         ReadLimits(source.name, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
 
@@ -323,7 +324,7 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
         progress.add((end - begin) * stl_record_bytes);
     });
     executor.check_cancelled();
-    judge_nonfinite(source, nonfinite, first_nonfinite, share ? stored + 1 : stored, remarks);
+    judge_nonfinite(source, nonfinite, first_nonfinite, count, share.has_value(), remarks);
     progress.finish();
     return describe(source, stored, nonfinite, remarks);
 }

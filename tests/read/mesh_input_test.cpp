@@ -156,6 +156,25 @@ TEST(MeshInput, SharesOfABinaryFileAreTheWhole) {
     EXPECT_THROW(static_cast<void>(stream(input, {}, 1, RecordRange{5, 70'002})), Error);
 }
 
+TEST(MeshInput, CountsWhatIsUnusableInAShareAndWhatIsStoredInTheWhole) {
+    const TemporaryFolder folder;
+    Triangles many = some_triangles(20);
+    many[2][0].x = many[12][0].x = many[13][0].x = nan;
+    write_file(folder.file("part.stl"), binary(many));
+    const MeshInput input(folder.file("part.stl"));
+    const MeshFile file = stream(input, {.max_triangles = 20}, 1, RecordRange{10, 15}).file;
+    EXPECT_EQ(file.stored_triangles, 20U);
+    EXPECT_EQ(file.nonfinite_triangles, 2U);
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_NE(file.warnings.front().find("left out 2 of 5 triangles"), std::string::npos);
+    EXPECT_NE(file.warnings.front().find("triangle 13 at byte"), std::string::npos);
+    EXPECT_EQ(stream(input, {}, 1, RecordRange{12, 14}).file.nonfinite_triangles, 2U) << "all of it";
+    EXPECT_NE(error_text([&] {
+                  stream(input, {.max_triangles = 19}, 1, RecordRange{10, 15});
+              }).find("`max_triangles`"),
+              std::string::npos);
+}
+
 TEST(MeshInput, SaysWhatCannotBeShared) {
     const TemporaryFolder folder;
     write_file(folder.file("part.stl"), solid(some_triangles(5)));
