@@ -21,6 +21,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -195,6 +196,7 @@ class OvfReader {
         job_.read(bytes_, planes.shell);
         for (const std::uint64_t plane : planes.positions)
             read_plane(plane);
+        check_that_none_share();
         if (layers_.empty())
             throw Error(ErrorKind::input,
                         fmt::format("{}: found no work plane; there must be one at least", name_));
@@ -232,8 +234,21 @@ class OvfReader {
         ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
         read_bytes_ += end - place;
         if (read_bytes_ > bytes_.size())
-            fail(place, "a message that was read before", "all that work planes name must fit the file");
+            fail_twice(place);
+        limits_.make_room(messages_, 1, at_byte(place));
+        messages_.push_back({place, end});
         return fields;
+    }
+
+    [[noreturn]] void fail_twice(std::uint64_t place) const {
+        fail(place, "a table, a head or a block once more", "work planes must share none");
+    }
+
+    void check_that_none_share() {
+        std::sort(messages_.begin(), messages_.end());
+        for (std::size_t i = 1; i < messages_.size(); ++i)
+            if (messages_[i].first < messages_[i - 1].second)
+                fail_twice(messages_[i].first);
     }
 
     Table read_table(std::uint64_t place) {
@@ -414,6 +429,7 @@ class OvfReader {
     std::vector<RawLayer> layers_;
     PartNumbers<BlockKind> parts_;
     std::uint64_t read_bytes_ = 0; ///< of messages, as often as they were read
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> messages_; ///< where those begin and end
     Oddity moved_{"work planes are moved or turned; their vectors were read as they stand"};
     Oddity other_vectors_{"blocks hold other vectors than lines and hatches; they were left out"};
     Oddity repeated_blocks_{"blocks are to be executed more than once; their vectors were read once"};

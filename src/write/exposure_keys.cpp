@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -38,20 +37,22 @@ std::size_t place_of(std::map<Key, std::size_t>& places, const Key& key, std::ve
 } // namespace
 
 ExposureKeys::ExposureKeys(std::span<const PartInfo> all) {
-    std::map<std::string_view, std::size_t> part_places; // views of what is in `all`
     std::map<decltype(key_of(Exposure{})), std::size_t> exposure_places;
-    std::set<std::pair<std::size_t, std::optional<std::size_t>>> taken;
+    std::map<std::string_view, std::vector<std::size_t>> places; // in `parts`, of each label
+    std::map<std::pair<std::string_view, std::optional<std::size_t>>, std::size_t> times;
     for (const PartInfo& part : all) {
         const std::string& label = part.exposure ? part.exposure->part : part.label;
         Key& key = keys.emplace_back();
         if (part.exposure)
             key.exposure = place_of(exposure_places, key_of(*part.exposure), exposures, *part.exposure);
-        key.part = place_of(part_places, std::string_view(label), parts, label);
-        if (!taken.emplace(key.part, key.exposure).second) { // of another part, which has the same label
-            part_places[label] = key.part = parts.size();
+        // What a part has already is of the next one of the same label.
+        const std::size_t number = times[{label, key.exposure}]++;
+        std::vector<std::size_t>& same = places[label];
+        if (number == same.size()) {
+            same.push_back(parts.size());
             parts.push_back(label);
-            taken.emplace(key.part, key.exposure);
         }
+        key.part = same[number];
     }
     assert(keys.size() == all.size());
 }

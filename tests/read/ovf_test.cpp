@@ -53,7 +53,8 @@ std::string plane_named(std::size_t times) {
 TEST(ReadOvf, ReadsNoMoreThanTheFileHolds) {
     const std::string once = plane_named(1);
     EXPECT_EQ(read_layers(std::as_bytes(std::span(once)), "test.ovf").parts.at(0).layers.size(), 1U);
-    EXPECT_NE(error_of(plane_named(1000)).find("found a message that was read before"), std::string::npos);
+    EXPECT_NE(error_of(plane_named(1000)).find("found a table, a head or a block once more"),
+              std::string::npos);
 }
 
 TEST(ReadOvf, ABrokenListOfPositionsHasItsPlace) {
@@ -73,6 +74,7 @@ struct Plane {
     std::vector<ProtobufMessage> blocks;
     std::int64_t repeats = 0;
     bool backwards = false; ///< the last block comes first in the file; the table has them in order
+    std::size_t named = 1;  ///< how often the table has the first block
 };
 
 /// A job with the parameters 1, 2 and 3 and these parts.
@@ -89,6 +91,8 @@ std::string job_of(const std::vector<Plane>& planes, const std::vector<std::stri
             blocks[next] = file.size();
             file += plane.blocks[next].delimited();
         }
+        if (!blocks.empty())
+            blocks.insert(blocks.begin(), plane.named - 1, blocks.front());
         ProtobufMessage head;
         head.real(ovf::work_plane::z, plane.z);
         head.integer(ovf::work_plane::repeats, plane.repeats);
@@ -154,6 +158,15 @@ TEST(ReadOvf, SaysWhichLayersLoseTheOrderOfExecution) {
     // Plain contours have no order.
     const ProtobufMessage plain = block(ovf::block::line_sequence, 0);
     EXPECT_TRUE(read(job_of({{1, {hatch, plain}}})).warnings.empty());
+}
+
+TEST(ReadOvf, ABlockIsExecutedOnce) {
+    const std::vector<std::string> parts{std::string(500, 'x')}; // so that there are bytes to spare
+    Plane plane{1, {block(ovf::block::hatches, 1)}};
+    EXPECT_EQ(read(job_of({plane}, parts)).parts.size(), 1U);
+    plane.named = 2;
+    EXPECT_NE(error_of(job_of({plane}, parts)).find("found a table, a head or a block once more"),
+              std::string::npos);
 }
 
 TEST(ReadOvf, BlocksMayLieInAnotherOrderThanTheirTableHasThemIn) {
