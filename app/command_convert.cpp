@@ -50,7 +50,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
     context.messages.warn_of(file.path, file.warnings);
-    check_steps(file, arguments.making.steps());
+    check_no_vectors(file, arguments.making.steps());
     LayerChanges changes;
     for (LayerPart& part : file.parts) {
         LayerChanges of_part;

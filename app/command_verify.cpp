@@ -97,7 +97,7 @@ std::string verification_text(const std::string& mesh, const Verification& found
     if (found.ok())
         text += fmt::format(
             "  every contour is closed, none cross, holes and outer contours run the right way{}\n",
-            found.max_area_error_mm2 ? "" : "; --mesh part.stl would check the areas, too");
+            mesh.empty() ? "; --mesh part.stl would check areas and places, too" : "");
     return text;
 }
 

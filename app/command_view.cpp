@@ -90,7 +90,7 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
                     fmt::format("{}: holds layers, and these stay where they are; options of "
                                 "where a part stands and how it is cut are for meshes",
                                 file.path));
-    check_steps(file, arguments.making.steps());
+    check_no_vectors(file, arguments.making.steps());
     PageNotes notes = file_notes(file);
     for (LayerPart& part : file.parts) {
         std::vector<LayerChanges> changes;

@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "messages.hpp"
+
 #include <fmt/format.h>
 
 namespace lamella::app {
@@ -43,7 +45,7 @@ LayerFileInfo info_of(const LayerFile& file) {
     return info;
 }
 
-void check_steps(const LayerFile& file, const LayerSteps& steps) {
+void check_no_vectors(const LayerFile& file, const LayerSteps& steps) {
     for (const LayerPart& part : file.parts)
         if (part.exposure && steps.any())
             throw Error(ErrorKind::usage,

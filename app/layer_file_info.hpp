@@ -14,6 +14,6 @@ namespace lamella::app {
 
 /// Throws Error{usage} for steps on scan vectors: hatches are other parts than their contours, which would be
 /// moved alone.
-void check_steps(const LayerFile& file, const LayerSteps& steps);
+void check_no_vectors(const LayerFile& file, const LayerSteps& steps);
 
 } // namespace lamella::app

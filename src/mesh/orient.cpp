@@ -2,11 +2,11 @@
 //
 //     flood   from the first triangle of each patch over edges of two triangles, noting which triangles run
 //             against it; the smaller of both sets is turned
-//     fit     patches over edges of more triangles: those that balance at such an edge stay as they are to
-//     one
-//             another, and two that would balance if one of them were turned are tied so
-//     close   which patches tied to one another are closed now, and what is around the edges where others are
-//     not turn    them as a whole, by their volumes and by what they lie in
+//     fit     patches over edges of more triangles: those that balance there stay as they are to one another,
+//             and two that would balance if one of them were turned are tied so
+//     close   which patches tied to one another are closed now, and what is around the edges where others
+//             are not
+//     turn    them as a whole, by their volumes and by what they lie in
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/repair.hpp"

@@ -154,17 +154,15 @@ PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t pl
 }
 
 /// What layers of a body in this box reach when the steps have been taken: at most, as only sharp corners
-/// move farther than the sides.
+/// move farther than the sides, and open chains stay where they are.
 Box3 box_after(const LayerSteps& steps, Box3 box) {
-    const double reach = steps.offset_mm > 0 && steps.offset_corners.shape == OffsetCorner::mitre
-                             ? steps.offset_mm * steps.offset_corners.mitre_limit
-                             : steps.offset_mm;
-    const Box3 before = box;
+    const bool mitre = steps.offset_corners.shape == OffsetCorner::mitre;
+    const double reach = std::max(0.0, steps.offset_mm) * (mitre ? steps.offset_corners.mitre_limit : 1);
     box.min.x -= reach;
     box.min.y -= reach;
     box.max.x += reach;
     box.max.y += reach;
-    return box.empty() ? before : box; // nothing is left
+    return box;
 }
 
 /// What the head of the slice file says.

@@ -88,7 +88,8 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         };
         const double area = checks[i].measure.area_mm2;
         largest_error = std::max(largest_error, std::abs(area - sections[i].front().area_mm2));
-        const double tolerance = area_tolerance(layers[i], checks[i].measure, options.rounding, extent);
+        const double tolerance = area_tolerance(layers[i], checks[i].measure, options.rounding, extent) +
+                                 2 * options.steps.simplify_mm * checks[i].measure.perimeter_mm;
         // What moves an edge moves a strip of area, which has its moment from where it lies.
         double reach = extent;
         for (const Point2& p : layers[i].points)
@@ -116,7 +117,9 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
                                               sections[first].front().area_mm2));
     }
     if (result.displaced > 0) {
-        const auto centre = [&](const AreaMoments& section) {
+        const auto centre = [&](const AreaMoments& section) -> std::string {
+            if (section.area_mm2 == 0)
+                return "nowhere"; // bodies that cancel
             return fmt::format("({:.7g}, {:.7g})", origin.x + section.x_mm3 / section.area_mm2,
                                origin.y + section.y_mm3 / section.area_mm2);
         };

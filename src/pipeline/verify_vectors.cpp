@@ -174,43 +174,43 @@ struct HatchLine {
     [[nodiscard]] double length() const noexcept { return ends == nullptr ? 0 : distance(ends[0], ends[1]); }
 };
 
-/// The longest line of each plane that has any.
+/// Of each plane and rule that has lines, the longest one: those of the lowest planes, some at least.
 std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const ScanStrategy& strategy,
                                      std::size_t planes) {
+    constexpr std::size_t enough = 32;
     std::vector<HatchLine> lines;
-    for (std::size_t plane = 0; plane < planes; ++plane) {
-        HatchLine longest;
+    for (std::size_t plane = 0; plane < planes && lines.size() < enough; ++plane) {
+        std::map<const HatchRule*, HatchLine> longest;
         for (const Group& group : groups)
             for (const LayerPart* const part : group.exposures) {
                 const Layer& vectors = part->layers[plane];
+                const HatchRule& rule = hatch_of(strategy, part->exposure->region);
                 for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
-                    if (const HatchLine line{&vectors.hatches[i], &hatch_of(strategy, part->exposure->region),
-                                             vectors.index};
-                        line.length() > longest.length())
-                        longest = line;
+                    if (const HatchLine line{&vectors.hatches[i], &rule, vectors.index};
+                        line.length() > longest[&rule].length())
+                        longest[&rule] = line;
             }
-        if (longest.ends != nullptr)
-            lines.push_back(longest);
+        for (const auto& of_rule : longest)
+            if (of_rule.second.ends != nullptr)
+                lines.push_back(of_rule.second);
     }
     return lines;
 }
 
-/// How many layers of the plan were before the first of these: that many with which most of the lowest lines
-/// are where they should be.
+/// How many layers of the plan were before the first of these: that many with which most of the lines are
+/// where they should be.
 std::uint64_t layers_before(const std::vector<HatchLine>& lines, double tolerance) {
-    constexpr std::uint64_t most = 1 << 20;
+    constexpr std::uint64_t most = 1 << 17;
     std::uint64_t best = 0;
     std::ptrdiff_t most_fit = 0;
-    for (std::uint64_t before = 0; before < most; ++before) {
-        const auto misfit = std::find_if(lines.begin(), lines.end(), [&](const HatchLine& line) {
-            return !AskedLines(*line.rule, before + line.layer, tolerance).have(line.ends[0], line.ends[1]);
+    for (std::uint64_t before = 0; before < most && most_fit < std::ssize(lines); ++before) {
+        const auto fit = std::count_if(lines.begin(), lines.end(), [&](const HatchLine& line) {
+            return AskedLines(*line.rule, before + line.layer, tolerance).have(line.ends[0], line.ends[1]);
         });
-        if (misfit - lines.begin() > most_fit) {
-            most_fit = misfit - lines.begin();
+        if (fit > most_fit) {
+            most_fit = fit;
             best = before;
         }
-        if (misfit == lines.end())
-            break;
     }
     return best;
 }
@@ -447,7 +447,9 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
                 largest = std::max({largest, largest_coordinate(layer.points.span()),
                                     largest_coordinate(layer.hatches.span())});
     // Ends of lines and points of contours, each moved along both axes; and what arithmetic moves.
-    const double tolerance = std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest;
+    // So does leaving out points, which is decided by their last digits.
+    const double tolerance =
+        std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest + options.steps.simplify_mm;
 
     const VectorCheck vectors(
         options, tolerance,

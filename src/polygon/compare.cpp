@@ -86,7 +86,7 @@ void farthest(const Point2& a, const Point2& b, const EdgeTree& to, double least
         largest = squared;
         where = middle;
     }
-    if (middle == a || middle == b)
+    if (middle == a || middle == b || !(distance_squared(middle, s, t) < infinity))
         return;
     farthest(a, middle, to, least, largest, where);
     farthest(middle, b, to, least, largest, where);

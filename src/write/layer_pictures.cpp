@@ -1,21 +1,38 @@
 #include "write/layer_pictures.hpp"
 
+#include "lamella/contour/measure.hpp"
 #include "lamella/polygon/fill.hpp"
 
 #include "container/inflate.hpp"
+#include "polygon/box2.hpp"
 #include "write/png.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace lamella {
 
 namespace {
 
-/// Where contours are open, the outer one of a hole may be among them: alone, the hole would be drawn as a
-/// body.
+/// Whether the outer contour of a hole may be among those that are open.
+bool may_have_lone_holes(const Layer& layer) {
+    if (layer.open_chains() == 0)
+        return false;
+    Box2 open = box_of(layer.contour(layer.rings));
+    for (std::size_t i = layer.rings + 1; i < layer.contours(); ++i)
+        open.add(box_of(layer.contour(i)));
+    for (std::size_t i = 0; i < layer.rings; ++i)
+        if (const Box2 box = box_of(layer.contour(i)); ring_area(layer.contour(i)) < 0 && open.x0 <= box.x0 &&
+                                                       box.x1 <= open.x1 && open.y0 <= box.y0 &&
+                                                       box.y1 <= open.y1)
+            return true;
+    return false;
+}
+
+/// Alone, a hole would be drawn as a body.
 Layer without_lone_holes(const Layer& layer) {
-    return layer.open_chains() > 0 ? fill(layer, FillRule::positive).layer : layer;
+    return may_have_lone_holes(layer) ? fill(layer, FillRule::positive).layer : layer;
 }
 
 } // namespace

@@ -73,6 +73,9 @@ class Vectors(ProgramTest):
         self.succeed("slice", "rook.stl", "--layer-height", "1", *compensated, "--scan", "-o", "job.cli")
         for name in ["layers.npz", "job.cli"]:
             self.succeed("verify", name, "--mesh", "rook.stl", *compensated)
+        thinned = ["--rotate-x", "30", "--simplify", "0.05"]
+        self.succeed("slice", "rook.stl", "--layer-height", "0.5", *thinned, "-o", "thinned.cli")
+        self.succeed("verify", "thinned.cli", "--mesh", "rook.stl", *thinned)
         self.assertEqual(self.run_program("verify", "layers.npz", "--mesh", "rook.stl").code, 4)
         self.assertEqual(self.run_program("verify", "layers.npz", "--mesh", "rook.stl", "--offset=-0.201").code, 4)
         self.assertIn("--mesh part.stl", self.run_program("verify", "layers.npz", *compensated).err)

@@ -189,8 +189,10 @@ TEST_F(VerifyVectors, FindsLinesThatAreTurnedOrLieBesideWhatTheStrategySays) {
 }
 
 TEST_F(VerifyVectors, AFileMayBeginWithAnyLayerOfItsPlan) {
-    strategy_.hatch.turn_degrees = 33.3;
-    for (const std::uint64_t first : {1U, 100U, 5000U}) {
+    // Regions turn by themselves.
+    strategy_.hatch.turn_degrees = 90;
+    strategy_.upskin.hatch.turn_degrees = 33.3;
+    for (const std::uint64_t first : {1U, 103U, 5000U}) {
         Plan later = plan_;
         for (PlannedLayer& layer : later.layers)
             layer.index += first;

@@ -98,6 +98,13 @@ TEST(LayerPictures, AHoleWhoseOuterContourIsOpenIsNoBody) {
     };
     EXPECT_EQ(covered(false), 20 * 20 - 10 * 10 + 4 * 5);
     EXPECT_EQ(covered(true), 4 * 5) << "what is whole is drawn";
+
+    // A body inside out, and a torn one somewhere else.
+    LayerBuilder builder;
+    add_contour(builder, {{0, 0}, {0, 10}, {10, 10}, {10, 0}});
+    add_contour(builder, {{30, 0}, {34, 0}, {34, 5}}, false);
+    const std::vector<Layer> apart{builder.finish(0, 0.5, 0, 1)};
+    EXPECT_EQ(pictures.picture(apart).covered, 10 * 10);
 }
 
 TEST(PictureFolder, PutsAllPartsIntoOnePicture) {

@@ -70,8 +70,7 @@ struct OrientedMesh {
 /// A patch is a part of the mesh connected over edges of exactly two triangles. Within a patch all triangles
 /// are made to run like the majority. Patches that meet at edges of more triangles are tied to one another as
 /// they are, where such an edge is used as often one way as the other, or with one of them turned, where that
-/// makes it so; again, the smaller part is turned. Thus where no edge
-/// is in conflict, none is afterwards.
+/// makes it so; again, the smaller part is turned. Thus where no edge is in conflict, none is afterwards.
 ///
 /// Then what is tied together is turned as a whole, if need be: outward, or inward when it lies in an odd
 /// number of others that are closed: a void. (It lies in what winds around the middle of its largest

@@ -27,7 +27,7 @@ struct VerifyOptions {
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
     LayerSteps steps = {}; ///< that were taken with the layers of the mesh, one part; without any, areas are
-                           ///< computed without linking
+                           ///< computed without linking. What `simplify_mm` may move is granted.
     /// How the format rounds coordinates and heights. The area tolerance grows with it and the layer's
     /// perimeter; and rings so thin that it can turn them over are not held to an orientation.
     Rounding rounding = {};
