@@ -120,8 +120,11 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         const auto centre = [&](const AreaMoments& section) -> std::string {
             if (section.area_mm2 == 0)
                 return "nowhere"; // bodies that cancel
-            return fmt::format("({:.7g}, {:.7g})", origin.x + section.x_mm3 / section.area_mm2,
-                               origin.y + section.y_mm3 / section.area_mm2);
+            const auto to_nanometres = [](double mm) {
+                return std::round(mm * 1e6) / 1e6 + 0.0;
+            };
+            return fmt::format("({:.7g}, {:.7g})", to_nanometres(origin.x + section.x_mm3 / section.area_mm2),
+                               to_nanometres(origin.y + section.y_mm3 / section.area_mm2));
         };
         result.findings.push_back(fmt::format(
             "{} layer{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
