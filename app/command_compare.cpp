@@ -92,12 +92,16 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
     return fmt::format("z = {} mm: {}", brief(plane.z), fmt::join(texts, ", "));
 }
 
-std::string parameters_text(const std::vector<ParameterDifference>& parameters) {
+std::string exposures_text(const FileComparison& found, const CompareArguments& arguments) {
     std::string text;
-    for (const ParameterDifference& one : parameters)
-        text += fmt::format("  {}: {} {} against {}\n", one_line(one.label), one.parameter, brief(one.first),
-                            brief(one.second));
-    return text;
+    for (const ParameterDifference& one : found.parameters)
+        text += fmt::format("    {}: {} {} against {}\n", one_line(one.label), one.parameter,
+                            brief(one.first), brief(one.second));
+    const std::vector<std::string>* const only[] = {&found.only_first, &found.only_second};
+    for (std::size_t i = 0; i < std::size(only); ++i)
+        for (const std::string& label : *only[i])
+            text += fmt::format("    {}: only in {}\n", one_line(label), one_line(arguments.inputs[i]));
+    return text.empty() ? "" : "  parts are exposed otherwise:\n" + text;
 }
 
 Json plane_json(const Differing& one) {
@@ -221,7 +225,9 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
                     {"first_difference", differing.empty() ? Json() : plane_json(differing.front())},
                     {"largest_difference", differing.empty() ? Json() : plane_json(*largest)},
                     {"differences", std::move(layers)},
-                    {"parameters", parameters_json(files.parameters)}};
+                    {"parameters", parameters_json(files.parameters)},
+                    {"only_first", files.only_first},
+                    {"only_second", files.only_second}};
         if (arguments.area_difference) {
             report["area_difference_mm2"] = sum_of(areas);
             report["area_differences"] = Json::array();
@@ -245,8 +251,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
                 fmt::format("  the first difference:   {}\n", difference_text(differing.front(), arguments));
             text += fmt::format("  the largest difference: {}\n", difference_text(*largest, arguments));
         }
-        if (!files.parameters.empty())
-            text += "  parts are exposed otherwise:\n" + parameters_text(files.parameters);
+        text += exposures_text(files, arguments);
         if (arguments.area_difference)
             text += area_text(areas);
         context.messages.result(text);
@@ -270,17 +275,16 @@ Command compare_command() {
         .name = "compare",
         .summary = "tell how far two slice files are from each other",
         .description =
-            "Compares the layers of two slice files, of any formats, plane by plane: how far the corners of "
-            "one are from the contours of the other, areas, open chains, hatch lines one by one, heights, "
-            "and by "
-            "which parameters parts are exposed. Tells the first and the largest difference. Exit code 4 "
-            "says that they do not agree within the tolerance.",
-        .operands = {operand("FIRST", "a slice file; - is standard input"), operand("SECOND", "another one")},
+            "Compares the layers of two slice files, of any formats, plane by plane: how far the contours of "
+            "one are from those of the other, areas and their centres, open chains, hatch lines one by one, "
+            "heights, and by which parameters parts are exposed. Tells the first and the largest difference. "
+            "Exit code 4 says that they do not agree within the tolerance.",
+        .operands = {operand("FIRST", "a slice file; - is standard input"),
+                     operand("SECOND", "the slice file to compare it with")},
         .groups = {{"What is compared",
                     {row("tolerance", ValueKind::number, "MM",
-                         "how far contours and ends of hatch lines may be apart; what the rounding of both "
-                         "formats explains unless "
-                         "given",
+                         "how far contours, ends of hatch lines and cuts may be apart; what the rounding of "
+                         "both formats explains unless given",
                          [arguments](const std::string& text) {
                              arguments->tolerance = parse_number(text);
                              if (*arguments->tolerance < 0)

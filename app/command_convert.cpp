@@ -115,7 +115,8 @@ Command convert_command() {
                    run_options(arguments->run, {max_memory_option(arguments->limits, "the layers take")}),
                    common_options(true)},
         .examples = {{"lamella convert part.cli part.svg", "to look at it"},
-                     {"lamella convert part.svg part.cli --units-mm 0.005", "for a machine with 5 um steps"}},
+                     {"lamella convert part.svg part.cli --short --units-mm 0.005",
+                      "for a machine with 5 um steps"}},
         .run = [arguments](const Context& context) {
             return run_convert(*arguments, context);
         }};

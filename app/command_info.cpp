@@ -109,7 +109,9 @@ Figures vector_figures(const LayerFile& file) {
     for (Figure& figure : figures)
         if ((figure.key == "build_seconds" && !timed) || (figure.key == "energy_j" && !(timed && powered))) {
             figure.value = nullptr;
-            figure.text = "not known: the file does not say speed or power";
+            figure.text = fmt::format("not known: the file does not say {}{}{}", timed ? "" : "speeds",
+                                      timed || powered || figure.key != "energy_j" ? "" : " and ",
+                                      powered || figure.key != "energy_j" ? "" : "powers");
         }
     return figures;
 }

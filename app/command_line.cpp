@@ -66,12 +66,27 @@ class Splitter {
     }
 
   private:
+    /// Some commands write to an argument.
+    [[nodiscard]] std::string instead_of_output(std::string_view name) const {
+        if (name != "output" && name != "o")
+            return {};
+        std::string operands;
+        bool written = false;
+        for (const Operand& operand : command_.operands) {
+            operands += ' ' + operand.placeholder;
+            written = written || operand.written;
+        }
+        return written ? fmt::format("; the output is an argument: lamella {}{}", command_.name, operands)
+                       : std::string();
+    }
+
     void split_long(const std::string& word) {
         const std::size_t equals = word.find('=');
         const std::string typed = word.substr(0, equals);
         Option* option = find_option(command_, typed.substr(2));
         if (option == nullptr)
-            refuse(fmt::format("lamella {} has no option {}{}", command_.name, typed,
+            refuse(fmt::format("lamella {} has no option {}{}{}", command_.name, typed,
+                               instead_of_output(typed.substr(2)),
                                option_suggestion(command_, typed.substr(2), "--")));
         if (equals != std::string::npos)
             out_.words.push_back({option, typed, word.substr(equals + 1)});
@@ -82,8 +97,8 @@ class Splitter {
     void split_short(const std::string& word) {
         Option* option = by_letter(word[1]);
         if (option == nullptr)
-            refuse(fmt::format("lamella {} has no option {}; see lamella {} --help", command_.name,
-                               word.substr(0, 2), command_.name));
+            refuse(fmt::format("lamella {} has no option {}{}; see lamella {} --help", command_.name,
+                               word.substr(0, 2), instead_of_output(word.substr(1, 1)), command_.name));
         const std::string typed = word.substr(0, 2);
         if (word.size() == 2)
             take_value(*option, typed);

@@ -78,9 +78,7 @@ std::vector<std::string> losses(const LayerFile& file) {
             const Layer& layer = part.layers[i];
             hatches += layer.hatches.size() / 2;
             chains += layer.open_chains();
-            // In normal form the first ring has the smallest point of all rings, so nothing lies around it
-            // but an open chain.
-            any = any || (layer.rings > 0 && layer.open_chains() == 0 && ring_area(layer.contour(0)) < 0);
+            any = any || (layer.open_chains() == 0 && begins_clockwise(layer));
         }
         if (any && inside_out++ == 0)
             first_z = planes[i].z;

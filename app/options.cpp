@@ -282,8 +282,8 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
         choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
                names_of(layer_formats()), target.format),
         length("units-mm",
-               fmt::format("{}: millimetres per unit of the file, to which coordinates are rounded; 0.001 "
-                           "unless given",
+               fmt::format("{}: millimetres per unit of the file; coordinates are rounded to whole ones with "
+                           "--short, in cli-ascii and in 3mf-toolpath; 0.001 unless given",
                            formats_with(&LayerFormat::units)),
                target.units_mm),
         flag("short",

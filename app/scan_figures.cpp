@@ -58,11 +58,11 @@ std::string energy_text(double joules) {
 
 Figures scan_figures(std::span<const ExposureResult> exposures) {
     const Sums sums = sums_of(exposures);
-    return {{"contour_vectors", sums.contour_vectors, "contour vectors", grouped(sums.contour_vectors)},
-            {"hatch_vectors", sums.hatch_vectors, "hatch vectors", grouped(sums.hatch_vectors)},
+    return {{"contour_vectors", sums.contour_vectors, "on contours", counted(sums.contour_vectors, "vector")},
+            {"hatch_vectors", sums.hatch_vectors, "in hatches", counted(sums.hatch_vectors, "vector")},
             {"marked_mm", sums.all.marked_mm, "marked", length_text(sums.all.marked_mm)},
             {"jumped_mm", sums.all.jumped_mm, "jumped", length_text(sums.all.jumped_mm)},
-            {"build_seconds", sums.all.build_seconds, "time of the beam", time_text(sums.all.build_seconds)},
+            {"build_seconds", sums.all.build_seconds, "beam time", time_text(sums.all.build_seconds)},
             {"energy_j", sums.all.energy_j, "energy", energy_text(sums.all.energy_j)}};
 }
 

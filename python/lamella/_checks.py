@@ -53,8 +53,8 @@ def verify(
     progress: Optional[Progress] = None,
 ) -> Verification:
     """Checks layers: every contour closed, outer rings counter-clockwise and holes clockwise by their nesting, none
-    crossing another or itself; and, where a mesh is given, of the area of its section, without gaps
-    between layers.
+    crossing another or itself; and, where a mesh is given, of the area of its section, where that is, without gaps between
+    layers.
 
     layers: a path or a Stack.
     mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.

@@ -142,8 +142,9 @@ def write(
         which are the parts of the file; or scan vectors, as `scan` gives them. What `iter_layers` gives, and `scan` of
         that or of a Stack, is written while it is being made; layers of any other iterable are collected first.
     format: name of the format of layers, where the extension does not say it.
-    units_mm: Common Layer Interface: millimetres per unit, to which coordinates are rounded; 0.001 unless given.
-    short_form: Common Layer Interface, binary: coordinates of 16 bits.
+    units_mm: Common Layer Interface, ILT, 3MF with toolpaths: millimetres per unit; 0.001 unless given. Coordinates are
+        rounded to whole ones with short_form, in "cli-ascii" and in "3mf-toolpath".
+    short_form: binary Common Layer Interface, ILT: coordinates of 16 bits.
 
     Pictures (png, png-zip, sl1, sl1s):
     pixel_mm, pixels, display_mm: size of a pixel, their number, and size of the display, each along x and y; of

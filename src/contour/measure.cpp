@@ -19,6 +19,10 @@ LAMELLA_VECTOR_CLONES double ring_area(std::span<const Point2> ring) noexcept {
     return area.end(ring, i);
 }
 
+bool begins_clockwise(const Layer& layer) noexcept {
+    return layer.rings > 0 && ring_area(layer.contour(0)) < 0;
+}
+
 double contour_length(std::span<const Point2> contour, bool closed) noexcept {
     if (contour.size() < 2)
         return 0;

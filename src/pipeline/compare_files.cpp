@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -82,36 +85,77 @@ bool is_same(double one, double other) noexcept {
     return std::abs(one - other) <= of_single_precision * std::max(std::abs(one), std::abs(other));
 }
 
-std::vector<ParameterDifference> compare_parameters(const LayerFile& first, const LayerFile& second) {
-    std::vector<ParameterDifference> differences;
-    const bool one_format = first.format == second.format;
-    std::map<std::string_view, std::vector<const LayerPart*>> others; // by label, the first one last
-    for (auto part = second.parts.rbegin(); part != second.parts.rend(); ++part)
-        others[part->label].push_back(&*part);
-    for (const LayerPart& part : first.parts) {
-        std::vector<const LayerPart*>& alike = others[part.label];
-        if (alike.empty())
-            continue;
-        const LayerPart& other = *alike.back();
-        alike.pop_back();
-        if (!part.exposure || !other.exposure)
-            continue;
-        for (const StrategyField<ParameterSet>& field : parameter_fields()) {
-            const auto member = std::get<double ParameterSet::*>(field.member);
-            const double one = part.exposure->parameters.*member;
-            const double its = other.exposure->parameters.*member;
-            if ((one_format || (one != 0 && its != 0)) && !is_same(one, its))
-                differences.push_back({part.label, std::string(field.name), one, its});
-        }
+void compare_parameters(const LayerPart& first, const LayerPart& second, bool one_format,
+                        std::vector<ParameterDifference>& differences) {
+    for (const StrategyField<ParameterSet>& field : parameter_fields()) {
+        const auto member = std::get<double ParameterSet::*>(field.member);
+        const double one = first.exposure->parameters.*member;
+        const double its = second.exposure->parameters.*member;
+        if ((one_format || (one != 0 && its != 0)) && !is_same(one, its))
+            differences.push_back({first.label, std::string(field.name), one, its});
     }
-    return differences;
+}
+
+/// Those that expose anything: some formats have no others.
+std::vector<const LayerPart*> exposed_parts(const LayerFile& file) {
+    std::vector<const LayerPart*> parts;
+    for (const LayerPart& part : file.parts)
+        if (part.exposure && std::any_of(part.layers.begin(), part.layers.end(), [](const Layer& layer) {
+                return layer.contours() > 0 || !layer.hatches.empty();
+            }))
+            parts.push_back(&part);
+    return parts;
+}
+
+/// Takes the pairs of equal keys out of both lists, each in its order: visit(one, other).
+template <class Key, class Visit>
+void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPart*>& second, const Key& key,
+                const Visit& visit) {
+    std::map<decltype(key(*first.front())), std::deque<const LayerPart*>> others;
+    for (const LayerPart* const part : second)
+        others[key(*part)].push_back(part);
+    std::set<const LayerPart*> taken;
+    std::erase_if(first, [&](const LayerPart* part) {
+        std::deque<const LayerPart*>& alike = others[key(*part)];
+        if (alike.empty())
+            return false;
+        visit(*part, *alike.front());
+        taken.insert(alike.front());
+        alike.pop_front();
+        return true;
+    });
+    std::erase_if(second, [&](const LayerPart* part) { return taken.count(part) != 0; });
+}
+
+void compare_exposures(const LayerFile& first, const LayerFile& second, FileComparison& result) {
+    const bool one_format = first.format == second.format;
+    std::vector<const LayerPart*> ones = exposed_parts(first);
+    std::vector<const LayerPart*> others = exposed_parts(second);
+    const auto compare = [&](const LayerPart& one, const LayerPart& other) {
+        compare_parameters(one, other, one_format, result.parameters);
+    };
+    take_pairs(
+        ones, others, [](const LayerPart& part) { return std::string_view(part.label); }, compare);
+    take_pairs(
+        ones, others,
+        [](const LayerPart& part) {
+            return std::tuple(part.exposure->region, part.exposure->kind, part.exposure->contour);
+        },
+        compare);
+    if (!one_format)
+        return; // not all keep labels and regions
+    for (const LayerPart* const part : ones)
+        result.only_first.push_back(part->label);
+    for (const LayerPart* const part : others)
+        result.only_second.push_back(part->label);
 }
 
 } // namespace
 
 bool FileComparison::agree() const noexcept {
-    return parameters.empty() && std::all_of(layers.planes.begin(), layers.planes.end(),
-                                             [](const ComparedPlane& plane) { return plane.agree; });
+    return parameters.empty() && only_first.empty() && only_second.empty() &&
+           std::all_of(layers.planes.begin(), layers.planes.end(),
+                       [](const ComparedPlane& plane) { return plane.agree; });
 }
 
 FileComparison compare_files(const LayerFile& first, const LayerFile& second,
@@ -120,7 +164,10 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
     FileComparison result{.layers = compare(RoundedLayers{stacks[0], first.rounding},
                                             {stacks[1], second.rounding}, tolerance_mm),
                           .details = {},
-                          .parameters = compare_parameters(first, second)};
+                          .parameters = {},
+                          .only_first = {},
+                          .only_second = {}};
+    compare_exposures(first, second, result);
     const double of_ends = tolerance_mm ? *tolerance_mm : moved_ends(first) + moved_ends(second);
     result.layers.tolerance_mm = std::max(result.layers.tolerance_mm, of_ends);
     const std::vector<std::string> labels = hatched_labels(first);

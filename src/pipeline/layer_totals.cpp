@@ -47,9 +47,7 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const Layer& layer = parts[i];
         row.open_gaps += open_gaps(layer);
-        // In normal form the first ring has the smallest point of all rings: nothing but an open chain lies
-        // around it.
-        row.inside_out |= layer.rings > 0 && ring_area(layer.contour(0)) < 0;
+        row.inside_out |= begins_clockwise(layer);
         parts_[i].contours.fetch_add(layer.contours(), std::memory_order_relaxed);
         parts_[i].open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
         parts_[i].points.fetch_add(layer.points.size(), std::memory_order_relaxed);

@@ -95,7 +95,17 @@ class Compare(ProgramTest):
         self.assertIn("part core hatch: power_w 200 against 333", result.text)
         found = self.differ("job.ovf", "strong.ovf", "--json").json()
         self.assertEqual(found["differing"], 0)
+        self.assertEqual((found["only_first"], found["only_second"]), ([], []))
         self.assertEqual(found["parameters"], [{"part": "part core hatch", "parameter": "power_w", "first": 200, "second": 333}])
+        # Another name makes no other job; another power does, and what one job alone exposes.
+        self.slice("named.ovf", *scan, "--label", "other")
+        self.succeed("compare", "job.ovf", "named.ovf")
+        self.slice("named.ovf", *scan, "--label", "other", "--strategy", "strong.toml")
+        self.assertIn("part core hatch: power_w 200 against 333", self.differ("job.ovf", "named.ovf").text)
+        self.slice("skins.ovf", *scan, "--skin-layers", "1")
+        found = self.differ("job.ovf", "skins.ovf", "--json").json()
+        self.assertEqual((found["only_first"], found["only_second"]), ([], ["part downskin hatch", "part upskin hatch"]))
+        self.assertIn("part upskin hatch: only in skins.ovf", self.differ("job.ovf", "skins.ovf").text)
         for name in ("job.cli", "job.ilt", "job.json"):  # have no place for all of them
             self.slice(name, *scan)
             self.succeed("compare", "job.ovf", name)

@@ -32,8 +32,9 @@ class ProgramDocs(ProgramTest):
     def test_the_exit_codes(self):
         codes = re.findall(r"^ +(\d+)  (.*)$", self.succeed("--help").text, re.MULTILINE)
         self.assertEqual(len(codes), 9)
-        for code, _ in codes:
-            self.assertRegex(self.page, rf"(?m)^\| {code} \|")
+        page = self.page.replace("`", "")
+        for code, text in codes:
+            self.assertIn(f"| {code} | {text} |", page)
 
 
 if __name__ == "__main__":

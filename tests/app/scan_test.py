@@ -376,7 +376,7 @@ class Scan(ProgramTest):
                 self.assertIsNone(info["build_seconds"])
                 self.assertIsNone(info["energy_j"])
             text = self.succeed("info", name).text
-            self.assertIn("hatch vectors", text)
+            self.assertRegex(text, r"(?m)^  in hatches  [\d,]+ vectors$")
             self.assertNotIn("volume", text)
 
     def test_steps_are_for_contours(self):

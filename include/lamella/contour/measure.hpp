@@ -13,6 +13,10 @@ namespace LAMELLA_API lamella {
 /// a ring far from the origin loses no digits. O(n).
 [[nodiscard]] double ring_area(std::span<const Point2> ring) noexcept;
 
+/// Whether a layer in normal form is inside out: its first ring has the smallest point of all rings, so that
+/// nothing but an open chain lies around it, and runs clockwise. O(points of that ring).
+[[nodiscard]] bool begins_clockwise(const Layer& layer) noexcept;
+
 /// Length in mm, for a ring including the way back to the first point.
 [[nodiscard]] double contour_length(std::span<const Point2> contour, bool closed) noexcept;
 

@@ -41,17 +41,21 @@ struct FileComparison {
     StackComparison layers;
     std::vector<PlaneDetails> details; ///< of each of the planes
     std::vector<ParameterDifference> parameters;
+    /// Labels of what one file exposes and the other does not.
+    std::vector<std::string> only_first;
+    std::vector<std::string> only_second;
 
-    /// All planes, and all parameters.
+    /// All planes, and all that is exposed.
     [[nodiscard]] bool agree() const noexcept;
 };
 
 /// Compares the contours of two files as `compare` does. Hatch lines are compared one by one, in their order:
 /// part by part where the same labels have some, else those of all parts. Their ends agree within the
 /// tolerance; unless given, what rounding explains. Bottoms and tops agree up to what rounding explains and
-/// 1e-6 mm. Parameters of parts of the same label differ where files of one format say other numbers; of
-/// different formats, not all of which have a place for each, where both say one. Expected O(n log n) for n
-/// points and ends of lines of both, whose contours are in memory a second time.
+/// 1e-6 mm. Parameters of parts of the same label, or else of the same region, kind and contour in their
+/// order, differ where files of one format say other numbers; of different formats, not all of which have a
+/// place for each, where both say one. What has no partner counts in files of one format. Expected O(n log n)
+/// for n points and ends of lines of both, whose contours are in memory a second time.
 [[nodiscard]] FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                                            std::optional<double> tolerance_mm = {});
 
