@@ -33,8 +33,13 @@ namespace lamella {
     return t;
 }
 
+/// The same bits on every processor, as by `hypotenuse` of contour/distance: the way round of shells depends
+/// on it. No square of a coordinate is too large (core/farthest).
 [[nodiscard]] inline double distance(const Point3& a, const Point3& b) noexcept {
-    return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+    const double x = a.x - b.x;
+    const double y = a.y - b.y;
+    const double z = a.z - b.z;
+    return std::sqrt(x * x + y * y + z * z);
 }
 
 } // namespace lamella

@@ -19,6 +19,7 @@
 #include "mesh/measures.hpp"
 #include "mesh/shells.hpp"
 #include "mesh/triangle_contact.hpp"
+#include "mesh/union_find.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +28,6 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -114,20 +114,19 @@ struct TiedTriangle {
     int way;           ///< 1 where it runs through them in this order, or -1
 };
 
-/// Of the shells asked for, turns back what was turned, and the rest instead, where more than half is turned.
+/// Of each shell turns back what was turned, and the rest instead, where more than half is turned.
 /// A tie is decided by the way round of the lexicographically smallest triangle that is not there the other
 /// way, too: so the order of triangles does not matter, nor which corner of one comes first.
-void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, const std::vector<bool>& asked,
-                       std::vector<bool>& turned) {
+void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vector<bool>& turned) {
     const std::size_t n = mesh.triangles.size();
     std::vector<std::int64_t> lead(shells.size(), 0);
     for (std::size_t i = 0; i < n; ++i)
-        if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && asked[s])
+        if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell)
             lead[s] += turned[i] ? 1 : -1;
     std::vector<TiedTriangle> tied;
     for (std::size_t i = 0; i < n; ++i) {
         const std::uint32_t s = shells.of_triangle[i];
-        if (s == no_shell || !asked[s] || lead[s] != 0)
+        if (s == no_shell || lead[s] != 0)
             continue;
         const Triangle3 t = corners(mesh, i);
         const bool odd = (t[1] < t[0]) != ((t[2] < t[0]) != (t[2] < t[1]));
@@ -169,11 +168,11 @@ void add_up(std::vector<Balance>& balances) {
 /// A patch uses an edge so many times oftener upwards than downwards.
 struct UnevenUse {
     VertexPair edge;
-    std::uint32_t patch;
-    int balance; ///< not 0
+    std::uint32_t patch; ///< or what is tied together
+    int balance;         ///< not 0
 };
 
-/// Those of each edge together; without one-sided patches.
+/// In ascending order; without one-sided patches.
 std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& mesh, const Patches& patches) {
     std::vector<std::vector<UnevenUse>> found(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
@@ -195,6 +194,10 @@ std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& m
         all.insert(all.end(), part.begin(), part.end());
         part = {};
     }
+    // Not in the order of workers: areas are added up.
+    std::sort(all.begin(), all.end(), [](const UnevenUse& a, const UnevenUse& b) {
+        return std::tie(a.edge, a.patch) < std::tie(b.edge, b.patch);
+    });
     return all;
 }
 
@@ -218,43 +221,29 @@ class Ties {
         bool against;        ///< turned, compared with the first
     };
 
-    explicit Ties(std::size_t patches) : next_(patches), against_(patches, false) {
-        std::iota(next_.begin(), next_.end(), 0U);
-    }
+    explicit Ties(std::size_t patches) : ways_(2 * patches) {}
 
-    [[nodiscard]] Place place(std::uint32_t patch) {
-        Place end{patch, false};
-        while (next_[end.first] != end.first)
-            end = {next_[end.first], end.against != against_[end.first]};
-        bool against = end.against;
-        while (patch != end.first) { // the way is shorter from now on
-            const bool step = against_[patch];
-            against_[patch] = against;
-            against = against != step;
-            patch = std::exchange(next_[patch], end.first);
-        }
-        return end;
+    [[nodiscard]] Place place(std::uint32_t patch) const noexcept {
+        const std::uint32_t lowest = ways_.find(2 * patch);
+        return {lowest / 2, lowest % 2 != 0};
     }
 
     /// False where they are tied the other way already.
-    bool tie(std::uint32_t a, std::uint32_t b, bool against) {
-        const Place at_a = place(a);
-        const Place at_b = place(b);
-        const bool turn = (at_a.against != at_b.against) != against;
-        if (at_a.first == at_b.first)
-            return !turn;
-        next_[at_a.first] = at_b.first;
-        against_[at_a.first] = turn;
+    bool tie(std::uint32_t a, std::uint32_t b, bool against) const noexcept {
+        const std::uint32_t turn = against ? 1 : 0;
+        if (ways_.find(2 * a) == ways_.find(2 * b + 1 - turn))
+            return false;
+        ways_.join(2 * a, 2 * b + turn);
+        ways_.join(2 * a + 1, 2 * b + 1 - turn);
         return true;
     }
 
   private:
-    std::vector<std::uint32_t> next_;
-    std::vector<bool> against_;
+    UnionFind ways_; ///< of patch p, 2p is p as it is, and 2p + 1 p turned
 };
 
 /// Of an edge, by the first of those tied to one another, as it runs.
-std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, Ties& ties) {
+std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, const Ties& ties) {
     std::vector<Balance> all;
     for (const UnevenUse& use : uses) {
         const Ties::Place at = ties.place(use.patch);
@@ -300,7 +289,7 @@ Ties fit(std::size_t patches, const std::vector<UnevenUse>& uneven) {
 }
 
 /// What is tied together, as shells; all of them closed so far.
-Shells tied_shells(const Shells& patches, Ties& ties) {
+Shells tied_shells(const Shells& patches, const Ties& ties) {
     Shells shells;
     shells.of_triangle = PageArray<std::uint32_t>(patches.of_triangle.size());
     std::vector<std::uint32_t> number(patches.size(), no_shell);
@@ -340,30 +329,25 @@ struct Content {
 
 /// Marks shells that are not closed.
 std::vector<Content> measure_shells(const IndexedMesh& mesh, const std::vector<Box3>& boxes,
-                                    const std::vector<UnevenUse>& uneven, const Shells& patches, Ties& ties,
-                                    Shells& shells) {
-    struct OpenEdge {
-        std::uint32_t shell;
-        int times;
-        VertexPair ends;
-    };
-    std::vector<OpenEdge> open;
+                                    const std::vector<UnevenUse>& uneven, const Shells& patches,
+                                    const Ties& ties, Shells& shells) {
+    std::vector<UnevenUse> open; // of shells
     for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {
         for (const Balance& balance : tied_balances(uses, ties))
-            open.push_back(
-                {shells.of_triangle[patches.first[balance.first]], std::abs(balance.second), uses[0].edge});
+            open.push_back({uses[0].edge, shells.of_triangle[patches.first[balance.first]], balance.second});
     });
     std::vector<Box3> around(shells.size());
-    for (const OpenEdge& edge : open) {
-        shells.closed[edge.shell] = false;
-        around[edge.shell].add(mesh.vertices[edge.ends.first]);
-        around[edge.shell].add(mesh.vertices[edge.ends.second]);
+    for (const auto& [edge, shell, balance] : open) {
+        shells.closed[shell] = false;
+        around[shell].add(mesh.vertices[edge.first]);
+        around[shell].add(mesh.vertices[edge.second]);
     }
     std::vector<Point3> origins;
     for (std::size_t s = 0; s < shells.size(); ++s)
         origins.push_back(middle(shells.closed[s] ? boxes[s] : around[s]));
 
     std::vector<Content> contents(shells.size());
+    // A sum of k terms is off by no more than k epsilons of their sizes; 32 more are what one term rounds.
     std::vector<double> additions(shells.size(), 32);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::uint32_t s = shells.of_triangle[i];
@@ -377,10 +361,9 @@ std::vector<Content> measure_shells(const IndexedMesh& mesh, const std::vector<B
         contents[s].area += area(t);
         ++additions[s];
     }
-    for (const OpenEdge& edge : open)
-        contents[edge.shell].fans +=
-            edge.times *
-            area({mesh.vertices[edge.ends.first], mesh.vertices[edge.ends.second], origins[edge.shell]});
+    for (const auto& [edge, shell, balance] : open)
+        contents[shell].fans +=
+            std::abs(balance) * area({mesh.vertices[edge.first], mesh.vertices[edge.second], origins[shell]});
     for (std::size_t s = 0; s < shells.size(); ++s)
         contents[s].rounding *= additions[s];
     return contents;
@@ -487,13 +470,18 @@ std::vector<Sense> find_senses(Executor& executor, const IndexedMesh& mesh, cons
     return senses;
 }
 
+IndexedMesh turned_where(IndexedMesh mesh, const std::vector<bool>& turned) {
+    for (std::size_t i = 0; i < turned.size(); ++i)
+        if (turned[i])
+            std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+    return mesh;
+}
+
 /// Shells as a whole, as far as their volumes are certain.
 void turn_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patches,
-                    const std::vector<UnevenUse>& uneven, Ties& ties, Shells& shells, OrientedMesh& result) {
-    IndexedMesh now = mesh;
-    for (std::size_t i = 0; i < now.triangles.size(); ++i)
-        if (patches.turned[i])
-            std::swap(now.triangles[i][1], now.triangles[i][2]);
+                    const std::vector<UnevenUse>& uneven, const Ties& ties, Shells& shells,
+                    OrientedMesh& result) {
+    const IndexedMesh now = turned_where(mesh, patches.turned);
     const std::vector<Box3> boxes = shell_boxes(now, shells);
     const std::vector<Content> contents = measure_shells(now, boxes, uneven, patches.shells, ties, shells);
     std::vector<bool> asked;
@@ -526,29 +514,29 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
     const std::size_t count = patches.shells.size();
     const std::vector<std::uint32_t>& first = patches.shells.first;
     std::vector<bool>& turned = patches.turned;
-    turn_the_minority(mesh, patches.shells, std::vector<bool>(count, true), turned);
+    turn_the_minority(mesh, patches.shells, turned);
     std::vector<UnevenUse> uneven = find_uneven_uses(executor, mesh, patches);
 
     OrientedMesh result;
     result.patches = count;
     for (std::size_t settled = 0;;) {
-        Ties ties = fit(count, uneven);
+        const Ties ties = fit(count, uneven);
         Shells shells = tied_shells(patches.shells, ties);
         if (shells.size() == settled)
             break; // what was turned last made nothing fit that did not before
         std::vector<bool> before;
-        std::vector<bool> fitted(shells.size(), false);
+        bool fitted = false;
         for (std::size_t p = 0; p < count; ++p) {
             before.push_back(turned[first[p]]);
-            if (ties.place(static_cast<std::uint32_t>(p)).against)
-                fitted[shells.of_triangle[first[p]]] = true;
+            fitted = fitted || ties.place(static_cast<std::uint32_t>(p)).against;
         }
         for (std::size_t i = 0; i < n; ++i)
             if (const std::uint32_t p = patches.shells.of_triangle[i]; p != no_shell && ties.place(p).against)
                 turned[i] = !turned[i];
-        turn_the_minority(mesh, shells, fitted, turned);
-        if (std::find(fitted.begin(), fitted.end(), true) == fitted.end()) {
+        turn_the_minority(mesh, shells, turned);
+        if (!fitted) {
             settled = shells.size();
+            result.turned_outward = result.turned_inward = 0; // those of the largest groups count
             turn_by_volume(executor, mesh, patches, uneven, ties, shells, result);
         }
         for (UnevenUse& use : uneven)
@@ -558,10 +546,9 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
 
     result.one_sided_patches =
         static_cast<std::uint64_t>(std::count(patches.one_sided.begin(), patches.one_sided.end(), true));
-    result.mesh = mesh;
+    result.mesh = turned_where(mesh, turned);
     for (std::size_t i = 0; i < n; ++i)
         if (turned[i]) {
-            std::swap(result.mesh.triangles[i][1], result.mesh.triangles[i][2]);
             ++result.turned_triangles;
             if (result.places.size() < repair_places)
                 result.places.push_back(middle(corners(mesh, i)));

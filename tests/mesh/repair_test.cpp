@@ -468,10 +468,28 @@ TEST(Orient, IsTheSameForAnyNumberOfThreadsOnRandomMeshes) {
         for (int v = 0; v < vertices; ++v)
             mesh.vertices.push_back({random.real(0, 1), random.real(0, 1), random.real(0, 1)});
         add_random_triangles(mesh, 80, random);
+        if (round % 10 == 0) { // edges are looked at by pieces of vertices: so there are several
+            constexpr std::uint32_t pieces = 5;
+            constexpr std::uint32_t piece = 1 << 14;
+            std::vector<Point3> spread(std::size_t{pieces} * piece);
+            const auto place = [](std::uint32_t v) {
+                return v % pieces * piece + v / pieces;
+            };
+            for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+                spread[place(v)] = mesh.vertices[v];
+            for (auto& triangle : mesh.triangles)
+                for (std::uint32_t& v : triangle)
+                    v = place(v);
+            mesh.vertices = std::move(spread);
+        }
         const OrientedMesh one = orient(mesh, {.threads = 1});
         const OrientedMesh many = orient(mesh, {.threads = 7});
         EXPECT_EQ(one.mesh.triangles, many.mesh.triangles);
         EXPECT_EQ(one.turned_triangles, many.turned_triangles);
+        EXPECT_EQ(one.turned_outward, many.turned_outward);
+        EXPECT_EQ(one.turned_inward, many.turned_inward);
+        EXPECT_EQ(one.places, many.places);
+        EXPECT_LE(one.turned_outward + one.turned_inward, one.patches);
         // Done once, there is nothing left to do.
         if (one.one_sided_patches == 0) {
             EXPECT_EQ(orient(one.mesh).turned_triangles, 0U);

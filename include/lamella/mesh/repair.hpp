@@ -81,8 +81,9 @@ struct OrientedMesh {
 ///
 /// So a body within a body, both outward, becomes a void in it: who means the inner one to be filled does not
 /// call this. The same result for any order of triangles and for any of their corners first: ties are decided
-/// by the lexicographically smallest triangle. Expected O(n), for patches that few triangles lie above or
-/// below, and O(n log n) for those that lie in one another. Throws Error{limit} beyond 2^31 - 1 triangles.
+/// by the lexicographically smallest triangle. Expected O(n) for patches that few triangles lie above or
+/// below, times the rounds in which turned patches make others fit: a few. Of n patches in one another
+/// O(n^2). Throws Error{limit} beyond 2^31 - 1 triangles.
 [[nodiscard]] OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella
