@@ -1,11 +1,14 @@
 #include "lamella/polygon/compare.hpp"
 
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
 
 #include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
 #include "polygon/box2.hpp"
 #include "polygon/edge_tree.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,45 +76,36 @@ void farthest(const Layer& from, const EdgeTree& to, double& largest, Point2& wh
     }
 }
 
-/// The same of all points of an edge, where they are farther than `least` allows, too. To a thousandth.
-void farthest(const Point2& a, const Point2& b, const EdgeTree& to, double least, double& largest,
-              Point2& where) {
+/// The same of all points of an edge, to a thousandth.
+void farthest(const Point2& a, const Point2& b, const EdgeTree& to, double& largest, Point2& where) {
     const Point2 middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
     const auto [s, t] = to.nearest(middle);
-    const double known = 1.002 * std::max(largest, least);
     // From an edge on which points move evenly, distances to another one are convex: the ends are farthest.
-    if (std::max(distance_squared(a, s, t), distance_squared(b, s, t)) <= known)
+    if (std::max(distance_squared(a, s, t), distance_squared(b, s, t)) <= 1.002 * largest)
         return;
-    if (const double squared = distance_squared(middle, s, t); squared > std::max(largest, least)) {
+    const double squared = distance_squared(middle, s, t);
+    if (squared > largest) {
         largest = squared;
         where = middle;
     }
-    if (middle == a || middle == b || !(distance_squared(middle, s, t) < infinity))
+    if (middle == a || middle == b || !(squared < infinity))
         return;
-    farthest(a, middle, to, least, largest, where);
-    farthest(middle, b, to, least, largest, where);
+    farthest(a, middle, to, largest, where);
+    farthest(middle, b, to, largest, where);
 }
 
-/// Also between corners: where contours that are as far apart as `least` would count as one.
-void farthest_between_corners(const Layer& from, const EdgeTree& to, double least, double& largest,
-                              Point2& where) {
-    if (to.empty())
-        return;
+void farthest_between_corners(const Layer& from, const EdgeTree& to, double& largest, Point2& where) {
     for (std::size_t i = 0; i < from.contours(); ++i) {
         const auto contour = from.contour(i);
         for (std::size_t k = 1; k < contour.size(); ++k)
-            farthest(contour[k - 1], contour[k], to, least, largest, where);
+            farthest(contour[k - 1], contour[k], to, largest, where);
         if (from.closed(i))
-            farthest(contour.back(), contour.front(), to, least, largest, where);
+            farthest(contour.back(), contour.front(), to, largest, where);
     }
 }
 
-/// How much area has to move across both layers to make their first moments so different.
-double displaced(const Layer& first, const Layer& second) {
-    if (first.points.empty() || second.points.empty())
-        return 0; // infinitely far away
-    Box2 box = box_of(first.points);
-    box.add(box_of(second.points));
+/// How much area has to move across the box of both layers to make their first moments so different.
+double displaced(const Layer& first, const Layer& second, const Box2& box) {
     const Point2 middle{box.x0 + box.width() / 2, box.y0 + box.height() / 2};
     const AreaMoments one = area_moments(first, middle);
     const AreaMoments other = area_moments(second, middle);
@@ -135,17 +129,20 @@ LayerDifference compare_beyond(const Layer& first, const Layer& second, double t
     double largest = 0;
     farthest(first, second_edges, largest, difference.where);
     farthest(second, first_edges, largest, difference.where);
-    // Nor what arithmetic moves.
-    double coordinate = 0;
-    for (const Layer* const layer : {&first, &second})
-        if (!layer->points.empty())
-            coordinate = std::max(coordinate, box_of(layer->points).largest_coordinate());
-    const double beyond = std::max(tolerance_mm, 0x1p-36 * coordinate);
-    const double least = beyond * beyond;
-    farthest_between_corners(first, second_edges, least, largest, difference.where);
-    farthest_between_corners(second, first_edges, least, largest, difference.where);
+    if (!first_edges.empty() && !second_edges.empty()) {
+        Box2 box = box_of(first.points);
+        box.add(box_of(second.points));
+        const double least =
+            std::max(tolerance_mm, 0x1p-36 * box.largest_coordinate()); // what arithmetic moves
+        const double known = std::max(largest, least * least);
+        double between = known;
+        farthest_between_corners(first, second_edges, between, difference.where);
+        farthest_between_corners(second, first_edges, between, difference.where);
+        if (between > known)
+            largest = between;
+        difference.displaced_mm2 = displaced(first, second, box);
+    }
     difference.distance_mm = std::sqrt(largest);
-    difference.displaced_mm2 = displaced(first, second);
     return difference;
 }
 
@@ -177,6 +174,10 @@ LayerDifference compare(const Layer& first, const Layer& second) {
 
 StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                         std::optional<double> tolerance_mm) {
+    if (tolerance_mm && !(*tolerance_mm >= 0))
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("layers cannot be compared within {} mm; it must be 0 or more", *tolerance_mm));
     StackComparison result{
         .tolerance_mm = tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
         .planes = paired(first, second, std::max(same_height_mm, tolerance_mm.value_or(0)))};

@@ -52,8 +52,8 @@ std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan, con
     Executor executor(execution);
     std::vector<AreaMoments> sections(ranks.count());
     // A fixed number of pieces, added up in their order: the same bits for any number of threads.
-    const std::uint64_t pieces =
-        std::clamp<std::uint64_t>((std::uint64_t{1} << 22) / (sections.size() + 1), 1, 64);
+    constexpr std::uint64_t most = (std::uint64_t{32} << 20) / sizeof(AreaMoments); // 32 MB in all
+    const std::uint64_t pieces = std::clamp<std::uint64_t>(most / (sections.size() + 1), 1, 64);
     const std::uint64_t n = mesh.size();
     const std::uint64_t piece = n / pieces + 1;
     std::vector<std::vector<AreaMoments>> parts(pieces);

@@ -12,7 +12,8 @@
 
 namespace lamella {
 
-/// As `section_areas`; moments are about the origin.
+/// As `section_areas`, one for each layer of the plan. Moments are about `origin`, which should be near the
+/// part.
 [[nodiscard]] std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan,
                                                        const Point2& origin, const Execution& execution);
 

@@ -1,4 +1,7 @@
+#include "lamella/core/error.hpp"
 #include "lamella/polygon/compare.hpp"
+
+#include "fixtures/expect_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -187,6 +190,13 @@ TEST(CompareStacks, TellsOfLayersThatAreCutElsewhereBetweenTheSameHeights) {
     EXPECT_FALSE(compare(RoundedLayers{middle}, {}).cut_apart);
     low.back() = middle.back(); // one layer belongs to another one
     EXPECT_FALSE(compare(RoundedLayers{middle}, {low}).cut_apart);
+}
+
+TEST(CompareStacks, RefusesToleranceBelowNothing) {
+    const LayerStack some = squares({1}, 1);
+    for (const double tolerance : {-1.0, std::numeric_limits<double>::quiet_NaN()})
+        test::expect_error(ErrorKind::usage, {"must be 0 or more"},
+                           [&] { static_cast<void>(compare(RoundedLayers{some}, {some}, tolerance)); });
 }
 
 TEST(CompareStacks, ALayerWithoutContoursNeedsNoPartner) {

@@ -60,11 +60,12 @@ struct StackComparison {
 };
 
 /// Compares two stacks plane by plane. Layers belong together when their cuts are no further apart than the
-/// rounding of both formats explains, or `tolerance_mm` where given, and neither is nearer to another layer;
-/// one without contours and hatch lines needs no partner. Hatch lines and heights of layers that belong
-/// together do not count: see `compare_files`. `tolerance_mm` is for LayerDifference::within; unless given,
-/// it is what the rounding of both formats explains. Distances of layers that are below it are those of
-/// corners.
+/// rounding of both formats explains, and beyond that 1e-6 mm, or `tolerance_mm` if that is more; and neither
+/// is nearer to another layer. One without contours and hatch lines needs no partner. Hatch lines and heights
+/// of layers that belong together do not count: see `compare_files`. `tolerance_mm` is for
+/// LayerDifference::within; unless given, it is what the rounding of both formats explains. Distances of
+/// layers that are below it are those of corners. As expensive as `compare` of all layers that belong
+/// together. Throws Error{usage} for a tolerance that is negative or NaN.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                                       std::optional<double> tolerance_mm = {});
 
