@@ -187,7 +187,7 @@ FileCost file_of(const Part& part, const ScanStrategy& strategy, const std::stri
 
 bool is_right(const Part& part, const ScanStrategy& strategy, const std::string& path) {
     const LayerFile file = read_layers(path);
-    VectorVerifyOptions options;
+    VerifyOptions options;
     options.mesh = open_part(part, {}).mesh;
     options.rounding = file.rounding;
     options.strategy = strategy;

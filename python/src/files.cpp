@@ -348,7 +348,7 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
         LayerFile file = read_layers(path, {}, execution);
         if (!holds_scan_vectors(file))
             throw Error(ErrorKind::usage, path + " holds no scan vectors; lamella.verify checks layers");
-        VectorVerifyOptions options{.mesh = {}, .rule = file.rule, .rounding = file.rounding};
+        VerifyOptions options{.mesh = {}, .rule = file.rule, .rounding = file.rounding};
         if (mesh)
             options.mesh = mesh->mesh();
         options.strategy = strategy;

@@ -434,8 +434,8 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
 
 /// The third pass, where this process reads all of the files, as far as these planes cut them.
 void Feed::bring_own(PlaneRange planes, ShareStore& store, const Execution& execution) {
-    std::atomic<bool> fits{true};
     for (const File& file : files_) {
+        std::atomic<bool> fits{true};
         std::vector<std::optional<RecordRange>> parts{std::nullopt};
         if (!file.cuts.empty()) {
             const std::vector<RecordRange> cut = records_on(planes, file.cuts, file.records.value());
@@ -450,8 +450,10 @@ void Feed::bring_own(PlaneRange planes, ShareStore& store, const Execution& exec
                             fits = false;
                 },
                 execution, part));
+        if (!fits)
+            throw changed_while_read(file.input.path());
     }
-    if (!fits || !store.full())
+    if (!store.full()) // which one is not known
         throw changed_while_read(plate_.files.front().path);
 }
 

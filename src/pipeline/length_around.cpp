@@ -1,6 +1,7 @@
 #include "pipeline/length_around.hpp"
 
 #include "contour/distance.hpp"
+#include "scan/hatch_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +72,7 @@ double around_rows(const std::vector<HatchVector>& lines, double distance) {
         direction = {direction.x + sign * line.way.x, direction.y + sign * line.way.y};
     }
     const double norm = std::sqrt(dot_of(direction, direction));
-    direction = {direction.x / norm, direction.y / norm};
+    const LineFrame frame{{.cos = direction.x / norm, .sin = direction.y / norm}};
     struct Placed {
         double v;
         double from;
@@ -80,8 +81,8 @@ double around_rows(const std::vector<HatchVector>& lines, double distance) {
     std::vector<Placed> placed;
     for (const HatchVector& line : lines) {
         const Point2 middle{line.from.x + line.way.x / 2, line.from.y + line.way.y / 2};
-        const double along = dot_of(direction, middle);
-        placed.push_back({cross_of(direction, middle), along - line.length / 2, along + line.length / 2});
+        const double along = frame.along(middle);
+        placed.push_back({frame.across(middle), along - line.length / 2, along + line.length / 2});
     }
     std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.v < b.v; });
     double edges = 0;

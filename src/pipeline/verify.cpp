@@ -70,6 +70,23 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
             made.push_back(area_moments(layer, origin));
         return made;
     });
+    struct Own {
+        AreaMoments moments;
+        double tolerance = 0; // of the area
+        double reach = 0; // what moves an edge moves a strip of area, which has its moment from where it lies
+    };
+    std::vector<Own> own(layers.size());
+    Executor executor(execution);
+    executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        const LayerMeasure& measure = checks[i].measure;
+        own[i] = {area_moments(layers[i], origin),
+                  area_tolerance(layers[i], measure, options.rounding, extent) +
+                      2 * options.steps.simplify_mm * measure.perimeter_mm,
+                  extent};
+        for (const Point2& p : layers[i].points)
+            own[i].reach = std::max({own[i].reach, std::abs(p.x - origin.x), std::abs(p.y - origin.y)});
+    });
+    executor.check_cancelled();
     double largest_error = 0;
     std::uint64_t compared = 0;
     std::uint64_t differing = 0;
@@ -79,25 +96,20 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         if (checks[i].found.open_chains.total > 0)
             continue; // its area is not known
         ++compared;
-        const AreaMoments own = area_moments(layers[i], origin);
+        const AreaMoments& moments = own[i].moments;
         const auto beyond = [&](double AreaMoments::*sum) {
             const auto [least, greatest] = std::minmax_element(
                 sections[i].begin(), sections[i].end(),
                 [&](const AreaMoments& a, const AreaMoments& b) { return a.*sum < b.*sum; });
-            return std::max((*least).*sum - own.*sum, own.*sum - (*greatest).*sum);
+            return std::max((*least).*sum - moments.*sum, moments.*sum - (*greatest).*sum);
         };
-        const double area = checks[i].measure.area_mm2;
-        largest_error = std::max(largest_error, std::abs(area - sections[i].front().area_mm2));
-        const double tolerance = area_tolerance(layers[i], checks[i].measure, options.rounding, extent) +
-                                 2 * options.steps.simplify_mm * checks[i].measure.perimeter_mm;
-        // What moves an edge moves a strip of area, which has its moment from where it lies.
-        double reach = extent;
-        for (const Point2& p : layers[i].points)
-            reach = std::max({reach, std::abs(p.x - origin.x), std::abs(p.y - origin.y)});
+        largest_error = std::max(largest_error, std::abs(moments.area_mm2 - sections[i].front().area_mm2));
+        const double tolerance = own[i].tolerance;
         if (beyond(&AreaMoments::area_mm2) > tolerance) {
             if (differing++ == 0)
                 first = i;
-        } else if (std::max(beyond(&AreaMoments::x_mm3), beyond(&AreaMoments::y_mm3)) > tolerance * reach) {
+        } else if (std::max(beyond(&AreaMoments::x_mm3), beyond(&AreaMoments::y_mm3)) >
+                   tolerance * own[i].reach) {
             if (result.displaced++ == 0)
                 first_displaced = i;
         }
@@ -130,8 +142,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
             "{} layer{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
             "instead of {}",
             result.displaced, result.displaced == 1 ? " lies" : "s lie", where(layers[first_displaced]),
-            centre(area_moments(layers[first_displaced], origin)),
-            centre(sections[first_displaced].front())));
+            centre(own[first_displaced].moments), centre(sections[first_displaced].front())));
     }
 }
 

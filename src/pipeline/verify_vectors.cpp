@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -86,8 +87,7 @@ struct ContourRow {
 };
 
 /// What is wrong with the vectors of a plane.
-struct PlaneCheck {
-    ContourFindings contours;
+struct PlaneCheck : ContourFindings {
     Finding outside;
     Finding too_short;
     Finding misplaced;
@@ -154,8 +154,9 @@ class AskedLines {
 
     [[nodiscard]] bool have(const Point2& a, const Point2& b) const {
         return std::any_of(frames_.begin(), frames_.end(), [&](const LineFrame& frame) {
-            const double v = std::nearbyint(frame.across(a) / distance_) * distance_;
-            return std::abs(frame.across(a) - v) <= tolerance_ && std::abs(frame.across(b) - v) <= tolerance_;
+            const double across = frame.across(a);
+            const double v = std::nearbyint(across / distance_) * distance_;
+            return std::abs(across - v) <= tolerance_ && std::abs(frame.across(b) - v) <= tolerance_;
         });
     }
 
@@ -199,11 +200,13 @@ std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const Sca
 
 /// How many layers of the plan were before the first of these: that many with which most of the lines are
 /// where they should be.
-std::uint64_t layers_before(const std::vector<HatchLine>& lines, double tolerance) {
+std::uint64_t layers_before(const std::vector<HatchLine>& lines, double tolerance, const Executor& executor) {
     constexpr std::uint64_t most = 1 << 17;
     std::uint64_t best = 0;
     std::ptrdiff_t most_fit = 0;
     for (std::uint64_t before = 0; before < most && most_fit < std::ssize(lines); ++before) {
+        if (before % 1024 == 0)
+            executor.check_cancelled();
         const auto fit = std::count_if(lines.begin(), lines.end(), [&](const HatchLine& line) {
             return AskedLines(*line.rule, before + line.layer, tolerance).have(line.ends[0], line.ends[1]);
         });
@@ -218,7 +221,7 @@ std::uint64_t layers_before(const std::vector<HatchLine>& lines, double toleranc
 class VectorCheck {
   public:
     /// `before`: layers of the plan, before the first of those to be checked.
-    VectorCheck(const VectorVerifyOptions& options, double tolerance, std::uint64_t before)
+    VectorCheck(const VerifyOptions& options, double tolerance, std::uint64_t before)
         : options_(options), tolerance_(tolerance), before_(before) {}
 
     void check(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
@@ -226,7 +229,7 @@ class VectorCheck {
         for (const LayerPart* const part : group.exposures) {
             const Layer& vectors = part->layers[plane];
             if (part->exposure->kind == VectorKind::contour)
-                found.contours.add(of_one_exposure(vectors));
+                found.add(of_one_exposure(vectors));
             std::uint64_t of_contours = 0;
             for (std::size_t i = 0; i < vectors.contours(); ++i)
                 of_contours += vectors.contour(i).size() - (vectors.closed(i) ? 0 : 1);
@@ -384,8 +387,14 @@ class VectorCheck {
             shallow = std::min(shallow, depth_of(exposure, strategy) - bounds.depth);
             deep = std::max(deep, depth_of(exposure, strategy) - bounds.depth);
         }
-        if (shallow > deep)
-            return; // no hatches
+        if (shallow > deep) { // formats may know only what there is: then all of it is missing
+            const ScanRegion region = group.exposures.front()->exposure->region == ScanRegion::support
+                                          ? ScanRegion::support
+                                          : ScanRegion::core;
+            const HatchRule& rule = hatch_of(strategy, region);
+            slack.add(rule);
+            shallow = deep = hatch_depth(contours_of(strategy, region), rule) - bounds.depth;
+        }
         const Layer& section = bounds.sections.front();
         const LayerMeasure nominal = measure(offset(section, -shallow));
         LayerMeasure edges = nominal; // and those of skins
@@ -405,10 +414,42 @@ class VectorCheck {
         found.filled_mm2 += nominal.area_mm2;
     }
 
-    const VectorVerifyOptions& options_;
+    const VerifyOptions& options_;
     double tolerance_; ///< by which vectors, and contours that stand for material, may be off
     std::uint64_t before_;
 };
+
+/// Of which a plane has a finding, and a file their number.
+struct KindOfFinding {
+    Finding PlaneCheck::*found;
+    std::uint64_t VectorVerification::*total;
+    FindingWords words;
+};
+
+std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
+    return {
+        {{&PlaneCheck::open_chains, &VectorVerification::open_chains, open_chains_words},
+         {&PlaneCheck::crossings, &VectorVerification::crossings, crossings_words},
+         {&PlaneCheck::misoriented, &VectorVerification::misoriented, misoriented_words},
+         {&PlaneCheck::outside, &VectorVerification::outside,
+          strategy ? FindingWords{"vector is nearer to the edge of the material than the strategy says, or "
+                                  "outside;",
+                                  "vectors are nearer to the edge of the material than the strategy says, or "
+                                  "outside;"}
+                   : FindingWords{"vector leaves the material;", "vectors leave the material;"}},
+         {&PlaneCheck::too_short,
+          &VectorVerification::too_short,
+          {"hatch line is shorter than the strategy says;",
+           "hatch lines are shorter than the strategy says;"}},
+         {&PlaneCheck::misplaced,
+          &VectorVerification::misplaced,
+          {"hatch line lies beside those of the strategy, or is turned otherwise;",
+           "hatch lines lie beside those of the strategy, or are turned otherwise;"}},
+         {&PlaneCheck::miscovered,
+          &VectorVerification::miscovered,
+          {"layer has lines that cover more or less than they should fill;",
+           "layers have lines that cover more or less than they should fill;"}}}};
+}
 
 void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
     const auto tell_of = [&](const Finding& finding, const char* what) {
@@ -422,7 +463,7 @@ void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::stri
 
 } // namespace
 
-VectorVerification verify_vectors(std::span<const LayerPart> parts, const VectorVerifyOptions& options,
+VectorVerification verify_vectors(std::span<const LayerPart> parts, const VerifyOptions& options,
                                   const Execution& execution) {
     for (const LayerPart& part : parts)
         check_coordinates(part.layers);
@@ -451,12 +492,13 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     const double tolerance =
         std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest + options.steps.simplify_mm;
 
+    Executor executor(execution);
     const VectorCheck vectors(
         options, tolerance,
-        options.strategy ? layers_before(longest_lines(groups, *options.strategy, planes.size()), tolerance)
-                         : 0);
+        options.strategy
+            ? layers_before(longest_lines(groups, *options.strategy, planes.size()), tolerance, executor)
+            : 0);
     std::vector<PlaneCheck> checks(planes.size());
-    Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         const auto bounds_of = [&](const Group& group, bool by_mesh) {
@@ -476,53 +518,28 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Vector
     });
     progress.finish();
 
-    PlaneCheck all;
+    for (const KindOfFinding& kind : kinds_of_findings(options.strategy.has_value())) {
+        Finding all;
+        for (const PlaneCheck& check : checks)
+            all.add(check.*kind.found);
+        result.*kind.total = all.total;
+        tell(all, kind.words, result.findings);
+    }
+    std::map<std::uint32_t, ContourRow> rows;
+    double covered_mm2 = 0;
+    double filled_mm2 = 0;
     for (const PlaneCheck& check : checks) {
-        all.contours.add(check.contours);
-        all.outside.add(check.outside);
-        all.too_short.add(check.too_short);
-        all.misplaced.add(check.misplaced);
-        all.miscovered.add(check.miscovered);
         for (const auto& row : check.rows)
-            all.rows[row.first].add(row.second);
+            rows[row.first].add(row.second);
         result.contour_vectors += check.contour_vectors;
         result.hatch_vectors += check.hatch_vectors;
         result.unbounded += check.unbounded;
-        all.covered_mm2 += check.covered_mm2;
-        all.filled_mm2 += check.filled_mm2;
+        covered_mm2 += check.covered_mm2;
+        filled_mm2 += check.filled_mm2;
     }
-    result.open_chains = all.contours.open_chains.total;
-    result.crossings = all.contours.crossings.total;
-    result.misoriented = all.contours.misoriented.total;
-    result.outside = all.outside.total;
-    result.too_short = all.too_short.total;
-    result.misplaced = all.misplaced.total;
-    result.miscovered = all.miscovered.total;
-    if (options.strategy && all.filled_mm2 > 0)
-        result.cover = all.covered_mm2 / all.filled_mm2;
-    tell(all.contours.open_chains, open_chains_words, result.findings);
-    tell(all.contours.crossings, crossings_words, result.findings);
-    tell(all.contours.misoriented, misoriented_words, result.findings);
-    tell(
-        all.outside,
-        options.strategy
-            ? FindingWords{"vector is nearer to the edge of the material than the strategy says, or outside;",
-                           "vectors are nearer to the edge of the material than the strategy says, or "
-                           "outside;"}
-            : FindingWords{"vector leaves the material;", "vectors leave the material;"},
-        result.findings);
-    tell(all.too_short,
-         {"hatch line is shorter than the strategy says;", "hatch lines are shorter than the strategy says;"},
-         result.findings);
-    tell(all.misplaced,
-         {"hatch line lies beside those of the strategy, or is turned otherwise;",
-          "hatch lines lie beside those of the strategy, or are turned otherwise;"},
-         result.findings);
-    tell(all.miscovered,
-         {"layer has lines that cover more or less than they should fill;",
-          "layers have lines that cover more or less than they should fill;"},
-         result.findings);
-    for (const auto& row : all.rows) {
+    if (options.strategy && filled_mm2 > 0)
+        result.cover = covered_mm2 / filled_mm2;
+    for (const auto& row : rows) {
         result.wrong_contours += row.second.missing.total + row.second.elsewhere.total;
         tell_row(row.first, row.second, result.findings);
     }

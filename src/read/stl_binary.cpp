@@ -6,6 +6,7 @@
 #include "core/executor.hpp"
 #include "core/memory_size.hpp"
 #include "core/pages.hpp"
+#include "mesh/folds.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 
@@ -37,8 +38,8 @@ constexpr std::size_t corners_at = stl_head_bytes + normal_bytes;
 constexpr std::uint64_t chunk_triangles = 20'000;
 
 /// In a batch of a stream: as many as in a piece of a fold, so that sums over batches have the same bits as
-/// sums over the whole.
-constexpr std::uint64_t batch_triangles = std::uint64_t{1} << 15;
+/// sums over the whole; and pipeline/feed finds a batch again by its number.
+constexpr std::uint64_t batch_triangles = fold_piece;
 
 // A float is NaN or infinite when all bits of its exponent are set.
 constexpr std::uint32_t exponent_bits = 0x7F800000;

@@ -16,10 +16,12 @@ PlanePlace plane_place(std::span<const Layer> parts) {
 }
 
 void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& info) {
+    if (parts.size() != info.parts.size())
+        throw Error(ErrorKind::usage, fmt::format("{} parts were announced and layers of {} are given",
+                                                  info.parts.size(), parts.size()));
     const auto refuse = [&](std::size_t part, const std::string& difference) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("the part \"{}\" has other planes than the first one: {}",
-                                part < info.parts.size() ? info.parts[part].label : "", difference));
+        throw Error(ErrorKind::usage, fmt::format("the part \"{}\" has other planes than the first one: {}",
+                                                  info.parts[part].label, difference));
     };
     const auto same = [](double a, double b) {
         return std::abs(a - b) <= same_height_mm;

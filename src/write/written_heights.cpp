@@ -14,8 +14,8 @@ void WrittenHeights::add(double height, double mm, std::string_view end, std::ui
                     fmt::format("layer {} has its {} at z = {} mm, beyond {}", layer, end, mm, precision_));
     if (!(height > last_))
         throw Error(ErrorKind::usage,
-                    fmt::format("layer {}: its {}, z = {} mm, is not above the height before it in {}, so a "
-                                "layer has no thickness there",
+                    fmt::format("layer {}: its {}, z = {} mm, is not above the height before it: a layer has "
+                                "no thickness there, in {}",
                                 layer, end, mm, precision_));
     last_ = height;
 }

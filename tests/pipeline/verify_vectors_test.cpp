@@ -188,6 +188,15 @@ TEST_F(VerifyVectors, FindsLinesThatAreTurnedOrLieBesideWhatTheStrategySays) {
     }
 }
 
+TEST_F(VerifyVectors, FindsThatAllHatchesAreMissing) {
+    std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::hatch; });
+    for (const VectorVerification& found : {with_all(), with_strategy()}) {
+        EXPECT_EQ(found.miscovered, 10U);
+        EXPECT_EQ(found.cover, 0);
+    }
+    EXPECT_TRUE(with_mesh().ok());
+}
+
 TEST_F(VerifyVectors, AFileMayBeginWithAnyLayerOfItsPlan) {
     // Regions turn by themselves.
     strategy_.hatch.turn_degrees = 90;

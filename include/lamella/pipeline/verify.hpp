@@ -20,9 +20,10 @@
 
 namespace LAMELLA_API lamella {
 
+/// What layers, or scan vectors, are held against.
 struct VerifyOptions {
     /// Compare each layer's area, and its centre, with the section of this mesh at the layer's z. It should
-    /// be closed.
+    /// be closed. Scan vectors lie within that; without a mesh, within the outermost contour of their part.
     std::optional<Mesh> mesh = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
@@ -31,6 +32,10 @@ struct VerifyOptions {
     /// How the format rounds coordinates and heights. The area tolerance grows with it and the layer's
     /// perimeter; and rings so thin that it can turn them over are not held to an orientation.
     Rounding rounding = {};
+    /// Of scan vectors: by which they were made. With it they are to be as far from the edges of the material
+    /// as it says, each of its contours there and at its depth, no hatch line shorter than `shortest`, all of
+    /// them turned and apart as it says, and lines times their distance are to be the area that they fill.
+    std::optional<ScanStrategy> strategy = {};
 };
 
 /// Between which heights layers lie, and the mesh that they are compared with, in mm.
@@ -92,20 +97,6 @@ struct Verification {
 [[nodiscard]] Verification verify(std::span<const Layer> layers, const VerifyOptions& options = {},
                                   const Execution& execution = {});
 
-/// What scan vectors are held against.
-struct VectorVerifyOptions {
-    /// The vectors lie within its section at the z of the layer. Without a mesh, within the outermost contour
-    /// of their part.
-    std::optional<Mesh> mesh = {};
-    PlaneRule rule = PlaneRule::section_above; ///< as VerifyOptions::rule
-    LayerSteps steps = {};                     ///< as VerifyOptions::steps
-    Rounding rounding = {};                    ///< of coordinates and heights: vectors may be off by so much
-    /// By which the vectors were made. With it they are to be as far from the edges of the material as it
-    /// says, each of its contours there and at its depth, no hatch line shorter than `shortest`, all of them
-    /// turned and apart as it says, and lines times their distance are to be the area that they fill.
-    std::optional<ScanStrategy> strategy = {};
-};
-
 struct VectorVerification {
     std::uint64_t layers = 0;
     std::uint64_t contour_vectors = 0;
@@ -150,7 +141,7 @@ struct VectorVerification {
 /// layers; the same result for any number of threads. Throws what `slice` and `offset` throw, and as `verify`
 /// for a coordinate that is not finite.
 [[nodiscard]] VectorVerification verify_vectors(std::span<const LayerPart> parts,
-                                                const VectorVerifyOptions& options = {},
+                                                const VerifyOptions& options = {},
                                                 const Execution& execution = {});
 
 } // namespace lamella

@@ -36,7 +36,7 @@ struct LayerPart {
 
 struct LayerFile {
     std::string path;
-    std::string format;  ///< as in the table of formats that are written, such as "cli"; also "slc"
+    std::string format;  ///< as in the table of formats that are written, such as "cli"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
     Rounding rounding = {}; ///< of coordinates and heights, by the format
     /// By which the layers were cut, where the format says it; else the usual one.
