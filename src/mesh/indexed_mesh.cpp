@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -27,7 +26,7 @@ void check(const IndexedMesh& mesh) {
                                 mesh.vertices.size(), mesh.triangles.size(), limit));
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         const Point3& p = mesh.vertices[i];
-        if (!(std::abs(p.x) <= farthest_mm && std::abs(p.y) <= farthest_mm && std::abs(p.z) <= farthest_mm))
+        if (is_too_far(p))
             throw Error(ErrorKind::input,
                         fmt::format("vertex {} is ({}, {}, {}): expected finite coordinates within {} mm", i,
                                     p.x, p.y, p.z, farthest_mm));

@@ -34,9 +34,6 @@ double largest_coordinate(std::span<const Point2> points) noexcept {
 }
 
 void check_coordinates(std::span<const Layer> layers) {
-    const auto is_far = [](double length) {
-        return !(std::abs(length) <= farthest_mm);
-    };
     const auto refuse = [](const Layer& layer, const std::string& thing, double length) {
         throw Error(ErrorKind::usage,
                     fmt::format("layer {}, {}: found {}; coordinates must be finite and within {} mm",
@@ -44,15 +41,15 @@ void check_coordinates(std::span<const Layer> layers) {
     };
     for (const Layer& layer : layers) {
         for (const double height : {layer.z, layer.bottom, layer.top})
-            if (is_far(height))
+            if (is_too_far(height))
                 refuse(layer, "its heights", height);
         for (std::size_t i = 0; i < layer.contours(); ++i)
             for (const Point2& p : layer.contour(i))
-                if (is_far(p.x) || is_far(p.y))
-                    refuse(layer, fmt::format("contour {}", i), is_far(p.x) ? p.x : p.y);
+                if (is_too_far(p.x) || is_too_far(p.y))
+                    refuse(layer, fmt::format("contour {}", i), is_too_far(p.x) ? p.x : p.y);
         for (const Point2& p : layer.hatches)
-            if (is_far(p.x) || is_far(p.y))
-                refuse(layer, "its hatches", is_far(p.x) ? p.x : p.y);
+            if (is_too_far(p.x) || is_too_far(p.y))
+                refuse(layer, "its hatches", is_too_far(p.x) ? p.x : p.y);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/distinct_names.hpp"
 #include "core/farthest.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace lamella {
@@ -33,21 +33,6 @@ std::string stem_of(const std::string& path) {
     return name.stem().string();
 }
 
-/// Labels as wished, told apart by numbers where two are equal.
-class Labels {
-  public:
-    std::string unique(const std::string& wish) {
-        std::string label = wish;
-        for (std::uint64_t& number = numbers_[wish]; !taken_.insert(label).second;)
-            label = fmt::format("{} {}", wish, ++number + 1);
-        return label;
-    }
-
-  private:
-    std::map<std::string, std::uint64_t> numbers_;
-    std::set<std::string> taken_;
-};
-
 double unit_of(const MeshFile& file, const PlateInput& input) {
     if (!file.unit_mm)
         return input.unit_mm.value_or(1);
@@ -65,7 +50,7 @@ void check_range(const Box3& box, const std::string& path) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double from = std::array{box.min.x, box.min.y, box.min.z}[axis];
         const double to = std::array{box.max.x, box.max.y, box.max.z}[axis];
-        if (!(std::abs(from) <= farthest_mm && std::abs(to) <= farthest_mm))
+        if (is_too_far(from) || is_too_far(to))
             throw Error(ErrorKind::usage,
                         fmt::format("{}: unit, scale and translation move the mesh beyond {} mm, to {} mm; "
                                     "choose smaller ones",
@@ -158,13 +143,13 @@ Plate PlateBuilder::finish() {
     for (std::size_t i = 0; i < instances_.size(); ++i)
         same[key_of(instances_[i])].push_back(i);
     plate_.parts.resize(instances_.size());
-    Labels labels;
+    DistinctNames labels;
     for (std::size_t i = 0; i < instances_.size(); ++i) {
         const Instance& instance = instances_[i];
         plate_.parts[i].label =
-            labels.unique(!instance.label.empty()  ? instance.label
-                          : instances_.size() == 1 ? "part"
-                                                   : stem_of(plate_.files[instance.input].path));
+            labels.of(!instance.label.empty()  ? instance.label
+                      : instances_.size() == 1 ? "part"
+                                               : stem_of(plate_.files[instance.input].path));
         plate_.parts[i].box = instance.box;
         plate_.parts[i].support = instance.support;
         plate_.box.add(instance.box);

@@ -147,7 +147,7 @@ class CommonLayerGeometry {
   private:
     [[nodiscard]] double in_mm(double units, const std::string& place) const {
         const double mm = units * units_;
-        if (!(std::abs(mm) <= farthest_mm))
+        if (is_too_far(mm))
             throw Error(ErrorKind::input,
                         fmt::format("{}, layer at {}: found {} units of {} mm; heights and coordinates must "
                                     "lie within {} mm",

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <utility>
 
 namespace lamella {
@@ -25,10 +24,6 @@ constexpr std::uint64_t chunk = 50'000;
 bool finite(const Point3& p) {
     // Anything times zero is zero, but for NaN and infinity; one comparison for all three.
     return (p.x * 0 + p.y * 0 + p.z * 0) == 0;
-}
-
-bool is_near(const Point3& p) {
-    return std::abs(p.x) <= farthest_mm && std::abs(p.y) <= farthest_mm && std::abs(p.z) <= farthest_mm;
 }
 
 void keep_least(std::atomic<std::uint64_t>& least, std::uint64_t value) {
@@ -58,7 +53,7 @@ bool all_near(const std::vector<Point3>& vertices, Executor& executor) {
     executor.for_chunks(vertices.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         bool near = true;
         for (std::uint64_t i = begin; i < end; ++i)
-            near = near && is_near(vertices[i]);
+            near = near && !is_too_far(vertices[i]);
         if (!near)
             all = false;
     });
@@ -207,7 +202,7 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
     if (!all_near(mesh.vertices, executor)) {
         const auto is_far = [&](const Corners& t) {
             return std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
-                return finite(mesh.vertices[v]) && !is_near(mesh.vertices[v]);
+                return finite(mesh.vertices[v]) && is_too_far(mesh.vertices[v]);
             });
         };
         if (const std::uint64_t far = first_triangle(mesh, executor, is_far); far != none)

@@ -57,27 +57,13 @@ void tell_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
 
 } // namespace
 
-std::string DistinctNames::of(const std::string& name) {
-    if (taken_.try_emplace(name, 1).second)
-        return name;
-    const std::string stem = name.empty() ? "part" : name;
-    std::uint64_t& number = taken_[name];
-    std::string distinct;
-    do
-        distinct = fmt::format("{} {}", stem, ++number);
-    while (!taken_.try_emplace(distinct, 1).second);
-    if (changed_++ == 0)
-        first_ = distinct;
-    return distinct;
-}
-
-void DistinctNames::say(std::vector<std::string>& warnings) const {
+void say(const DistinctNames& names, std::vector<std::string>& warnings) {
     constexpr std::size_t longest = 60;
-    if (changed_ != 0)
+    if (const std::uint64_t changed = names.changed(); changed != 0)
         warnings.push_back(fmt::format("{} the name of another one; a number was put behind it, the first is "
                                        "now '{}'",
-                                       changed_ == 1 ? "1 part has" : fmt::format("{} parts have", changed_),
-                                       printable(first_, longest)));
+                                       changed == 1 ? "1 part has" : fmt::format("{} parts have", changed),
+                                       printable(names.first_changed(), longest)));
 }
 
 void Oddity::say(std::vector<std::string>& warnings) const {

@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include "core/distinct_names.hpp"
 #include "read/read_limits.hpp"
 
 #include <cstddef>
@@ -129,19 +130,8 @@ class PartNumbers {
     typename std::map<Key, std::uint32_t>::iterator last_ = numbers_.end();
 };
 
-/// Names for parts that files tell apart by keys, and that writers and commands tell apart by their names.
-class DistinctNames {
-  public:
-    /// The name, with a number behind it where another part has it already.
-    std::string of(const std::string& name);
-    /// Warns of names that were changed.
-    void say(std::vector<std::string>& warnings) const;
-
-  private:
-    std::map<std::string, std::uint64_t> taken_; ///< with the number that was put behind it last
-    std::uint64_t changed_ = 0;
-    std::string first_;
-};
+/// Warns of names of parts that were changed.
+void say(const DistinctNames& names, std::vector<std::string>& warnings);
 
 /// What a layer takes besides itself, even where it is empty: the list of offsets, and what owns the points.
 inline constexpr std::uint64_t of_empty_layer = 128;

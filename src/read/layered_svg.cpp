@@ -50,7 +50,7 @@ class Numbers {
         if (from != end && *from == '+')
             ++from;
         const char* const to = parse_number(from, end, value);
-        if (to == from || !(std::abs(value) <= farthest_mm))
+        if (to == from || is_too_far(value))
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: found '{}'; a coordinate must be a number within {}", name_,
                                     line_, printable(text_.substr(0, text_.find_first_of(" ,")), 40),

@@ -101,7 +101,7 @@ class LayersJsonReader {
 
     double length() {
         const double value = text_.number();
-        if (!(std::abs(value) <= farthest_mm))
+        if (is_too_far(value))
             text_.fail(fmt::format("{}", value), fmt::format("lengths must lie within {} mm", farthest_mm));
         return value + 0.0;
     }

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -53,7 +52,7 @@ class Array {
             value = at<float>(i);
         else
             fail(fmt::format("numbers of type '{}'", type_), "lengths are '<f8' or '<f4'");
-        if (!(std::abs(value) <= farthest_mm))
+        if (is_too_far(value))
             fail(fmt::format("the number {}", value),
                  fmt::format("lengths must lie within {} mm", farthest_mm));
         return value + 0.0;

@@ -202,7 +202,7 @@ class OvfReader {
                         fmt::format("{}: found no work plane; there must be one at least", name_));
         number_parts();
         make_layers();
-        names_.say(file_.warnings);
+        say(names_, file_.warnings);
         for (const Oddity* oddity :
              {&moved_, &other_vectors_, &repeated_blocks_, &repeated_planes_, &other_lasers_, &dropped_})
             oddity->say(file_.warnings);

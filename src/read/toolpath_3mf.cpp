@@ -322,7 +322,7 @@ class ToolpathReader {
                 fmt::format("{}: found a toolpath without layers; there must be one at least", source.name));
         number_parts(toolpath, layers);
         make_layers(toolpath, layers);
-        names_.say(file_.warnings);
+        say(names_, file_.warnings);
         other_lasers_.say(file_.warnings);
         dropped_.say(file_.warnings);
     }

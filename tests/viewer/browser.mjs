@@ -79,10 +79,10 @@ export async function until(page, holds, seconds = 60) {
     if (Date.now() > end) throw new Error(`not within ${seconds} s: ${holds}`);
 }
 
-/** The layer that is drawn, counted from 1, once it is the one that is asked for. */
+/** The layer that is drawn, counted from the lowest one, 0, once it is the one that is asked for. */
 export async function shown(page) {
   await until(page, () => document.querySelector('canvas[data-layer]').dataset.layer === document.getElementById('layer').value);
-  return Number(await page.locator('canvas[data-layer]').getAttribute('data-layer')) + 1;
+  return Number(await page.locator('canvas[data-layer]').getAttribute('data-layer'));
 }
 
 /** Waits until the stack, or the mesh, is drawn as it is to stay. */

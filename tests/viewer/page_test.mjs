@@ -78,39 +78,53 @@ test('a page opens from disk, asks no network for anything and complains of noth
 test('the slider, the buttons, the keys, the number and the plots go from layer to layer', async () => {
   const { page } = await open('rook.html');
   const slider = page.locator('#layer');
-  const count = Number(await slider.getAttribute('max')) + 1;
-  assert.equal(await shown(page), Math.floor(count / 2) + 1);
+  const last = Number(await slider.getAttribute('max'));
+  assert.equal(await shown(page), Math.floor((last + 1) / 2));
   const heightOf = async () => (await page.locator('.height').textContent()).replace(/[^\d.]/g, '');
 
   await page.keyboard.press('Home');
-  assert.equal(await shown(page), 1);
+  assert.equal(await shown(page), 0);
   assert.equal(await heightOf(), '0.05');
-  for (const [key, layer] of [['ArrowUp', 2], ['ArrowRight', 3], ['ArrowDown', 2], ['PageUp', 12], ['PageDown', 2], ['End', count], ['ArrowRight', count]]) {
+  for (const [key, layer] of [['ArrowUp', 1], ['ArrowRight', 2], ['ArrowDown', 1], ['PageUp', 11], ['PageDown', 1], ['End', last], ['ArrowRight', last]]) {
     await page.keyboard.press(key);
     assert.equal(await shown(page), layer, key);
   }
   await slider.fill('99');
-  assert.equal(await shown(page), 100);
-  assert.match(await slider.getAttribute('aria-valuetext'), /^100 of \d+, z = 9\.95 mm$/);
+  assert.equal(await shown(page), 99);
+  assert.match(await slider.getAttribute('aria-valuetext'), /^99 of 0 to \d+, z = 9\.95 mm$/);
   await page.getByRole('button', { name: 'Layer above' }).click();
-  assert.equal(await shown(page), 101);
+  assert.equal(await shown(page), 100);
   await page.getByRole('spinbutton', { name: 'Number of the layer' }).fill('7');
   await page.keyboard.press('Enter');
   assert.equal(await shown(page), 7);
   const plot = page.locator('canvas.plot').first();
   const { width } = await plot.boundingBox();
   await plot.click({ position: { x: width - 8, y: 10 } });
-  assert.equal(await shown(page), count);
+  assert.equal(await shown(page), last);
   await plot.click({ position: { x: 8, y: 10 } });
-  assert.equal(await shown(page), 1);
-  await until(page, () => /^Layer 1 of/.test(document.getElementById('live').textContent));
+  assert.equal(await shown(page), 0);
+  await until(page, () => /^Layer 0 of 0 to/.test(document.getElementById('live').textContent));
+});
+
+test('layers of a share of a part have the numbers that commands give them', async () => {
+  lamella('slice', 'box.stl', '--layers', '40:50', '-o', 'share.svg', '--report', 'share.html');
+  const { page } = await open('share.html');
+  await page.keyboard.press('Home');
+  await shown(page);
+  await until(page, () => /^Layer 40 of 40 to 49,/.test(document.getElementById('live').textContent));
+  const number = page.getByRole('spinbutton', { name: 'Number of the layer' });
+  assert.equal(await number.inputValue(), '40');
+  await number.fill('47');
+  await page.keyboard.press('Enter');
+  assert.equal(await shown(page), 7);
+  assert.ok(await page.getByRole('complementary').getByRole('heading', { name: 'Layer 47', exact: true }).isVisible());
 });
 
 test('play goes through the layers and stops at the last', async () => {
   lamella('view', 'box.stl', '--layer-height', '1', '-o', 'short.html'); // it goes through a hundred in 12 s
   const { page } = await open('short.html');
   await page.keyboard.press('Home');
-  assert.equal(await shown(page), 1);
+  assert.equal(await shown(page), 0);
   await page.keyboard.press(' ');
   assert.equal(await page.getByRole('button', { name: 'Pause' }).count(), 1);
   await until(page, () => document.getElementById('layer').value === '9');
@@ -257,7 +271,7 @@ test('the order of scan vectors is shown up to where the slider is, and the beam
   await slider.focus();
   await page.keyboard.press('ArrowRight');
   assert.equal(await slider.inputValue(), '3');
-  assert.equal(await shown(page), 1);
+  assert.equal(await shown(page), 0);
   // Going back draws what going on drew.
   await slider.fill('20');
   await redrawn();
@@ -389,9 +403,9 @@ test('what gaps there are differs from layer to layer, and what steps dropped is
   await shown(page);
   const aside = page.getByRole('complementary');
   const picks = aside.locator('section', { hasText: 'Longest gaps' }).getByRole('button');
-  assert.deepEqual(await picks.locator('b').allTextContents(), ['3', '4', '2', '1']);
+  assert.deepEqual(await picks.locator('b').allTextContents(), ['2', '3', '1', '0']);
   await picks.first().click();
-  assert.equal(await shown(page), 3);
+  assert.equal(await shown(page), 2);
   const card = await aside.locator('section', { hasText: 'Cut at z' }).textContent();
   assert.match(card, /Gapsthe longest 5 mm, 2 gaps of 6 mm in all/);
   assert.match(card, /Rings dropped1/);
@@ -553,7 +567,7 @@ test('a thousand layers and the sheet with 1225 holes stay usable', async () => 
     await page.keyboard.press('1');
     assert.equal(Number(await page.locator('#layer').getAttribute('max')) + 1, layers);
     for (const key of ['Home', 'PageUp', 'ArrowUp', 'End', '+', '0']) await page.keyboard.press(key);
-    assert.equal(await shown(page), layers);
+    assert.equal(await shown(page), layers - 1);
     assert.deepEqual(complaints, []);
   }
 });

@@ -7,7 +7,7 @@ import { layerPanels, middleOf } from './panels/panels.js';
 import { StackView } from './stack/stack_view.js';
 import { Player } from './player.js';
 import { Timeline } from './timeline/timeline.js';
-import { count, mm } from './text.js';
+import { layerNumber, layerNumbers, mm } from './text.js';
 import { switchTheme } from './theme.js';
 
 /** Tells screen readers where one is, once the layer stays. */
@@ -21,7 +21,7 @@ function announce(page, store) {
     waiting = setTimeout(() => {
       const { table } = page;
       live.textContent =
-        `Layer ${layer + 1} of ${count(page.head.layers)}, z ${mm(table.z[layer])} millimetres, ` +
+        `Layer ${layerNumber(table, layer)} ${layerNumbers(table)}, z ${mm(table.z[layer])} millimetres, ` +
         `${layerText(page, layer)}, ${faultText(table, layer) || 'no faults'}`;
     }, 400);
   });

@@ -27,6 +27,12 @@ export function duration(seconds) {
   return minutes < 60 ? `${minutes} min ${two(whole % 60)} s` : `${count(Math.floor(minutes / 60))} h ${two(minutes % 60)} min`;
 }
 
+/** As commands number layers: from 0, and those of a share of a part as in the whole. */
+export const layerNumber = (table, layer) => count(table.index[layer]);
+
+/** "of 0 to 99": the numbers that there are. */
+export const layerNumbers = ({ index }) => (index.length > 0 ? `of ${count(index[0])} to ${count(index.at(-1))}` : '');
+
 /** Heights and coordinates, to a thousandth. */
 export const mm = (value) => new Intl.NumberFormat('en', { maximumFractionDigits: 3 }).format(value);
 

@@ -1,7 +1,7 @@
 import { bodiesOf, hasMaterial, hasVectors, isVectors, switchGroup } from '../data/exposures.js';
 import { element } from '../element.js';
 import { icon } from '../icon.js';
-import { brief, count, counted, duration, mm } from '../text.js';
+import { brief, count, counted, duration, layerNumber, mm } from '../text.js';
 import { faultText, findings, gapText, hasHatches, isTold, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
@@ -18,16 +18,16 @@ function facts(pairs) {
   return list;
 }
 
-function finding({ tone, text, layer }, go) {
+function finding({ tone, text, layer }, table, go) {
   const sign = element('span', { className: `sign ${tone}`, 'aria-hidden': true }, icon(tone));
   const item = element('li', { className: 'finding' }, sign, element('span', {}, text));
   if (layer !== undefined)
-    item.lastChild.append(' ', element('button', { type: 'button', className: 'link', onclick: () => go(layer) }, `Show layer ${layer + 1}`));
+    item.lastChild.append(' ', element('button', { type: 'button', className: 'link', onclick: () => go(layer) }, `Show layer ${layerNumber(table, layer)}`));
   return item;
 }
 
 function diagnosisCard(page, go) {
-  return card('Diagnosis', element('ul', { className: 'findings' }, ...findings(page).map((each) => finding(each, go))));
+  return card('Diagnosis', element('ul', { className: 'findings' }, ...findings(page).map((each) => finding(each, page.table, go))));
 }
 
 const rowsOfVectors = (table) => [
@@ -63,7 +63,7 @@ function layerCard(page, store) {
   const fault = element('p', { className: 'fault' });
   const node = card('Layer', list, fault);
   store.on(['layer'], ({ layer }) => {
-    node.firstChild.textContent = `Layer ${count(layer + 1)}`;
+    node.firstChild.textContent = `Layer ${layerNumber(table, layer)}`;
     rows.forEach(([, tell], k) => (values[k].textContent = tell(layer)));
     const text = faultText(table, layer);
     fault.className = `fault ${text === '' ? 'good' : 'bad'}`;
@@ -80,7 +80,7 @@ function layerList(title, layers, page, go) {
       element(
         'button',
         { type: 'button', className: `pick${bad ? ' bad' : ''}`, onclick: () => go(layer) },
-        element('b', {}, count(layer + 1)),
+        element('b', {}, layerNumber(page.table, layer)),
         element('span', {}, text),
         element('small', {}, `z ${mm(page.table.z[layer])}`),
       ),

@@ -1,7 +1,7 @@
 import { hasMaterial, hasVectors } from '../data/exposures.js';
 import { element } from '../element.js';
 import { iconButton } from '../icon.js';
-import { brief, count, mm } from '../text.js';
+import { brief, count, layerNumber, layerNumbers, mm } from '../text.js';
 import { LayerAxis, drawPlot, drawTicks } from './plot.js';
 
 const rowsOfMaterial = [
@@ -48,14 +48,14 @@ export class Timeline {
     this.number = element('input', {
       type: 'number',
       className: 'number',
-      min: 1,
-      max: page.head.layers,
+      min: this.#first(),
+      max: this.#first() + Math.max(0, page.head.layers - 1),
       'aria-label': 'Number of the layer',
     });
     this.number.addEventListener('change', () => {
-      const wanted = Math.round(Number(this.number.value)) - 1;
+      const wanted = Math.round(Number(this.number.value)) - this.#first();
       if (Number.isFinite(wanted)) player.go(wanted);
-      this.number.value = store.state.layer + 1;
+      this.number.value = store.state.layer + this.#first();
     });
     this.height = element('span', { className: 'height' });
     this.cursor = element('i', { className: 'cursor', 'aria-hidden': true });
@@ -72,7 +72,7 @@ export class Timeline {
         iconButton('Layer above (→)', 'forth', () => player.step(1)),
         iconButton('Last layer (End)', 'last', () => player.go(page.head.layers - 1)),
         this.number,
-        element('span', { className: 'of' }, `of ${count(page.head.layers)}`),
+        element('span', { className: 'of' }, layerNumbers(page.table)),
         this.height,
       ),
       element('div', { className: 'track' }, this.slider),
@@ -81,6 +81,11 @@ export class Timeline {
     new ResizeObserver(() => this.#draw()).observe(this.plots[0].canvas);
     store.on(['layer'], (state) => this.#follow(state.layer));
     store.on(['theme'], () => this.#draw());
+  }
+
+  /** The number of the lowest layer. */
+  #first() {
+    return this.#page.table.index[0] ?? 0;
   }
 
   #playButton() {
@@ -122,11 +127,11 @@ export class Timeline {
   }
 
   #follow(layer) {
-    const { table, head } = this.#page;
+    const { table } = this.#page;
     this.slider.value = layer;
     const faults = table.open_chains[layer] > 0 ? `, ${count(table.open_chains[layer])} open contours` : '';
-    this.slider.setAttribute('aria-valuetext', `${layer + 1} of ${head.layers}, z = ${mm(table.z[layer])} mm${faults}`);
-    if (document.activeElement !== this.number) this.number.value = layer + 1;
+    this.slider.setAttribute('aria-valuetext', `${layerNumber(table, layer)} ${layerNumbers(table)}, z = ${mm(table.z[layer])} mm${faults}`);
+    if (document.activeElement !== this.number) this.number.value = layer + this.#first();
     this.height.textContent = `z = ${mm(table.z[layer])} mm`;
     for (const plot of this.plots) plot.value.textContent = `${plot.tell(plot.values[layer])} ${plot.unit}`;
     this.#place();
