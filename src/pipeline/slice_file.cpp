@@ -318,6 +318,7 @@ class LayerWay {
                 made.push_back(take_steps(job_.steps, layer, one));
                 changes += one;
             }
+            changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers); // of the plate
             count(stepping, step_nanoseconds_);
             parts = made;
         }

@@ -40,6 +40,14 @@ class LayerSteps(ProgramTest):
         self.assertEqual((changes["changed_layers"], changes["groups_united"], changes["rings_united"]), (10, 10, 20))
         self.assertAlmostEqual(changes["area_before_mm2"] - changes["area_after_mm2"], 1000, places=6)
 
+    def test_a_layer_of_several_parts_counts_once(self):
+        parts = ["heap.stl", "heap.stl", "--layer-height", "1"]
+        changes = self.succeed("slice", *parts, "--fill", "nonzero", "--stats", "-").json()["changes"]
+        self.assertEqual((changes["changed_layers"], changes["rings_united"]), (10, 40))
+        self.succeed("slice", *parts, "-o", "two.json")
+        done = self.succeed("convert", "two.json", "--fill", "nonzero", "united.json")
+        self.assertIn("10 layers other than before: 40 rings united", done.text)
+
     def test_a_body_inside_out_is_turned_or_dropped(self):
         self.assert_areas(self.stats("--fill", "nonzero", part="inside_out.stl"), 600)
         self.assert_areas(self.stats("--fill", "positive", part="inside_out.stl"), 0)
