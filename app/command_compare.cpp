@@ -191,7 +191,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     for (const LayerFile* file : {&first, &second})
         context.messages.warn_of(file->path, file->warnings);
 
-    const FileComparison files = compare_files(first, second, arguments.tolerance);
+    const FileComparison files = compare_files(first, second, arguments.tolerance, execution);
     const StackComparison& found = files.layers;
     if (found.cut_apart)
         context.messages.warn(cut_apart_text(first, second));

@@ -35,15 +35,6 @@ struct VerifyArguments {
     RunOptions run;
 };
 
-/// Puts the cut of every layer where --slice-at says; formats that keep bottom and top only are read as
-/// if it had been cut in the middle.
-void place_cuts(LayerStack& layers, SliceAt at) {
-    for (Layer& layer : layers)
-        layer.z = at == SliceAt::bottom ? layer.bottom
-                  : at == SliceAt::top  ? layer.top
-                                        : layer.bottom + (layer.top - layer.bottom) / 2;
-}
-
 Json heights_json(const std::optional<CoveredHeights>& heights) {
     if (!heights)
         return {};
@@ -165,10 +156,9 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         strategy = arguments.scanning.strategy();
     PlaneRule rule = file.rule;
     if (!arguments.slice_at.empty()) {
-        const SliceAt at = slice_at_of(arguments.slice_at);
+        const SliceAt at = slice_at_named(arguments.slice_at);
         for (LayerPart& part : file.parts)
-            place_cuts(part.layers, at);
-        rule = at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
+            rule = place_cuts(part.layers, at);
     }
     std::optional<Mesh> mesh;
     if (!arguments.mesh.empty()) {

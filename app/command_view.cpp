@@ -65,7 +65,8 @@ Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::stri
     job.inputs = {input_of(arguments)};
     job.layering.cut =
         UniformLayers{.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height)};
-    job.layering.at = slice_at_of(arguments.slice_at);
+    if (!arguments.slice_at.empty())
+        job.layering.at = slice_at_named(arguments.slice_at);
     job.max_memory = arguments.limits.max_memory.value_or(0);
     job.steps = arguments.making.steps();
     job.layer_statistics = job.steps.any(); // the page tells what became of each

@@ -52,7 +52,10 @@ Execution Deadline::execution() {
 }
 
 void Deadline::check() const {
-    const std::lock_guard lock(mutex_);
+    // Of several processes of one run, another one may have come to its end a moment sooner.
+    constexpr std::chrono::seconds skew{1};
+    std::unique_lock lock(mutex_);
+    done_.wait_for(lock, skew, [this] { return expired_ || given_.cancelled(); });
     if (expired_ && !given_.cancelled())
         throw Error(ErrorKind::limit, message());
 }
@@ -66,6 +69,7 @@ void Deadline::watch() {
     if (done_.wait_for(lock, time, is_ending))
         return;
     expired_ = true;
+    done_.notify_all();
     lock.unlock(); // whoever is waiting for the stop may want to report progress
     stop_.request();
     lock.lock();

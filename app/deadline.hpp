@@ -39,7 +39,7 @@ class Deadline {
     const Execution& given_;
     CancelFlag stop_;
     mutable std::mutex mutex_;
-    std::condition_variable done_;
+    mutable std::condition_variable done_; ///< or expired
     Progress last_;
     bool started_ = false; ///< `last_` is a report
     bool ending_ = false;

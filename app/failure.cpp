@@ -87,7 +87,7 @@ Failure failure_of(const std::exception_ptr& error) {
         return failure(known.kind(), with_options(known.what()));
     } catch (const std::bad_alloc&) {
         return failure(ErrorKind::limit,
-                       "memory ran out; free some, or slice fewer layers at once (--layers)");
+                       "memory ran out; free some, or work on less at once, such as fewer layers");
     } catch (const std::exception& unknown) {
         return failure(ErrorKind::internal, unknown.what());
     }

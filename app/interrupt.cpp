@@ -21,6 +21,7 @@ namespace {
 
 constexpr int cancelled_exit_code = 130;
 constexpr int patience_ms = 700;
+constexpr int together_ms = 200; // who ends a process and then its group sends two signals, which mean one
 
 int checked(int descriptor) {
     if (descriptor < 0)
@@ -91,9 +92,11 @@ void Interrupt::watch() {
         words = messages_.last_words("cancelled", cancelled_exit_code);
     } catch (const std::bad_alloc&) { // then it ends without
     }
-    signalfd_siginfo first{};
-    static_cast<void>(!read(signals_, &first, sizeof first)); // so that a second one shows
-    wait_for(awaited, patience_ms);
+    wait_for(std::span(awaited).last(1), together_ms);
+    std::array<signalfd_siginfo, 8> first{};
+    static_cast<void>(!read(signals_, first.data(), sizeof first)); // so that a second one shows
+    if (awaited[1].revents == 0)
+        wait_for(awaited, patience_ms - together_ms);
     if (awaited[1].revents == 0)
         leave_at_once(words, cancelled_exit_code);
 }

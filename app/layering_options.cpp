@@ -83,7 +83,7 @@ Cut cut_of(const LayeringOptions& options) {
 
 Layering LayeringOptions::layering() const {
     check_ways(*this);
-    return {.cut = cut_of(*this), .at = slice_at_of(slice_at), .only = only};
+    return {.cut = cut_of(*this), .at = slice_at_named(slice_at), .only = only};
 }
 
 OptionGroup layering_options(LayeringOptions& target) {

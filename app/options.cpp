@@ -359,12 +359,6 @@ const std::vector<std::string>& slice_at_names() {
     return names;
 }
 
-SliceAt slice_at_of(std::string_view name) {
-    if (name == "bottom")
-        return SliceAt::bottom;
-    return name == "top" ? SliceAt::top : SliceAt::middle;
-}
-
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason) {
     if (first && second)
         throw Error(ErrorKind::usage, fmt::format("{} contradict each other: {}", names, reason));

@@ -126,7 +126,6 @@ struct LayerStepOptions {
 [[nodiscard]] std::string changes_text(const LayerChanges& changes, std::string_view than);
 
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
-[[nodiscard]] SliceAt slice_at_of(std::string_view name);
 
 /// Throws Error{usage} that names two options, where both are given and cannot go together.
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason);

@@ -172,7 +172,12 @@ class Comparison:
 
 
 def compare(
-    first: Union[PathLike, Stack], second: Union[PathLike, Stack], tolerance: Optional[float] = None
+    first: Union[PathLike, Stack],
+    second: Union[PathLike, Stack],
+    tolerance: Optional[float] = None,
+    *,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
 ) -> Comparison:
     """Compares the contours of layers plane by plane. Hatch lines, heights and parameters of files are compared by the
     program: `lamella compare`.
@@ -180,13 +185,17 @@ def compare(
     first, second: paths or stacks.
     tolerance: how far contours may be apart, in millimetres; what the rounding of both formats explains unless
         given, which is nothing for stacks that were sliced.
+    threads: 0 takes one for each processor.
+    progress: called as progress(stage, done, total) now and then, from the thread that called this.
 
     A DefectWarning says so where no layers belong together since the lowest of both are cut at different heights.
     Raises InputError.
     """
     tolerance = check.optional(check.distance, "tolerance", tolerance)
-    one, other = as_stack("first", first), as_stack("second", second)
-    tolerance, planes, cut_apart = _lamella.compare(one, other, tolerance)
+    threads, progress = check.thread_count(threads), check.listener(progress)
+    one = as_stack("first", first, threads=threads, progress=progress)
+    other = as_stack("second", second, threads=threads, progress=progress)
+    tolerance, planes, cut_apart = _lamella.compare(one, other, tolerance, threads, progress)
     if cut_apart:
         low, high = one[0], other[0]
         warn(

@@ -293,20 +293,6 @@ std::vector<std::string> write_mesh(const std::string& path, const std::string& 
     return {};
 }
 
-/// Where in their thickness layers were cut, if not where they say.
-void cut_at(const std::string& at, LayerStack& layers, PlaneRule& rule) {
-    if (!at.empty())
-        rule = at == "top" ? PlaneRule::section_below : PlaneRule::section_above;
-    for (Layer& layer : layers) {
-        if (at == "bottom")
-            layer.z = layer.bottom;
-        else if (at == "top")
-            layer.z = layer.top;
-        else if (at == "middle")
-            layer.z = layer.bottom + (layer.top - layer.bottom) / 2;
-    }
-}
-
 py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, unsigned threads,
                   const py::object& progress) {
     if (holds_scan_vectors(stack))
@@ -317,7 +303,8 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
         if (mesh)
             options.mesh = mesh->mesh();
         LayerStack layers = plain(stack);
-        cut_at(at, layers, options.rule);
+        if (!at.empty())
+            options.rule = place_cuts(layers, slice_at_named(at));
         return verify(layers, options, execution);
     });
     py::dict fields;
@@ -352,8 +339,9 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
         if (mesh)
             options.mesh = mesh->mesh();
         options.strategy = strategy;
-        for (LayerPart& part : file.parts)
-            cut_at(at, part.layers, options.rule);
+        if (!at.empty())
+            for (LayerPart& part : file.parts)
+                options.rule = place_cuts(part.layers, slice_at_named(at));
         warnings = std::move(file.warnings);
         return verify_vectors(file.parts, options, execution);
     });
@@ -379,14 +367,14 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
 
 /// The tolerance; of each plane the numbers of its layers in the stacks, or None, same, agree, distance and
 /// where that begins; and whether the stacks are cut apart.
-py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance) {
-    StackComparison found;
-    {
-        const Unlocked released;
+py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance, unsigned threads,
+                   const py::object& progress) {
+    const StackComparison found = result_of(threads, progress, [&](const Execution& execution) {
         const LayerStack of_first = plain(first);
         const LayerStack of_second = plain(second);
-        found = compare(RoundedLayers{of_first, first.rounding}, {of_second, second.rounding}, tolerance);
-    }
+        return compare(RoundedLayers{of_first, first.rounding}, {of_second, second.rounding}, tolerance,
+                       execution);
+    });
     py::list planes;
     for (const ComparedPlane& plane : found.planes) {
         const LayerDifference& difference = plane.difference;

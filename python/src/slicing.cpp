@@ -29,13 +29,6 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-/// By its name, which is one of the three.
-SliceAt slice_at(const std::string& name) {
-    if (name == "bottom")
-        return SliceAt::bottom;
-    return name == "top" ? SliceAt::top : SliceAt::middle;
-}
-
 using ZRange = std::optional<std::pair<double, double>>;
 using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
@@ -43,7 +36,8 @@ using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 Plan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
               const IndexRange& layers, unsigned threads, const py::object& progress) {
     FileJob job;
-    job.layering = {.cut = cut, .at = slice_at(at), .only = {.z_range = z_range, .index_range = layers}};
+    job.layering = {
+        .cut = cut, .at = slice_at_named(at), .only = {.z_range = z_range, .index_range = layers}};
     return result_of(threads, progress,
                      [&](const Execution& execution) { return plan_of(job, mesh->plate(), execution); });
 }

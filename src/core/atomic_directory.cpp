@@ -34,6 +34,12 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
     working_ = take_free_name(target_, [](const char* name) { return ::mkdir(name, 0777) == 0; });
     if (working_.empty())
         throw output_error(target_.string(), errno);
+    // The permissions of a new folder are the umask's; those of a replaced one stay, and meanwhile this
+    // process may write in it.
+    if (struct stat replaced{}; ::stat(target_.c_str(), &replaced) == 0) {
+        permissions_ = replaced.st_mode & 07777;
+        static_cast<void>(::chmod(working_.c_str(), *permissions_ | S_IRWXU));
+    }
     if (!unfinished_.announce(working_.string())) {
         ::rmdir(working_.c_str());
         throw Error(ErrorKind::cancelled, "cancelled");
@@ -81,6 +87,8 @@ void AtomicDirectory::commit() {
     // Once it has its name, nobody may be about to remove what is in it.
     if (!unfinished_.withdraw())
         throw Error(ErrorKind::cancelled, "cancelled");
+    if (permissions_)
+        static_cast<void>(::chmod(working_.c_str(), *permissions_));
     // Renaming onto a missing or an empty folder needs no more.
     if (std::rename(working_.c_str(), target_.c_str()) == 0) {
         working_.clear();

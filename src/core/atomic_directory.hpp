@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,7 +16,7 @@ namespace lamella {
 
 /// A new folder that gets its name when it is complete. Until then it has another name beside it, and is
 /// removed with this object. Where a folder of that name is there already, it is replaced as a whole,
-/// provided that it is empty or `may_remove` says so of every entry in it.
+/// provided that it is empty or `may_remove` says so of every entry in it; its permissions stay.
 ///
 /// Failures are Error{output}.
 class AtomicDirectory {
@@ -38,7 +39,8 @@ class AtomicDirectory {
     std::string path_;
     std::filesystem::path target_;
     std::function<bool(const std::filesystem::path&)> may_remove_;
-    std::filesystem::path working_; ///< empty after commit
+    std::filesystem::path working_;       ///< empty after commit
+    std::optional<unsigned> permissions_; ///< of the folder that is replaced
     UnfinishedName unfinished_;
     std::atomic<std::uint64_t> bytes_{0};
 };

@@ -159,10 +159,10 @@ bool FileComparison::agree() const noexcept {
 }
 
 FileComparison compare_files(const LayerFile& first, const LayerFile& second,
-                             std::optional<double> tolerance_mm) {
+                             std::optional<double> tolerance_mm, const Execution& execution) {
     const LayerStack stacks[2] = {first.merged(), second.merged()};
     FileComparison result{.layers = compare(RoundedLayers{stacks[0], first.rounding},
-                                            {stacks[1], second.rounding}, tolerance_mm),
+                                            {stacks[1], second.rounding}, tolerance_mm, execution),
                           .details = {},
                           .parameters = {},
                           .only_first = {},

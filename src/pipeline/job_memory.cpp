@@ -36,9 +36,10 @@ std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes, std::s
                                   bool statistics) noexcept {
     constexpr std::uint64_t program = std::uint64_t{20} << 20;
     constexpr std::uint64_t thread = std::uint64_t{12} << 20;
+    constexpr std::uint64_t of_statistics = 1400; // a record, its JSON and the text of that
     // Triangles are counted by each thread, and the counts added up.
     const std::uint64_t further_shape = 24 * (threads + std::uint64_t{1}) + 56;
-    const std::uint64_t plane = 500 + further_shape * (shapes - 1) + (statistics ? 400 : 0);
+    const std::uint64_t plane = 500 + further_shape * (shapes - 1) + (statistics ? of_statistics : 0);
     return program + thread * threads + plane * planes;
 }
 

@@ -4,6 +4,7 @@
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
+#include "container/gzip.hpp"
 #include "core/atomic_file.hpp"
 #include "core/byte_source.hpp"
 
@@ -12,11 +13,17 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -39,6 +46,11 @@ struct ShardFile {
 };
 
 ShardFile look_at(const std::string& path, const LayerReadOptions& reading, const Execution& execution) {
+    std::error_code unknown; // whoever reads it says what is wrong
+    if (path == "-" || (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path)))
+        throw Error(ErrorKind::usage, fmt::format("{}: files are read twice to be merged, which standard "
+                                                  "input and pipes cannot be; save it to a file first",
+                                                  path));
     const LayerFile file = read_layers(path, reading, execution);
     const LayerStack& layers = file.parts.front().layers;
     if (layers.empty())
@@ -139,8 +151,10 @@ struct CommonLayerFile {
                             path));
 }
 
-CommonLayerFile take_apart(const std::string& path, const Execution& execution) {
-    CommonLayerFile file{open_bytes(path, execution), {}, {}, {}, {}};
+CommonLayerFile take_apart(const std::string& path, const LayerReadOptions& reading,
+                           const Execution& execution) {
+    CommonLayerFile file{
+        unpacked(open_bytes(path, execution), reading.max_memory, execution), {}, {}, {}, {}};
     const std::string_view text = file.source.text();
     constexpr std::string_view count_key = "$$LAYERS/";
     constexpr std::string_view head_end = "$$HEADEREND";
@@ -190,7 +204,8 @@ void check_heads(const std::string& one, std::string_view head, const std::strin
 }
 
 std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint64_t layers,
-                                 const std::string& output, const Execution& execution) {
+                                 const std::string& output, const LayerReadOptions& reading,
+                                 const Execution& execution) {
     AtomicFile out(output);
     std::string head;
     for (std::size_t i = 0; i < shards.size(); ++i) {
@@ -198,7 +213,7 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
         if (!shards[i].warnings.empty())
             throw Error(ErrorKind::input,
                         fmt::format("{}: is not sound: {}", shards[i].path, shards[i].warnings.front()));
-        const CommonLayerFile file = take_apart(shards[i].path, execution);
+        const CommonLayerFile file = take_apart(shards[i].path, reading, execution);
         if (i == 0) {
             head = file.before_count;
             out.append(head);
@@ -227,6 +242,8 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
 struct KnownPart {
     PartInfo info;
     const std::string* path;
+    std::vector<std::size_t> next = {}; ///< which parts come behind it in one of the files
+    std::size_t waits_for = 0;          ///< parts that are to come before it
 };
 
 /// A part is exposed in one way in all of a file: none of two is silently taken for the other.
@@ -256,27 +273,51 @@ void check_parameters(const KnownPart& known, const PartInfo& part, const std::s
     refuse("parameters called", one.name, other.name);
 }
 
-/// Those of all files, each in its order; boxes of all.
+/// Those of all files, in an order that is that of each file; boxes of all. Of parts that nothing puts in
+/// order, those of lower files come first.
 std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
     std::vector<KnownPart> all;
+    // By its label, and how many of the same label are before it in its file.
+    std::map<std::pair<std::string_view, std::size_t>, std::size_t> numbers;
     for (const ShardFile& shard : shards) {
-        auto next = all.begin();
+        std::map<std::string_view, std::size_t> met;
+        std::optional<std::size_t> before;
         for (const PartInfo& part : shard.parts) {
-            const auto known = std::find_if(
-                next, all.end(), [&](const KnownPart& one) { return one.info.label == part.label; });
-            if (known == all.end()) {
-                next = all.insert(next, {part, &shard.path});
+            const auto [place, added] = numbers.try_emplace({part.label, met[part.label]++}, all.size());
+            const std::size_t number = place->second;
+            if (added) {
+                all.push_back({part, &shard.path});
             } else {
-                check_parameters(*known, part, shard.path);
-                known->info.box.add(part.box);
-                next = known;
+                check_parameters(all[number], part, shard.path);
+                all[number].info.box.add(part.box);
             }
-            ++next;
+            if (before) {
+                all[*before].next.push_back(number);
+                ++all[number].waits_for;
+            }
+            before = number;
         }
     }
+    std::set<std::size_t> ready;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (all[i].waits_for == 0)
+            ready.insert(i);
     std::vector<PartInfo> parts;
-    for (KnownPart& part : all)
+    while (!ready.empty()) {
+        KnownPart& part = all[ready.extract(ready.begin()).value()];
+        for (const std::size_t next : part.next)
+            if (--all[next].waits_for == 0)
+                ready.insert(next);
         parts.push_back(std::move(part.info));
+    }
+    if (parts.size() < all.size()) {
+        const auto stuck =
+            std::find_if(all.begin(), all.end(), [](const KnownPart& part) { return part.waits_for > 0; });
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: the part {} comes before others that come before it in another of the "
+                                "files; they are not of one job",
+                                *stuck->path, stuck->info.label));
+    }
     return parts;
 }
 
@@ -314,10 +355,19 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     info.box.min.z = result.bottom;
     info.box.max.z = result.top;
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(output, format, info, options);
+    double top = result.bottom;
     for (const ShardFile& shard : shards) {
         const LayerFile file = read_layers(shard.path, reading, execution);
-        for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i)
-            writer->prepare(plane_of(file, i, parts))();
+        // Where one file ends and the next one begins, roundings of two heights and of a thickness meet.
+        const double rounded = 2 * file.rounding.step_at(top);
+        for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
+            std::vector<Layer> plane = plane_of(file, i, parts);
+            for (Layer& layer : plane)
+                if (i == 0 && std::abs(layer.bottom - top) <= rounded)
+                    layer.bottom = top;
+            top = plane.front().top;
+            writer->prepare(plane)();
+        }
     }
     writer->finish();
     result.bytes = writer->bytes();
@@ -344,7 +394,7 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
     for (const ShardFile& shard : shards)
         result.layers += shard.layers;
     if (to.joins && to.name == result.format)
-        result.bytes = join_common_layers(shards, result.layers, output, execution);
+        result.bytes = join_common_layers(shards, result.layers, output, reading, execution);
     else
         write_anew(shards, output, to, options, reading, result, execution);
     return result;

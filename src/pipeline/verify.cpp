@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 
 #include "contour/area_moments.hpp"
+#include "contour/same_height.hpp"
 #include "core/executor.hpp"
 #include "pipeline/covered_heights.hpp"
 #include "pipeline/layer_check.hpp"
@@ -147,6 +148,18 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
 }
 
 } // namespace
+
+PlaneRule place_cuts(LayerStack& layers, SliceAt at) {
+    for (Layer& layer : layers) {
+        const double cut = at == SliceAt::bottom ? layer.bottom
+                           : at == SliceAt::top  ? layer.top
+                                                 : layer.bottom + (layer.top - layer.bottom) / 2;
+        // A file that says it knows better: a last cut at the top of a mesh is not above it by a last digit.
+        if (std::abs(layer.z - cut) > same_height_mm)
+            layer.z = cut;
+    }
+    return at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
+}
 
 Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {
     check_coordinates(layers);

@@ -395,23 +395,30 @@ class VectorCheck {
             slack.add(rule);
             shallow = deep = hatch_depth(contours_of(strategy, region), rule) - bounds.depth;
         }
-        const Layer& section = bounds.sections.front();
-        const LayerMeasure nominal = measure(offset(section, -shallow));
-        LayerMeasure edges = nominal; // and those of skins
-        edges.perimeter_mm += around_skins;
-        double least = nominal.area_mm2;
-        double greatest = nominal.area_mm2;
+        const Layer* section = &bounds.sections.front();
+        LayerMeasure to_fill; // of the first section that has any material: heights may be rounded out of it
+        LayerMeasure largest;
+        double least = std::numeric_limits<double>::infinity();
         for (const Layer& moved : bounds.sections) {
+            const LayerMeasure area = measure(offset(moved, -shallow));
+            if (to_fill.area_mm2 == 0 && area.area_mm2 != 0) {
+                to_fill = area;
+                section = &moved;
+            }
+            largest.area_mm2 = std::max(largest.area_mm2, area.area_mm2);
+            largest.perimeter_mm = std::max(largest.perimeter_mm, area.perimeter_mm);
             least = std::min(least, measure(offset(moved, -deep)).area_mm2);
-            greatest = std::max(greatest, measure(offset(moved, -shallow)).area_mm2);
         }
-        least -= slack.less(edges);
-        greatest += slack.more(edges) + over_others;
+        const double moved_edges = tolerance_ * largest.perimeter_mm;
+        LayerMeasure edges = largest; // and those of skins
+        edges.perimeter_mm += around_skins;
+        least -= slack.less(edges) + moved_edges;
+        const double greatest = largest.area_mm2 + slack.more(edges) + over_others + moved_edges;
         if (covered < least || covered > greatest)
             found.miscovered.add(group.exposures.front()->layers[plane],
-                                 section.points.empty() ? Point2{} : section.points[0]);
+                                 section->points.empty() ? Point2{} : section->points[0]);
         found.covered_mm2 += covered;
-        found.filled_mm2 += nominal.area_mm2;
+        found.filled_mm2 += to_fill.area_mm2;
     }
 
     const VerifyOptions& options_;

@@ -172,16 +172,29 @@ bool comes_into(const Segment& s, const Point2& place) noexcept {
     return -reach < twice && (twice < reach || (twice == reach && way.y < 0));
 }
 
-/// Places, sorted into cells.
+/// Places, no two of them the same, sorted into cells; those of a cell that has many into cells of its own:
+/// where sides run through one point, crossings of all pairs lie close together.
 class Places {
   public:
     explicit Places(std::vector<Point2> places)
-        : places_(distinct(std::move(places))), cells_(cells_for(places_)) {
+        : places_(std::move(places)), size_(cell_size(places_)), cells_(box_of(places_), size_) {
         const NumbersBelow numbers{static_cast<std::uint32_t>(places_.size())};
         [[maybe_unused]] const bool sorted =
             cells_.sort(numbers, places_.size(),
                         [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(places_[i])); });
         assert(sorted); // each place is in one cell
+        if (size_ <= least_size)
+            return;
+        for (std::size_t cell = 0; cell < cells_.cells(); ++cell) {
+            const std::span<const std::uint32_t> within = cells_.in_cell(cell);
+            if (within.size() < crowd)
+                continue;
+            std::vector<Point2> crowded;
+            for (const std::uint32_t i : within)
+                crowded.push_back(places_[i]);
+            crowded_cells_.push_back(cell);
+            crowds_.emplace_back(std::move(crowded));
+        }
     }
 
     /// Calls visit(place) for those, but for the ends of the segment, for which `on(segment, place)`; they
@@ -189,7 +202,14 @@ class Places {
     template <class On, class Visit>
     void for_places_on(const Segment& s, const On& on, const Visit& visit) const {
         cells_.for_cells_along(s, [&](std::size_t cell) {
-            for (const std::uint32_t i : cells_.in_cell(cell)) {
+            const std::span<const std::uint32_t> within = cells_.in_cell(cell);
+            if (within.size() >= crowd && size_ > least_size) {
+                const auto found = std::lower_bound(crowded_cells_.begin(), crowded_cells_.end(), cell);
+                assert(found != crowded_cells_.end() && *found == cell);
+                crowds_[static_cast<std::size_t>(found - crowded_cells_.begin())].for_places_on(s, on, visit);
+                return;
+            }
+            for (const std::uint32_t i : within) {
                 const Point2& place = places_[i];
                 if (place != s.lo && place != s.hi && on(s, place))
                     visit(place);
@@ -198,21 +218,26 @@ class Places {
     }
 
   private:
-    static std::vector<Point2> distinct(std::vector<Point2> places) {
-        std::sort(places.begin(), places.end());
-        places.erase(std::unique(places.begin(), places.end()), places.end());
-        return places;
-    }
+    static constexpr std::size_t crowd = 128;
+    /// Of cells so large that a segment's margin covers the unit squares into which it comes.
+    static constexpr double least_size = 1 / Grid::margin;
 
-    /// Cells so large that a segment's margin covers the unit squares into which it comes.
-    static Grid cells_for(std::span<const Point2> places) {
-        const Box2 box = box_of(places);
-        return {box, std::max(1 / Grid::margin, Grid::cell_size(box, static_cast<double>(places.size()), 0))};
+    static double cell_size(std::span<const Point2> places) {
+        return std::max(least_size, Grid::cell_size(box_of(places), static_cast<double>(places.size()), 0));
     }
 
     std::vector<Point2> places_;
+    double size_;
     Grid cells_;
+    std::vector<std::size_t> crowded_cells_; ///< ascending
+    std::vector<Places> crowds_;             ///< of each of them
 };
+
+Places distinct(std::vector<Point2> places) {
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    return Places(std::move(places));
+}
 
 void add_ends(std::span<const Side> sides, std::vector<Point2>& places) {
     for (const Side& side : sides)
@@ -352,11 +377,11 @@ Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, c
         std::vector<Point2> hot;
         add_ends(arrangement.sides, hot);
         add_crossings(arrangement.sides, hot);
-        if (cut(arrangement, Places(std::move(hot)), comes_into) && !arrangement.sides.empty()) {
+        if (cut(arrangement, distinct(std::move(hot)), comes_into) && !arrangement.sides.empty()) {
             // What was bent may run through ends that it did not come near to.
             std::vector<Point2> ends;
             add_ends(arrangement.sides, ends);
-            cut(arrangement, Places(std::move(ends)), [](const Segment& s, const Point2& place) {
+            cut(arrangement, distinct(std::move(ends)), [](const Segment& s, const Point2& place) {
                 return s.lo < place && place < s.hi && side(s, place) == 0;
             });
         }

@@ -5,6 +5,7 @@
 
 #include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
+#include "core/executor.hpp"
 #include "polygon/box2.hpp"
 #include "polygon/edge_tree.hpp"
 
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -118,12 +120,11 @@ double displaced(const Layer& first, const Layer& second, const Box2& box) {
 /// Distances up to the tolerance are those of corners.
 LayerDifference compare_beyond(const Layer& first, const Layer& second, double tolerance_mm) {
     LayerDifference difference;
-    if (same_contours(first, second)) {
-        difference.same = true;
-        return difference;
-    }
+    difference.same = same_contours(first, second);
     difference.first = measure(first);
-    difference.second = measure(second);
+    difference.second = difference.same ? difference.first : measure(second);
+    if (difference.same)
+        return difference;
     const EdgeTree first_edges(first);
     const EdgeTree second_edges(second);
     double largest = 0;
@@ -173,7 +174,7 @@ LayerDifference compare(const Layer& first, const Layer& second) {
 }
 
 StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
-                        std::optional<double> tolerance_mm) {
+                        std::optional<double> tolerance_mm, const Execution& execution) {
     if (tolerance_mm && !(*tolerance_mm >= 0))
         throw Error(
             ErrorKind::usage,
@@ -181,15 +182,27 @@ StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
     StackComparison result{
         .tolerance_mm = tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
         .planes = paired(first, second, std::max(same_height_mm, tolerance_mm.value_or(0)))};
-    bool any_pair = false;
-    for (ComparedPlane& plane : result.planes) {
-        if (!plane.first || !plane.second)
-            continue;
-        any_pair = true;
-        plane.difference =
-            compare_beyond(first.layers[*plane.first], second.layers[*plane.second], result.tolerance_mm);
-        plane.agree = plane.difference.within(result.tolerance_mm);
-    }
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::polygon, result.planes.size());
+    executor.for_chunks(result.planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            ComparedPlane& plane = result.planes[i];
+            LayerDifference& difference = plane.difference;
+            if (plane.first && plane.second) {
+                difference = compare_beyond(first.layers[*plane.first], second.layers[*plane.second],
+                                            result.tolerance_mm);
+                plane.agree = difference.within(result.tolerance_mm);
+            } else if (plane.first) {
+                difference.first = measure(first.layers[*plane.first]);
+            } else {
+                difference.second = measure(second.layers[*plane.second]);
+            }
+            progress.add(1);
+        }
+    });
+    progress.finish();
+    const bool any_pair = std::any_of(result.planes.begin(), result.planes.end(),
+                                      [](const ComparedPlane& plane) { return plane.first && plane.second; });
     result.cut_apart = !any_pair && lowest_cut_apart(first, second);
     return result;
 }

@@ -53,8 +53,11 @@ EdgeTree::EdgeTree(const Layer& layer) {
 void EdgeTree::build(std::size_t begin, std::size_t end) {
     const std::size_t at = nodes_.size();
     Box2 box = Box2::of(edges_[begin].a, edges_[begin].b);
-    for (std::size_t i = begin + 1; i < end; ++i)
+    Box2 middles = Box2::of(edges_[begin].middle());
+    for (std::size_t i = begin + 1; i < end; ++i) {
         box.add(Box2::of(edges_[i].a, edges_[i].b));
+        middles.add(Box2::of(edges_[i].middle()));
+    }
     nodes_.push_back({box, begin, end, 0});
     if (end - begin <= edges_of_leaf)
         return;
@@ -62,9 +65,10 @@ void EdgeTree::build(std::size_t begin, std::size_t end) {
     const auto place = [&](std::size_t i) {
         return edges_.begin() + static_cast<std::ptrdiff_t>(i);
     };
-    const bool along_x = box.width() >= box.height();
+    // Long walls side by side have their middles on one line: across it they are far apart.
+    const bool along_x = middles.width() >= middles.height();
     std::nth_element(place(begin), place(middle), place(end), [&](const Edge& s, const Edge& t) {
-        return along_x ? s.a.x + s.b.x < t.a.x + t.b.x : s.a.y + s.b.y < t.a.y + t.b.y;
+        return along_x ? s.middle().x < t.middle().x : s.middle().y < t.middle().y;
     });
     build(begin, middle);
     nodes_[at].right = nodes_.size();

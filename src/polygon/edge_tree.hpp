@@ -14,7 +14,7 @@
 
 namespace lamella {
 
-/// A balanced tree of boxes, split by the middles of edges along the longer side of each box.
+/// A balanced tree of boxes, split where the middles of edges are farthest apart.
 class EdgeTree {
   public:
     /// All edges of a layer; a contour of one point is an edge of no length. O(n log n).
@@ -39,6 +39,10 @@ class EdgeTree {
     struct Edge {
         Point2 a;
         Point2 b;
+
+        [[nodiscard]] Point2 middle() const noexcept {
+            return {a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
+        }
     };
     struct Node {
         Box2 box;

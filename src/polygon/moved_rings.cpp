@@ -480,6 +480,16 @@ class RingMover {
     std::vector<Point2> ends_points_; ///< of one side
 };
 
+/// Of a ring from `begin` on. Sides that shrank to nothing leave both their ends.
+void drop_repeats(std::vector<Point2>& points, std::size_t begin) {
+    points.erase(std::unique(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end()),
+                 points.end());
+    while (points.size() > begin + 1 && points.back() == points[begin])
+        points.pop_back();
+    if (points.size() < begin + 3)
+        points.resize(begin);
+}
+
 } // namespace
 
 double surely_swept(double distance, const OffsetCorners& corners) noexcept {
@@ -512,8 +522,10 @@ std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> dista
     for (std::size_t i = 0; i < layer.rings; ++i) {
         sides.look_at(layer.contour(i));
         for (std::size_t k = 0; k < distances.size(); ++k) {
+            const std::size_t begin = points[k].size();
             if (!gone[k][i])
                 movers[k].move(points[k]);
+            drop_repeats(points[k], begin);
             moved[k].offsets.push_back(points[k].size());
         }
     }

@@ -38,6 +38,28 @@ void check(std::span<const double> distances, const OffsetCorners& corners) {
         throw Error(ErrorKind::usage, "arcs are made of chords within a tolerance above 0");
 }
 
+/// How wide the strip along the longest side is in which a ring lies.
+double width_across_longest_side(std::span<const Point2> ring) noexcept {
+    double longest = 0;
+    Point2 way;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Point2& before = ring[i == 0 ? ring.size() - 1 : i - 1];
+        const Point2 side{ring[i].x - before.x, ring[i].y - before.y};
+        if (const double squared = side.x * side.x + side.y * side.y; squared > longest) {
+            longest = squared;
+            way = side;
+        }
+    }
+    double low = 0;
+    double high = 0;
+    for (const Point2& p : ring) {
+        const double across = way.x * (p.y - ring.front().y) - way.y * (p.x - ring.front().x);
+        low = std::min(low, across);
+        high = std::max(high, across);
+    }
+    return longest > 0 ? (high - low) / std::sqrt(longest) : 0;
+}
+
 /// The boundaries of a layer's material, without walls, and what they bound.
 class Boundaries {
   public:
@@ -77,8 +99,9 @@ class Boundaries {
         std::vector<bool> gone(layer_.rings, false);
         const double swept = 2 * surely_swept(distance, corners);
         const auto narrow = [&](std::uint32_t ring) {
-            const Box2 box = box_of(layer_.contour(ring));
-            return std::min(box.width(), box.height()) <= swept;
+            const std::span<const Point2> points = layer_.contour(ring);
+            const Box2 box = box_of(points);
+            return std::min(box.width(), box.height()) <= swept || width_across_longest_side(points) <= swept;
         };
         for (const Polygon& body : polygons_) {
             if (distance < 0 && narrow(body.outer)) {

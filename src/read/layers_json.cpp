@@ -32,6 +32,8 @@ class LayersJsonReader {
                 check_format();
             else if (key == "version")
                 check_version();
+            else if (key == "units")
+                check_units();
             else if (key == "parts")
                 read_parts();
             else if (key == "rule")
@@ -63,6 +65,11 @@ class LayersJsonReader {
         const double version = text_.number();
         if (version != 1)
             text_.fail(fmt::format("version {}", version), "version 1 is read");
+    }
+
+    void check_units() {
+        if (const std::string units = text_.string(); units != "mm")
+            text_.fail(fmt::format("units of '{}'", printable(units, 40)), "lengths are read in 'mm'");
     }
 
     void read_rule() {

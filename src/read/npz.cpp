@@ -43,6 +43,8 @@ class Array {
             fail("an array of another shape", what);
     }
 
+    [[nodiscard]] bool is_single_precision() const { return type_ == "<f4"; }
+
     /// A length in millimetres. `i` counts all numbers of the array.
     [[nodiscard]] double length(std::uint64_t i) const {
         double value = 0;
@@ -246,6 +248,9 @@ class NpzReader {
                 z.fail(fmt::format("z = {} behind z = {}", at, z.length(i - 1)), "layers must ascend");
             add_layer(file_, raw[i], index.whole(i, most_index), at, from, to, limits_);
         }
+        for (const Array* lengths : {&points, &z, &bottom, &top})
+            if (lengths->is_single_precision())
+                file_.rounding.single_precision = true;
         dropped_.say(file_.warnings);
     }
 
@@ -326,6 +331,8 @@ class NpzReader {
             into.end_hatches(static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1)), limits_,
                              place);
         }
+        if (hatches.is_single_precision())
+            file_.rounding.single_precision = true;
     }
 
     const ZipReader& zip_;

@@ -46,6 +46,17 @@ void require_ranges_that_hold_something(const PlaneSelection& only) {
 
 } // namespace
 
+SliceAt slice_at_named(std::string_view name) {
+    if (name == "bottom")
+        return SliceAt::bottom;
+    if (name == "middle")
+        return SliceAt::middle;
+    if (name == "top")
+        return SliceAt::top;
+    throw Error(ErrorKind::usage,
+                fmt::format("layers are cut at their bottom, middle or top, not at '{}'", name));
+}
+
 Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, SliceAt slice_at,
                   const PlaneSelection& only) {
     const double height = layers.layer_height;

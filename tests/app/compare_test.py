@@ -33,6 +33,13 @@ class Compare(ProgramTest):
                 self.assertTrue(self.succeed("compare", "torus.json", name, "--json").json()["agree"])
         self.differ("torus.json", "torus.svg", "--tolerance", "0")
 
+    def test_points_half_way_between_two_units_agree(self):
+        self.succeed("make", "box", "--size", "0.3125,0.3125,1", "--translate", "2,3,0", "-o", "small.stl")
+        self.succeed("slice", "small.stl", "--layer-height", "0.5", "-o", "small.json")
+        for name in ["small.svg", "small.3mf", "small.cli"]:
+            self.succeed("convert", "small.json", name)
+            self.succeed("compare", "small.json", name)
+
     def test_a_part_that_was_moved_is_told_with_how_far_and_where(self):
         self.slice("moved.json", "--translate", "0.25,0,0")
         found = self.differ("torus.json", "moved.json", "--json").json()
@@ -70,6 +77,10 @@ class Compare(ProgramTest):
         found = self.differ("torus.json", "part.json", "--json").json()
         self.assertEqual({d["in"] for d in found["differences"]}, {"first"})
         self.assertEqual(found["same"], 3)
+        first = found["differences"][0]
+        self.assertGreater(first["contours"][0], 0)
+        self.assertGreater(first["area_mm2"][0], 1)
+        self.assertEqual((first["contours"][1], first["area_mm2"][1]), (0, 0))
         self.assertIn("only torus.json has contours", self.differ("torus.json", "part.json").text)
 
     def test_the_same_layers_cut_at_other_heights_are_told(self):

@@ -85,7 +85,7 @@ class Convert(ProgramTest):
                 {"rings": [[0, 0, 4, 0, 4, 4, 0, 4], [2, 2, 6, 2, 6, 6, 2, 6]]},
                 {"rings": [[10, 0, 14, 0, 14, 4, 10, 4], [12, 2, 16, 2, 16, 6, 12, 6], [20, 0, 21, 0, 21, 1, 20, 1]]}]}]}""")
         text = self.succeed("convert", "two.json", "out.json", "--fill", "nonzero", "--min-area", "2").text
-        self.assertIn("2 layers other than before: 4 rings united, 0 turned, 1 dropped, 0 points left out", text)
+        self.assertIn("1 layer other than before: 4 rings united, 0 turned, 1 dropped, 0 points left out", text)
         self.assertNotIn("other than", self.succeed("convert", "two.json", "out.json").text)
 
     def test_bad_input(self):

@@ -1,5 +1,6 @@
 """lamella slice --shard and lamella merge: shares of equal work, put together to the bytes of a single run."""
 
+import gzip
 import json
 import os
 import shutil
@@ -36,6 +37,20 @@ class Shard(ProgramTest):
                 written = [o for o in options if o in ("--format", "cli-ascii")]
                 self.succeed("merge", "merged.cli", *reversed(shards), *written)
                 self.assertEqual(self.bytes_of("merged.cli"), self.bytes_of("whole.cli"), options)
+
+    def test_rounded_heights_of_shards_meet(self):
+        # In single precision 17.2 is not what 17.3 less 0.1 is.
+        self.succeed("make", "box", "--size", "1,1,51.6", "-o", "part.stl")
+        shards = self.slice_all(3, "ovf", "--layer-height", "0.1")
+        self.assertNotIn("gaps", self.succeed("merge", "merged.ovf", *shards).err)
+
+    def test_what_cannot_be_read_twice_is_refused_and_what_is_packed_is_not(self):
+        self.succeed("make", "box", "--size", "1,1,2", "-o", "part.stl")
+        self.succeed("slice", "part.stl", "-o", "whole.cli")
+        self.fail_with(2, "standard input and pipes", "merge", "merged.cli", "-", stdin=self.bytes_of("whole.cli"))
+        self.write("whole.cli.gz", gzip.compress(self.bytes_of("whole.cli")))
+        self.succeed("merge", "merged.cli", "whole.cli.gz")
+        self.assertEqual(self.bytes_of("merged.cli"), self.bytes_of("whole.cli"))
 
     def test_other_formats_are_equal_by_their_layers(self):
         self.lattice()

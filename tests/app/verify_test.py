@@ -80,6 +80,23 @@ class Vectors(ProgramTest):
         self.assertEqual(self.run_program("verify", "layers.npz", "--mesh", "rook.stl", "--offset=-0.201").code, 4)
         self.assertIn("--mesh part.stl", self.run_program("verify", "layers.npz", *compensated).err)
 
+    def test_simplified_contours_have_their_lines_granted(self):
+        self.succeed("make", "cylinder", "-o", "cylinder.stl")
+        steps = ["--simplify", "0.3", "--scan", "--pattern", "lines", "--hatch-distance", "0.05", "--shortest", "0.02"]
+        self.succeed("slice", "cylinder.stl", "--layer-height", "5", *steps, "-o", "job.json")
+        self.verify("job.json", "--mesh", "cylinder.stl", *steps)
+
+    def test_a_cut_rounded_to_beside_the_mesh_is_compared_with_what_is_there(self):
+        self.succeed("make", "box", "--size", "5", "--translate", "0,0,0.3", "-o", "box.stl")
+        self.succeed("slice", "box.stl", "--slice-at", "bottom", "--layer-height", "0.5", "--scan", "-o", "job.cli")
+        found = self.verify("job.cli", "--mesh", "box.stl", "--slice-at", "bottom", "--scan")
+        self.assertLess(found["cover"], 1.1)
+
+    def test_files_that_say_where_layers_were_cut_are_believed(self):
+        self.succeed("make", "box", "--size", "1,1,5", "--translate", "0,0,-2", "-o", "box.stl")
+        self.succeed("slice", "box.stl", "--layer-height", "0.1", "--slice-at", "top", "-o", "top.json")
+        self.succeed("verify", "top.json", "--mesh", "box.stl", "--slice-at", "top")
+
     def test_a_part_of_the_layers_has_the_lines_of_the_whole(self):
         self.succeed("slice", "rook.stl", "--scan", "--layers", "40:60", "-o", "part.cli")
         self.verify("part.cli", "--mesh", "rook.stl", "--scan")

@@ -78,6 +78,19 @@ TEST(AtomicDirectory, ReplacesAnEmptyFolderAndOneOfItsOwn) {
     EXPECT_EQ(folder.entries(), Names{"out"});
 }
 
+TEST(AtomicDirectory, KeepsThePermissionsOfTheFolderThatItReplaces) {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "out";
+    fs::create_directory(path);
+    fs::permissions(path, fs::perms::owner_all);
+    for (int round = 0; round < 2; ++round) { // empty, and not
+        AtomicDirectory files(path.string(), is_layer);
+        files.write("a.svg", "a");
+        files.commit();
+        EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
+    }
+}
+
 TEST(AtomicDirectory, RefusesAFolderWithSomethingElseInIt) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "out");

@@ -91,6 +91,34 @@ TEST_F(Merge, TakesPlainPartsThatAFileHasNothingOf) {
     }
 }
 
+TEST_F(Merge, PutsPartsInTheOrderOfEachFile) {
+    for (const char* const format : {"ovf", "3mf-toolpath"}) {
+        SCOPED_TRACE(format);
+        // Only the third file says that d comes before c.
+        const std::vector<std::string> names{"0", "1", "2"};
+        const std::vector<std::vector<std::string>> labels{{"d", "u", "k"}, {"c", "u", "k"}, {"d", "c", "k"}};
+        std::vector<std::string> shards;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            std::vector<PartInfo> parts;
+            for (const std::string& label : labels[i])
+                parts.push_back({.label = label});
+            write(names[i], format, static_cast<double>(i), parts, std::vector<bool>(parts.size(), true));
+            shards.push_back(path(names[i]));
+        }
+        static_cast<void>(merge_layer_files(shards, path("merged"), format));
+        const LayerFile merged = read_layers(path("merged"));
+        std::string order;
+        for (const LayerPart& part : merged.parts)
+            order += part.label;
+        EXPECT_EQ(order, "dcuk");
+        EXPECT_EQ(merged.parts[1].layers[0].rings, 0U);
+        EXPECT_EQ(merged.parts[1].layers[1].rings, 1U);
+        write("low", format, 0, {{.label = "a"}, {.label = "b"}}, {true, true});
+        write("high", format, 1, {{.label = "b"}, {.label = "a"}}, {true, true});
+        EXPECT_NE(refusal(format).find("comes before others that come before it"), std::string::npos);
+    }
+}
+
 TEST_F(Merge, TakesOpenContoursWithAWarning) {
     for (const double bottom : {0.0, 1.0}) {
         Layer layer = normal_layer({rectangle(0, 0, 4, 4)}, {{{5, 5}, {6, 5}, {6, 6}}});

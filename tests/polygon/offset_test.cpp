@@ -89,6 +89,20 @@ TEST(Offset, JoinsSidesAsWished) {
     EXPECT_NEAR(area(offset(hole, -1, rounded)), 26 * 26 - 140 - circle, 0.005);
 }
 
+TEST(Offset, HasNoPointTwiceInARow) {
+    // The inner corners meet where the sides of the notch shrink to nothing.
+    const Layer notched = normal_form(layer_of({{{0, 1}, {1, 1}, {1, 0}, {2, 0}, {2, 3}, {0, 3}}}));
+    for (const OffsetCorners& corners : {mitred, bevelled, rounded})
+        for (const double distance : {1.0, -1.0, 0.5}) {
+            const Layer moved = offset(notched, distance, corners);
+            for (std::size_t i = 0; i < moved.contours(); ++i) {
+                const auto ring = moved.contour(i);
+                for (std::size_t k = 0; k < ring.size(); ++k)
+                    EXPECT_FALSE(ring[k] == ring[(k + 1) % ring.size()]) << distance;
+            }
+        }
+}
+
 TEST(Offset, UnitesWhatMeetsAndOverlaps) {
     const Layer apart = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(5, 0, 9, 4)}));
     EXPECT_EQ(offset(apart, 0.25).rings, 2U);

@@ -46,6 +46,16 @@ def test_slice_files_read_back(rook, tmp_path, name):
     assert lamella.compare(stack, back) and lamella.verify(back, rook).ok
 
 
+def test_numpy_arrays_in_single_precision_are_compared_as_such(tmp_path):
+    mesh = lamella.Mesh(*box_arrays(1.1, 2.2, 3.3))
+    lamella.write(tmp_path / "double.npz", lamella.slice(mesh, layer_height=0.7))
+    arrays = dict(np.load(tmp_path / "double.npz"))
+    arrays["points"] = arrays["points"].astype(np.float32)
+    np.savez(tmp_path / "single.npz", **arrays)
+    assert lamella.verify(tmp_path / "single.npz", mesh).ok
+    assert lamella.compare(tmp_path / "double.npz", tmp_path / "single.npz")
+
+
 @pytest.mark.parametrize("name", ["layers.json", "layers.npz", "layers.svg"])
 @pytest.mark.parametrize("at", ["bottom", "middle", "top"])
 def test_the_rule_of_the_plane_is_kept_with_the_cuts(rook, tmp_path, name, at):

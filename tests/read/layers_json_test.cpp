@@ -58,6 +58,7 @@ TEST(ReadLayersJson, RefusesWhatItDoesNotUnderstand) {
     expect("{}", "format");
     expect("{\"format\": \"geojson\"}", "'geojson'");
     expect("{\"format\": \"lamella layers\", \"version\": 2}", "version 2");
+    expect(R"({"format": "lamella layers", "units": "inch"})", "units of 'inch'");
     expect(R"({"format": "a\nb"})", "'a\\x0ab'");
     expect(R"({"format": "lamella layers", "rule": "a\nb"})", "'a\\x0ab'");
     expect(ended_with(file(layer("{}")), ", \"parts\": [{}]}"), "\"parts\" a second time");

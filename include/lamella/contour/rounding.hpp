@@ -30,14 +30,16 @@ struct Rounding {
     return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
 }
 
-/// How far a format may have moved one of these points, in mm. O(points), where it rounds.
+/// How far a format may have moved one of these points, in mm, and what the last digits of numbers in memory
+/// add to that. O(points), where it rounds.
 [[nodiscard]] inline double moved_point(std::span<const Point2> points, const Rounding& rounding) noexcept {
     if (rounding == Rounding{})
         return 0;
     double largest = 0;
     for (const Point2& p : points)
         largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    return rounding.step_at(largest) / 2 * std::sqrt(2.0);
+    constexpr double last_digits = 0x1p-50;
+    return (rounding.step_at(largest) / 2 + last_digits * largest) * std::sqrt(2.0);
 }
 
 /// What text formats round to that have no unit of their own.

@@ -57,6 +57,7 @@ struct FileComparison {
 /// place for each, where both say one. What has no partner counts in files of one format. Expected O(n log n)
 /// for n points and ends of lines of both, whose contours are in memory a second time.
 [[nodiscard]] FileComparison compare_files(const LayerFile& first, const LayerFile& second,
-                                           std::optional<double> tolerance_mm = {});
+                                           std::optional<double> tolerance_mm = {},
+                                           const Execution& execution = {});
 
 } // namespace lamella

@@ -38,6 +38,10 @@ struct VerifyOptions {
     std::optional<ScanStrategy> strategy = {};
 };
 
+/// Where layers were cut, whose file keeps bottom and top only and is read as if that were in the middle:
+/// changes their z. Returns the rule that goes with it.
+PlaneRule place_cuts(LayerStack& layers, SliceAt at);
+
 /// Between which heights layers lie, and the mesh that they are compared with, in mm.
 struct CoveredHeights {
     double bottom = 0; ///< of the first layer

@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/core/execution.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -14,14 +15,14 @@
 namespace LAMELLA_API lamella {
 
 struct LayerDifference {
-    /// The same contours, bit for bit: everything below is 0.
+    /// The same contours, bit for bit: all that follows is 0 but for the measures.
     bool same = false;
     /// The largest way from a point of one layer's contours to the nearest contour of the other (Hausdorff
     /// distance), to a thousandth, and where it begins. Infinite where one layer has contours and the other
     /// has none.
     double distance_mm = 0;
     Point2 where = {};
-    LayerMeasure first = {}; ///< of both layers, unless they are the same
+    LayerMeasure first = {}; ///< of both layers
     LayerMeasure second = {};
     /// How much area would have to move from end to end of both layers for such different centres.
     double displaced_mm2 = 0;
@@ -47,7 +48,8 @@ struct ComparedPlane {
     /// Their numbers in the stacks; none where that stack has neither contours nor hatch lines there.
     std::optional<std::size_t> first;
     std::optional<std::size_t> second;
-    LayerDifference difference = {}; ///< where there are both
+    /// Where there is only one of them, it has its measure alone.
+    LayerDifference difference = {};
     bool agree = false;
 };
 
@@ -64,9 +66,10 @@ struct StackComparison {
 /// is nearer to another layer. One without contours and hatch lines needs no partner. Hatch lines and heights
 /// of layers that belong together do not count: see `compare_files`. `tolerance_mm` is for
 /// LayerDifference::within; unless given, it is what the rounding of both formats explains. Distances of
-/// layers that are below it are those of corners. As expensive as `compare` of all layers that belong
-/// together. Throws Error{usage} for a tolerance that is negative or NaN.
+/// layers that are below it are those of corners. Parallel over planes; as expensive as `compare` of all
+/// layers that belong together. Throws Error{usage} for a tolerance that is negative or NaN.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
-                                      std::optional<double> tolerance_mm = {});
+                                      std::optional<double> tolerance_mm = {},
+                                      const Execution& execution = {});
 
 } // namespace lamella

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace LAMELLA_API lamella {
 
 /// Where within its thickness a layer is cut.
 enum class SliceAt { bottom, middle, top };
+/// By the name that each has here. Throws Error{usage} for another one.
+[[nodiscard]] SliceAt slice_at_named(std::string_view name);
 
 struct PlannedLayer {
     std::uint64_t index = 0; ///< in the whole plan, kept when only a part of it is sliced
