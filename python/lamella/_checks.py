@@ -25,7 +25,7 @@ from ._warning import warn
 class Verification:
     """What `verify` finds. Lengths are millimetres."""
 
-    ok: bool  #: no open chains, no crossings, no misoriented rings, no gaps, and areas and centres agree
+    ok: bool  #: no open chains, no crossings, no misoriented rings, no layer gaps, areas and centres agree
     layers: int
     contours: int
     points: int

@@ -81,7 +81,8 @@ def read(
     supports: takes what 3MF and AMF files mark as support, too, as solids; without it a DefectWarning says that it was
         left out. Of slice files supports are parts like others, see Stack.support.
     max_triangles: more of them are a LimitError; 0 is any number.
-    max_memory: more bytes than this for what is read are a LimitError; 0 is three quarters of the memory there is.
+    max_memory: more bytes than this for what is read are a LimitError; 0 is three quarters of the memory there is. A
+        binary STL file that is not packed does not count, nor does what is made of a mesh afterwards.
     threads: 0 takes one for each processor.
     progress: called as progress(stage, done, total) now and then, from the thread that called this.
 

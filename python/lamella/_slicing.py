@@ -29,7 +29,11 @@ class Engine(NamedTuple):
 
 
 def engines() -> List[Engine]:
-    """The algorithms there are; the first is the default. All give the same layers."""
+    """The algorithms there are; the first is the default.
+
+    All give the same layers of a mesh that is closed and consistently oriented, with two triangles at each edge; but
+    "conventional" may err where contours touch in a point.
+    """
     return [Engine(*row) for row in _lamella.engines()]
 
 

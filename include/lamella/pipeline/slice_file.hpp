@@ -99,7 +99,7 @@ struct LayerStatistics {
     double z = 0;
     double thickness = 0;
     LayerMeasure measure;       ///< of all parts together
-    OpenGaps open_gaps;         ///< of all parts together, after gaps were closed
+    OpenGaps open_gaps;         ///< of all parts together, after contour gaps were closed
     std::vector<GapJoin> joins; ///< with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
     LayerChanges changes;   ///< by FileJob::steps
@@ -147,7 +147,7 @@ struct FileResult {
                              ///< they were sliced, by all processes
     /// What each process did, in their order.
     std::vector<ProcessFigures> processes;
-    SliceReport report; ///< contours and chains as they are after gaps were closed
+    SliceReport report; ///< contours and chains as they are after contour gaps were closed
     /// Layers of one kind, and where the lowest of them was cut.
     struct Affected {
         std::uint64_t layers = 0;

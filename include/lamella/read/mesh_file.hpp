@@ -34,7 +34,9 @@ struct MeshReadOptions {
     /// held. They are counted while a file is read, before there is memory for the rest.
     std::uint64_t max_triangles = 0;
     /// So are more bytes than this, of what a compressed file unpacks to and of the meshes; 0: three quarters
-    /// of the memory there is.
+    /// of the memory there is. A binary STL file that is not packed does not count: one that would take more
+    /// than a quarter of this is viewed where it lies (see `read_mesh`). Nor does what is made of a mesh
+    /// afterwards.
     std::uint64_t max_memory = 0;
 };
 
