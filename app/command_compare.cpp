@@ -10,6 +10,7 @@
 #include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -59,10 +60,10 @@ std::string contours_text(const LayerDifference& found) {
         text += fmt::format("{} mm apart at ({}, {})", brief(found.distance_mm), brief(found.where.x),
                             brief(found.where.y));
     if (found.first.contours != found.second.contours && !std::isinf(found.distance_mm))
-        text += fmt::format(", {} contours against {}", grouped(found.first.contours),
+        text += fmt::format(", {} against {}", counted(found.first.contours, "contour"),
                             grouped(found.second.contours));
     if (found.first.open_chains != found.second.open_chains)
-        text += fmt::format(", {} open chains against {}", grouped(found.first.open_chains),
+        text += fmt::format(", {} against {}", counted(found.first.open_chains, "open chain"),
                             grouped(found.second.open_chains));
     return text +
            fmt::format(", area {} against {} mm2", brief(found.first.area_mm2), brief(found.second.area_mm2));
@@ -73,13 +74,13 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
     const PlaneDetails& details = *one.details;
     if (!plane.first || !plane.second)
         return fmt::format("z = {} mm: only {} has {} there", brief(plane.z),
-                           one_line(arguments.inputs[plane.first ? 0 : 1]),
+                           one_line(input_name(arguments.inputs[plane.first ? 0 : 1])),
                            details.first_hatches + details.second_hatches == 0 ? "contours" : "vectors");
     std::vector<std::string> texts;
     if (!plane.difference.same)
         texts.push_back(contours_text(plane.difference));
     if (details.first_hatches != details.second_hatches)
-        texts.push_back(fmt::format("{} hatch lines against {}", grouped(details.first_hatches),
+        texts.push_back(fmt::format("{} against {}", counted(details.first_hatches, "hatch line"),
                                     grouped(details.second_hatches)));
     else if (std::isinf(details.hatch_distance_mm))
         texts.emplace_back("hatch lines shared out otherwise among the parts");
@@ -100,7 +101,8 @@ std::string exposures_text(const FileComparison& found, const CompareArguments& 
     const std::vector<std::string>* const only[] = {&found.only_first, &found.only_second};
     for (std::size_t i = 0; i < std::size(only); ++i)
         for (const std::string& label : *only[i])
-            text += fmt::format("    {}: only in {}\n", one_line(label), one_line(arguments.inputs[i]));
+            text += fmt::format("    {}: only in {}\n", one_line(label),
+                                one_line(input_name(arguments.inputs[i])));
     return text.empty() ? "" : "  parts are exposed otherwise:\n" + text;
 }
 
@@ -238,7 +240,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     } else {
         std::string text = fmt::format(
             "{} and {}: {}\n  {} compared, {} of them the same to the last bit\n",
-            one_line(arguments.inputs[0]), one_line(arguments.inputs[1]),
+            one_line(input_name(arguments.inputs[0])), one_line(input_name(arguments.inputs[1])),
             differing.empty()
                 ? fmt::format("{} within {} mm", files.agree() ? "agree" : "layers agree", brief(tolerance))
                 : fmt::format("{} within {} mm",

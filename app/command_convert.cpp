@@ -10,6 +10,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 
@@ -92,11 +93,11 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
         stacks.push_back(part.layers);
     for (const std::string& warning :
          write_layers(arguments.output, format, stacks, info, options, execution))
-        context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
+        context.messages.warn(fmt::format("{}: {}", output_name(arguments.output), warning));
 
     std::string text =
-        fmt::format("{}: {} from {} ({}) as {}\n", one_line(arguments.output), counted(info.layers, "layer"),
-                    one_line(file.path), file.format, format.name);
+        fmt::format("{}: {} from {} ({}) as {}\n", one_line(output_name(arguments.output)),
+                    counted(info.layers, "layer"), one_line(file.path), file.format, format.name);
     if (arguments.making.steps().any())
         text += fmt::format("  {}\n", changes_text(changes, "than before"));
     context.messages.written(text, arguments.output);

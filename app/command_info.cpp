@@ -15,6 +15,7 @@
 #include "options.hpp"
 #include "page_notes.hpp"
 #include "scan_figures.hpp"
+#include "standard_streams.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     else
         context.messages.result(text);
     if (arguments.strict && !found.counts.sound())
-        throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects", file.path));
+        throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects", input_name(file.path)));
     return 0;
 }
 
@@ -132,7 +133,7 @@ Figures figures_of(const LayerFile& file) {
         const double bottom = layers.front().bottom;
         const double top = layers.back().top;
         range.value = {bottom, top};
-        range.text = fmt::format("z = {} to {} mm", brief(bottom), brief(top));
+        range.text = fmt::format("z = {} to {} mm", height(bottom), height(top));
     }
     figures.insert(figures.begin() + 1, std::move(range));
     if (holds_vectors(file)) {
@@ -163,8 +164,8 @@ std::string layers_text(const LayerFile& file, const Figures& figures) {
     return text + as_lines(figures);
 }
 
-Json layers_json(const LayerFile& file, const Figures& figures) {
-    Json json = {{"path", file.path},
+Json layers_json(const std::string& path, const LayerFile& file, const Figures& figures) {
+    Json json = {{"path", path},
                  {"format", file.format},
                  {"label", file.parts.front().label},
                  {"parts", labels_of(file)},
@@ -185,7 +186,7 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
                         "a slice file",
                         file.path));
     const Figures figures = figures_of(file);
-    context.messages.result(arguments.json ? json_text(layers_json(file, figures))
+    context.messages.result(arguments.json ? json_text(layers_json(arguments.input, file, figures))
                                            : layers_text(file, figures));
     const std::uint64_t open_chains = as_json(figures)["open_chains"];
     if (arguments.strict && open_chains > 0)

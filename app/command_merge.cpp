@@ -5,6 +5,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "shard_stamp.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 
@@ -32,10 +33,10 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
     const MergeResult result = merge_layer_files(arguments.shards, arguments.output, format.name, options,
                                                  arguments.limits.of_layers(), execution);
     for (const std::string& warning : result.warnings)
-        context.messages.warn(fmt::format("{}: {}", arguments.output, warning));
+        context.messages.warn(fmt::format("{}: {}", output_name(arguments.output), warning));
     const std::string text =
-        fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(arguments.output),
-                    counted(result.layers, "layer"), brief(result.bottom), brief(result.top),
+        fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(output_name(arguments.output)),
+                    counted(result.layers, "layer"), height(result.bottom), height(result.top),
                     counted(arguments.shards.size(), "file"), byte_size(result.bytes));
     context.messages.written(text, arguments.output);
     return 0;

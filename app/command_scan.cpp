@@ -15,6 +15,7 @@
 #include "page_notes.hpp"
 #include "scan_figures.hpp"
 #include "scan_options.hpp"
+#include "standard_streams.hpp"
 #include "strategy_file.hpp"
 #include "text_file.hpp"
 
@@ -156,7 +157,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     if (result.thin.rings > 0)
         context.messages.warn(fmt::format("{}: {}", file.path, result.thin.text()));
     for (const std::string& warning : result.warnings)
-        context.messages.warn(fmt::format("{}: {}", one_line(arguments.output), warning));
+        context.messages.warn(fmt::format("{}: {}", one_line(output_name(arguments.output)), warning));
     if (!arguments.stats.empty()) {
         const std::string text = json_text(stats_of(context.command, file, strategy, result));
         if (arguments.stats == "-")
@@ -164,9 +165,10 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         else
             write_text_file(arguments.stats, text);
     }
-    const std::string text = fmt::format("{}: {} from {} ({}) as {}, {}\n  {}\n", one_line(arguments.output),
-                                         counted(info.layers, "layer"), one_line(file.path), file.format,
-                                         format.name, byte_size(result.bytes), scan_text(result.exposures));
+    const std::string text =
+        fmt::format("{}: {} from {} ({}) as {}, {}\n  {}\n", one_line(output_name(arguments.output)),
+                    counted(info.layers, "layer"), one_line(file.path), file.format, format.name,
+                    byte_size(result.bytes), scan_text(result.exposures));
     context.messages.written(text, arguments.stats == "-" ? "-" : arguments.output);
     return 0;
 }

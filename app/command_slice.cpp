@@ -283,7 +283,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
     if (parts > 1)
         text += fmt::format("plate    {}: {}\n", counted(parts, "part"), labels_text(result.parts));
     text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}{}\n",
-                        counted(result.report.layers, "layer"), brief(result.bottom), brief(result.top),
+                        counted(result.report.layers, "layer"), height(result.bottom), height(result.top),
                         counted(result.report.contours, "contour"), counted(result.report.points, "point"),
                         result.slabs == 0 ? "" : fmt::format(", in {}", counted(result.slabs, "slab")));
     if (job.shard)

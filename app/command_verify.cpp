@@ -47,12 +47,12 @@ Json heights_json(const std::optional<CoveredHeights>& heights) {
 std::string heights_text(const std::optional<CoveredHeights>& heights) {
     if (!heights)
         return {};
-    const double height = heights->mesh_top - heights->mesh_bottom;
+    const double whole = heights->mesh_top - heights->mesh_bottom;
     const double covered = std::min(heights->top, heights->mesh_top) -
                            std::max(heights->bottom, heights->mesh_bottom) - heights->gaps_mm;
     return fmt::format("  layers from z = {} to {} mm, of a mesh from {} to {} mm: {:.4g} % of its height\n",
-                       brief(heights->bottom), brief(heights->top), brief(heights->mesh_bottom),
-                       brief(heights->mesh_top), height > 0 ? 100 * std::max(0.0, covered) / height : 0);
+                       height(heights->bottom), height(heights->top), height(heights->mesh_bottom),
+                       height(heights->mesh_top), whole > 0 ? 100 * std::max(0.0, covered) / whole : 0);
 }
 
 Json verification_json(const Verification& found) {

@@ -5,6 +5,7 @@
 #include "messages.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 
@@ -195,7 +196,7 @@ Figures figures_of(const MeshFile& file, const Diagnosis& found) {
 } // namespace
 
 std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate& plate) {
-    std::string text = fmt::format("{}: mesh, {}\n", one_line(file.path), file.format);
+    std::string text = fmt::format("{}: mesh, {}\n", one_line(input_name(file.path)), file.format);
     if (file.unit_mm)
         text += result_line("unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm)));
     if (plate.parts.size() > 1)
@@ -212,7 +213,8 @@ std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate&
         for (const PartMeetings& part : found.self_intersections->parts)
             pairs += part.part_a != part.part_b ? 1 : 0;
         if (pairs > 0)
-            text += result_line("", fmt::format("{} of shells are involved", counted(pairs, "pair")));
+            text += result_line("", fmt::format("{} of shells {} involved", counted(pairs, "pair"),
+                                                pairs == 1 ? "is" : "are"));
     }
     return text;
 }

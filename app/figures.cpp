@@ -363,7 +363,7 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
     }
     if (result.open_gaps.count > 0)
         stats.update(open_gaps_json(result.open_gaps));
-    if (result.gaps.closed > 0)
+    if (job.repair.close_gaps_mm)
         stats["gaps"] = gaps_json(result.gaps);
     stats["layers"] = layers_json(result);
     return stats;

@@ -198,6 +198,11 @@ std::string brief(double value) {
     return fmt::format("{:.6g}", value + 0.0);
 }
 
+std::string height(double mm) {
+    constexpr double places = 1e9;
+    return brief(std::abs(mm) < 1 ? std::round(mm * places) / places : mm);
+}
+
 std::string grouped(std::uint64_t value) {
     std::string digits = std::to_string(value);
     for (std::size_t i = digits.size(); i > 3;) {

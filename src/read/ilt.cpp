@@ -92,7 +92,8 @@ std::vector<Section> read_parameters(std::string_view text, const std::string& n
 /// Files that the list does not name have no parameters; what they hold is not read.
 void tell_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed,
                    std::vector<std::string>& warnings) {
-    Oddity unlisted("Common Layer Interface files are not in the list of parameters; they were left out");
+    Oddity unlisted("Common Layer Interface file is not in the list of parameters; it was left out",
+                    "Common Layer Interface files are not in the list of parameters; they were left out");
     for (const ZipEntry& entry : zip.entries())
         if (listed.count(&entry) == 0 && lower_case(entry.name).ends_with(".cli"))
             unlisted.note([&] { return printable(entry.name, 80); });
@@ -202,7 +203,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.oddities()};
     std::uint64_t bytes = 0;
     std::set<const ZipEntry*> known;
-    Oddity pulsed("files are for a pulsed beam; the distance and time of its points were left out");
+    Oddity pulsed("file is for a pulsed beam; the distance and time of its points were left out",
+                  "files are for a pulsed beam; the distance and time of its points were left out");
     for (const Section& section : read_parameters(list.text(), list.name, limits)) {
         const ZipEntry* const entry = zip.find(section.name);
         if (entry == nullptr)

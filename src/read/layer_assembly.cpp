@@ -68,7 +68,7 @@ void say(const DistinctNames& names, std::vector<std::string>& warnings) {
 
 void Oddity::say(std::vector<std::string>& warnings) const {
     if (count_ != 0)
-        warnings.push_back(fmt::format("{} {} (first at {})", count_, what_, first_));
+        warnings.push_back(fmt::format("{} {} (first at {})", count_, count_ == 1 ? one_ : many_, first_));
 }
 
 bool RawLayer::keep_contour(bool closed, std::uint32_t part) {

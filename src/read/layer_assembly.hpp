@@ -20,7 +20,8 @@ namespace lamella {
 /// Counts of one kind of oddity, said once for the whole file.
 class Oddity {
   public:
-    explicit Oddity(const char* what) : what_(what) {}
+    /// What is said of one, and of several.
+    Oddity(const char* one, const char* many) : one_(one), many_(many) {}
 
     /// `place` is only made for the first one.
     template <class Place>
@@ -32,7 +33,8 @@ class Oddity {
     void say(std::vector<std::string>& warnings) const;
 
   private:
-    const char* what_;
+    const char* one_;
+    const char* many_;
     std::uint64_t count_ = 0;
     std::string first_;
 };

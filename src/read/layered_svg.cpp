@@ -347,10 +347,13 @@ class SvgReader {
     double height_ = 0;
     Point2 origin_; ///< of the part, where our own files tell it; else coordinates are relative to its corner
     std::vector<Group> groups_;
-    Oddity open_{"contours are open"};
-    Oddity other_{"elements are no outlines; they were passed over"};
-    Oddity transformed_{"elements have transforms, which were not followed"};
-    Oddity dropped_{"contours had too few different points; they were dropped"};
+    Oddity open_{"contour is open", "contours are open"};
+    Oddity other_{"element is no outline; it was passed over",
+                  "elements are no outlines; they were passed over"};
+    Oddity transformed_{"element has transforms, which were not followed",
+                        "elements have transforms, which were not followed"};
+    Oddity dropped_{"contour had too few different points; it was dropped",
+                    "contours had too few different points; they were dropped"};
 };
 
 } // namespace

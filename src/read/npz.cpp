@@ -338,7 +338,8 @@ class NpzReader {
     const ZipReader& zip_;
     LayerFile& file_;
     ReadLimits& limits_;
-    Oddity dropped_{"contours had too few different points; they were dropped"};
+    Oddity dropped_{"contour had too few different points; it was dropped",
+                    "contours had too few different points; they were dropped"};
 };
 
 } // namespace

@@ -430,13 +430,19 @@ class OvfReader {
     PartNumbers<BlockKind> parts_;
     std::uint64_t read_bytes_ = 0; ///< of messages, as often as they were read
     std::vector<std::pair<std::uint64_t, std::uint64_t>> messages_; ///< where those begin and end
-    Oddity moved_{"work planes are moved or turned; their vectors were read as they stand"};
-    Oddity other_vectors_{"blocks hold other vectors than lines and hatches; they were left out"};
-    Oddity repeated_blocks_{"blocks are to be executed more than once; their vectors were read once"};
-    Oddity repeated_planes_{"work planes are to be executed more than once; their vectors were read once"};
-    Oddity other_lasers_{"blocks are for another laser than the first; which one was left out"};
+    Oddity moved_{"work plane is moved or turned; its vectors were read as they stand",
+                  "work planes are moved or turned; their vectors were read as they stand"};
+    Oddity other_vectors_{"block holds other vectors than lines and hatches; it was left out",
+                          "blocks hold other vectors than lines and hatches; they were left out"};
+    Oddity repeated_blocks_{"block is to be executed more than once; its vectors were read once",
+                            "blocks are to be executed more than once; their vectors were read once"};
+    Oddity repeated_planes_{"work plane is to be executed more than once; its vectors were read once",
+                            "work planes are to be executed more than once; their vectors were read once"};
+    Oddity other_lasers_{"block is for another laser than the first; which one was left out",
+                         "blocks are for another laser than the first; which one was left out"};
     DistinctNames names_;
-    Oddity dropped_{"line sequences had too few different points; they were dropped"};
+    Oddity dropped_{"line sequence had too few different points; it was dropped",
+                    "line sequences had too few different points; they were dropped"};
 };
 
 } // namespace

@@ -212,8 +212,9 @@ class SliceModelReader {
     std::optional<std::uint32_t> start_; ///< of the polygon under construction
     std::uint32_t last_ = 0;
     Object* object_ = nullptr;
-    Oddity open_{"contours are open"};
-    Oddity dropped_{"contours had too few different points; they were dropped"};
+    Oddity open_{"contour is open", "contours are open"};
+    Oddity dropped_{"contour had too few different points; it was dropped",
+                    "contours had too few different points; they were dropped"};
 };
 
 /// A stack where a build item puts it.

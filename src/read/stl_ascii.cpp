@@ -338,9 +338,12 @@ MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshRea
         tell_nonfinite(remarks, fmt::format("line {}", line(sum.nonfinite.first)), sum.nonfinite.count,
                        sum.stored);
     if (sum.odd_normals.count != 0)
-        remarks.add(fmt::format("line {}: {} normals are other words or more than three numbers, which were "
-                                "passed over (this is the first); normals are not needed",
-                                line(sum.odd_normals.first), sum.odd_normals.count));
+        remarks.add(fmt::format("line {}: {} other words or more than three numbers, which were passed over "
+                                "(this is the first); normals are not needed",
+                                line(sum.odd_normals.first),
+                                sum.odd_normals.count == 1
+                                    ? "1 normal is"
+                                    : fmt::format("{} normals are", sum.odd_normals.count)));
     if (sum.unended.count != 0)
         remarks.add(
             fmt::format("line {}: a solid begins before the one above has ended; 'endsolid' is missing",

@@ -334,14 +334,16 @@ class ThreeMfReader {
         if (degenerate != 0)
             remarks_.add(fmt::format("{} triangles use a vertex twice; they bound nothing", degenerate));
         // These break no rule, and stop no strict caller.
-        const auto note_count = [&](std::size_t count, std::string_view what) {
-            if (count != 0)
-                remarks_.note(fmt::format("{} {}; they were left out", count, what));
+        const auto note_count = [&](std::size_t count, std::string_view thing, std::string_view what) {
+            if (count == 1)
+                remarks_.note(fmt::format("1 {} is {}; it was left out", thing, what));
+            else if (count != 0)
+                remarks_.note(fmt::format("{} {}s are {}; they were left out", count, thing, what));
         };
-        note_count(not_taken, fmt::format("objects are of type {}surface, which is no solid",
-                                          supports_ ? "" : "support or "));
-        note_count(not_printable_, "items of the build are marked as not to be printed");
-        note_count(unused, "objects are not in the build");
+        note_count(not_taken, "object",
+                   fmt::format("of type {}surface, which is no solid", supports_ ? "" : "support or "));
+        note_count(not_printable_, "item", "marked in the build as not to be printed");
+        note_count(unused, "object", "not in the build");
         file_.instances = place_meshes(package_.name(), nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
             refuse_package(package_,

@@ -395,8 +395,10 @@ class ToolpathReader {
     Model model_;
     PartNumbers<SegmentKind> kinds_;
     DistinctNames names_;
-    Oddity other_lasers_{"segments are for another laser than the first; which one was left out"};
-    Oddity dropped_{"contours had too few different points; they were dropped"};
+    Oddity other_lasers_{"segment is for another laser than the first; which one was left out",
+                         "segments are for another laser than the first; which one was left out"};
+    Oddity dropped_{"contour had too few different points; it was dropped",
+                    "contours had too few different points; they were dropped"};
 };
 
 } // namespace

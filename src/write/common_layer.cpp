@@ -326,8 +326,9 @@ class ShortWriter final : public CommonLayerWriter {
   private:
     // What does not fit is better said before an hour of slicing than after it.
     static std::string checked_head(const LayerFileInfo& info, double units) {
+        const double farthest = std::max({info.box.max.x, info.box.max.y, info.box.max.z});
         const auto check = [&](const char* axis, double mm) {
-            check_short("the part", axis, whole_units(mm, units), units);
+            check_short("the part", axis, whole_units(mm, units), units, farthest);
         };
         check("x", info.box.min.x);
         check("x", info.box.max.x);
@@ -338,7 +339,9 @@ class ShortWriter final : public CommonLayerWriter {
         return header("BINARY", info, units) + layer_start(whole_units(info.bottom, units));
     }
 
-    static void check_short(const std::string& what, const char* axis, std::int64_t value, double units) {
+    /// `farthest`: what else has to fit, in mm.
+    static void check_short(const std::string& what, const char* axis, std::int64_t value, double units,
+                            double farthest = 0) {
         if (value >= 0 && value <= most_short)
             return;
         const double mm = static_cast<double>(value) * units;
@@ -349,7 +352,7 @@ class ShortWriter final : public CommonLayerWriter {
                             "the part to positive coordinates or use the long form",
                             what, axis, mm));
         // So that 0.002 is not taken to lie above 2 * 0.001.
-        const double needed = mm / most_short * (1 - 1e-9);
+        const double needed = std::max(mm, farthest) / most_short * (1 - 1e-9);
         throw Error(
             ErrorKind::usage,
             fmt::format("{} reaches {} = {:.6g} mm, which is {} units of {} mm, but the short form ends at "

@@ -51,7 +51,7 @@ TEST(ReadIlt, SaysWhichFilesAreForAPulsedBeam) {
             read(archive(std::string("LaserSpeed = 800 mm/s\n") + line)).warnings;
         ASSERT_EQ(warnings.size(), 1U);
         EXPECT_TRUE(
-            warnings[0].starts_with("1 files are for a pulsed beam; the distance and time of its points"))
+            warnings[0].starts_with("1 file is for a pulsed beam; the distance and time of its points"))
             << warnings[0];
     }
 }
@@ -66,8 +66,8 @@ TEST(ReadIlt, SaysWhichFilesTheListDoesNotName) {
          {.name = "notes.txt", .content = "no vectors"}});
     EXPECT_EQ(
         read(bytes).warnings,
-        (std::vector<std::string>{"1 Common Layer Interface files are not in the list of parameters; they "
-                                  "were left out (first at b.CLI)"}));
+        (std::vector<std::string>{"1 Common Layer Interface file is not in the list of parameters; it was "
+                                  "left out (first at b.CLI)"}));
 }
 
 } // namespace

@@ -115,7 +115,7 @@ TEST(ReadLayeredSvg, PolylinesAndPathsThatStayOpenAreChains) {
                                    "<path d=\"M 0 0 H 1 V 1 Z M 1 1 L 2 2\"/>"}) {
         const LayerFile file = read(svg("<g slic3r:z=\"0.5\">" + square + open + "</g>"));
         EXPECT_EQ(file.parts.at(0).layers[0].open_chains(), 1U);
-        EXPECT_EQ(file.warnings, std::vector<std::string>{"1 contours are open (first at line 3)"});
+        EXPECT_EQ(file.warnings, std::vector<std::string>{"1 contour is open (first at line 3)"});
     }
 }
 
@@ -128,7 +128,7 @@ TEST(ReadLayeredSvg, TransformsAreNotFollowedButToldOf) {
                       " transform=\"scale(10)\" ");
         const LayerFile file = read(turned);
         ASSERT_EQ(file.warnings.size(), 1U) << turned;
-        EXPECT_EQ(file.warnings[0].find("1 elements have transforms, which were not followed"), 0U);
+        EXPECT_EQ(file.warnings[0].find("1 element has transforms, which were not followed"), 0U);
     }
 }
 

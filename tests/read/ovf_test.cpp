@@ -207,8 +207,8 @@ TEST(ReadOvf, SaysWhatItLeavesOutOfTheExecution) {
     other.integer(ovf::block::laser_index, 1);
     const std::vector<std::string> warnings = read(job_of({{1, {twice, other}, 3}})).warnings;
     ASSERT_EQ(warnings.size(), 3U);
-    EXPECT_TRUE(warnings[0].starts_with("1 blocks are to be executed more than once")) << warnings[0];
-    EXPECT_TRUE(warnings[1].starts_with("1 work planes are to be executed more than once")) << warnings[1];
+    EXPECT_TRUE(warnings[0].starts_with("1 block is to be executed more than once")) << warnings[0];
+    EXPECT_TRUE(warnings[1].starts_with("1 work plane is to be executed more than once")) << warnings[1];
     EXPECT_TRUE(warnings[2].starts_with("2 blocks are for another laser than the first")) << warnings[2];
 }
 

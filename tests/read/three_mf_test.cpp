@@ -88,7 +88,7 @@ TEST(ThreeMf, EachWayFromTheBuildToAMeshIsAnInstance) {
     }
     EXPECT_DOUBLE_EQ(volume(file.mesh()), 3 * 6 + 3 * 8);
     ASSERT_EQ(file.warnings.size(), 1U);
-    EXPECT_EQ(file.warnings[0], "1 objects are not in the build; they were left out");
+    EXPECT_EQ(file.warnings[0], "1 object is not in the build; it was left out");
 }
 
 TEST(ThreeMf, ReadsMeshesThatAreNotWrittenPlainlyAllTheSame) {
@@ -179,7 +179,7 @@ TEST(ThreeMf, TypesOfObjectsDecideWhatIsRead) {
         const MeshFile file = read(with_type(type), {.strict = true});
         EXPECT_EQ(file.instances.size(), 1U);
         ASSERT_EQ(file.warnings.size(), 1U);
-        EXPECT_TRUE(says(file.warnings[0], "1 objects are of type support or surface"));
+        EXPECT_TRUE(says(file.warnings[0], "1 object is of type support or surface"));
     }
     const MeshFile supports = read(with_type("support"), {.supports = true});
     ASSERT_EQ(supports.instances.size(), 2U);
@@ -188,7 +188,7 @@ TEST(ThreeMf, TypesOfObjectsDecideWhatIsRead) {
     EXPECT_TRUE(read(with_type("support"), {.supports = true}).warnings.empty());
     const MeshFile surfaces = read(with_type("surface"), {.supports = true});
     EXPECT_EQ(surfaces.instances.size(), 1U);
-    EXPECT_TRUE(says(surfaces.warnings.at(0), "1 objects are of type surface, which is no solid"));
+    EXPECT_TRUE(says(surfaces.warnings.at(0), "1 object is of type surface, which is no solid"));
     EXPECT_TRUE(
         says(in_model(error_of(with_type("other"))), "whose type 'other' says that it is not to be made"));
     EXPECT_TRUE(says(in_model(error_of(with_type("thing"))), "found an object of type 'thing'"));
@@ -212,7 +212,7 @@ TEST(ThreeMf, ItemsThatAreNotToBePrintedAreLeftOut) {
         read(package(model(object(1, box_mesh()), one_item + "<item objectid=\"1\" printable=\"0\"/>")));
     EXPECT_EQ(file.instances.size(), 1U);
     ASSERT_EQ(file.warnings.size(), 1U);
-    EXPECT_TRUE(says(file.warnings[0], "1 items of the build are marked as not to be printed"));
+    EXPECT_TRUE(says(file.warnings[0], "1 item is marked in the build as not to be printed"));
 }
 
 TEST(ThreeMf, RequiredExtensionsMustBeKnown) {
