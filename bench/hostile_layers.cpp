@@ -148,6 +148,24 @@ Layer row_of_discs(int n) {
     return layer_of(rings);
 }
 
+/// Slivers that all touch in one point, each as wide as the way to the next.
+Layer slivers(int n) {
+    std::vector<Contour> rings;
+    for (int i = 0; i < n / 3; ++i)
+        rings.push_back({{0, 0}, polar(100, 3 * turn * i / n), polar(100, 3 * turn * (i + 0.5) / n)});
+    return layer_of(rings);
+}
+
+/// Long thin walls side by side, whose corners are off by up to 1e-5 times `off`.
+Layer fins(int n, double off) {
+    std::vector<Contour> rings;
+    for (int i = 0; i < n / 4; ++i) {
+        const double x = i + 1e-5 * off * std::sin(i);
+        rings.push_back({{x, 0}, {x + 0.5, 0}, {x + 0.5, 1.0 * n}, {x, 1.0 * n}});
+    }
+    return layer_of(rings);
+}
+
 /// Small rings within one another in one place, in a large frame.
 Layer nest(int n) {
     std::vector<Contour> rings{{{-1000, -1000}, {1000, -1000}, {1000, 1000}, {-1000, 1000}}};
@@ -194,6 +212,21 @@ Timed fill_nonzero(const Layer& layer) {
     const double seconds = seconds_since(start);
     return {seconds, layer.points.size(),
             !has_crossings(filled) && !fill(filled, FillRule::nonzero).changed()};
+}
+
+/// Inwards by so much that nothing is left.
+Timed shrink_away(const Layer& layer, double by, OffsetCorner shape) {
+    const auto start = Clock::now();
+    const Layer left = offset(layer, -by, {.shape = shape});
+    return {seconds_since(start), layer.points.size(), left.contours() == 0};
+}
+
+Timed compare_fins(int n) {
+    const Layer layer = fins(n, 0);
+    const Layer moved = fins(n, 1);
+    const auto start = Clock::now();
+    const double distance = compare(layer, moved).distance_mm;
+    return {seconds_since(start), layer.points.size(), distance > 0.99e-5 && distance < 1.01e-5};
 }
 
 class Report {
@@ -269,6 +302,11 @@ int report(int argc, char** argv) {
     report.add("fill: row of discs", n, [](int i) { return fill_nonzero(row_of_discs(i)); });
     report.add("fill: star", n, [](int i) { return fill_nonzero(star(i)); });
     report.add("fill: comb", n, [](int i) { return fill_nonzero(comb(i)); });
+    report.add("offset: slivers", n,
+               [](int i) { return shrink_away(slivers(i), 200 * turn / i, OffsetCorner::mitre); });
+    report.add("offset: slivers, crossings of all pairs", n / 100,
+               [](int i) { return shrink_away(slivers(i), 200 * turn / i, OffsetCorner::bevel); });
+    report.add("compare: fins side by side", n, compare_fins);
     std::cout << report.text();
     return report.right() ? 0 : 1;
 }
