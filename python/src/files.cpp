@@ -17,11 +17,8 @@
 
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -216,80 +213,15 @@ std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::str
     return std::make_unique<StackWriter>(path, format, info, write_options(options));
 }
 
-Triangle3f rounded(const Triangle3& triangle) {
-    Triangle3f corners;
-    for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = {static_cast<float>(triangle[k].x), static_cast<float>(triangle[k].y),
-                      static_cast<float>(triangle[k].z)};
-    return corners;
-}
-
-Triangle3 widened(const Triangle3f& corners) {
-    Triangle3 triangle;
-    for (std::size_t k = 0; k < 3; ++k)
-        triangle[k] = {corners[k].x, corners[k].y, corners[k].z};
-    return triangle;
-}
-
-bool has_different_corners(const Triangle3& t) {
-    return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-}
-
-/// As far as doubles tell.
-bool has_area(const Triangle3& t) {
-    const Point3 a{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
-    const Point3 b{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
-    return a.y * b.z != a.z * b.y || a.z * b.x != a.x * b.z || a.x * b.y != a.y * b.x;
-}
-
-/// In single precision. Gives the warnings; throws Error{output} for what is beyond it.
-std::vector<std::string> write_rounded_stl(const std::string& path, const SourceMesh& mesh, bool strict) {
-    constexpr double most = std::numeric_limits<float>::max();
-    for (const Point3& p : {mesh.box().min, mesh.box().max})
-        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= most))
-            throw Error(ErrorKind::output, path +
-                                               ": the mesh has coordinates beyond 3.4e38 mm, the most that "
-                                               "STL holds; write it as .ply or .obj");
-    constexpr std::size_t at_a_time = std::size_t{1} << 16;
-    const std::size_t count = mesh.mesh().size();
-    StlWriter writer(path, count);
-    std::uint64_t degenerate = 0;
-    for (std::size_t begin = 0; begin < count; begin += at_a_time) {
-        std::vector<Triangle3f> triangles(std::min(at_a_time, count - begin));
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            const Triangle3 before = mesh.mesh().triangle(begin + i);
-            triangles[i] = rounded(before);
-            const Triangle3 after = widened(triangles[i]);
-            if ((has_different_corners(before) && !has_different_corners(after)) ||
-                (has_area(before) && !has_area(after)))
-                ++degenerate;
-        }
-        writer.append(TriangleSoup(std::move(triangles)));
-    }
-    std::vector<std::string> warnings;
-    if (degenerate > 0)
-        warnings.push_back(std::to_string(degenerate) +
-                           (degenerate == 1 ? " triangle loses its area or a corner"
-                                            : " triangles lose their area or a corner") +
-                           " where it is rounded to single precision, which STL has; .ply and .obj keep it");
-    if (strict && !warnings.empty())
-        throw Error(ErrorKind::defect, path + ": " + warnings.front());
-    writer.finish();
-    return warnings;
-}
-
 std::vector<std::string> write_mesh(const std::string& path, const std::string& extension,
                                     const MeshPointer& mesh, const std::string& name, bool strict) {
     const Unlocked released;
-    const TriangleSoup* const soup = mesh->mesh().soup();
     if (extension == ".ply")
         write_ply(path, mesh->welded({}));
     else if (extension == ".obj")
         write_obj(path, mesh->welded({}), name);
-    else if (soup != nullptr && !soup->has_placement())
-        write_stl(path, *soup);
     else
-        return write_rounded_stl(path, *mesh, strict);
+        return write_stl(path, mesh->mesh(), strict);
     return {};
 }
 

@@ -17,6 +17,7 @@
 #include <limits>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 namespace lamella {
 
@@ -112,6 +113,32 @@ char* put_rest_of_line(char* out, const std::array<Number, 3>& numbers) {
     return out;
 }
 
+Triangle3f rounded(const Triangle3& triangle) {
+    Triangle3f corners;
+    for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = {static_cast<float>(triangle[k].x), static_cast<float>(triangle[k].y),
+                      static_cast<float>(triangle[k].z)};
+    return corners;
+}
+
+Triangle3 widened(const Triangle3f& corners) {
+    Triangle3 triangle;
+    for (std::size_t k = 0; k < 3; ++k)
+        triangle[k] = {corners[k].x, corners[k].y, corners[k].z};
+    return triangle;
+}
+
+bool has_different_corners(const Triangle3& t) {
+    return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+}
+
+/// As far as doubles tell.
+bool has_area(const Triangle3& t) {
+    const Point3 a{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
+    const Point3 b{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
+    return a.y * b.z != a.z * b.y || a.z * b.x != a.x * b.z || a.x * b.y != a.y * b.x;
+}
+
 template <class Point>
 auto coordinates(const Point& p) {
     return std::array{p.x, p.y, p.z};
@@ -154,6 +181,44 @@ void write_stl(const std::string& path, const TriangleSoup& soup) {
     StlWriter writer(path, soup.size());
     writer.append(soup);
     writer.finish();
+}
+
+std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict) {
+    if (const TriangleSoup* const soup = mesh.soup(); soup != nullptr && !soup->has_placement()) {
+        write_stl(path, *soup);
+        return {};
+    }
+    const Box3 box = bounding_box(mesh);
+    for (const Point3& p : {box.min, box.max})
+        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= std::numeric_limits<float>::max()))
+            throw Error(ErrorKind::output, fmt::format("{}: the mesh has coordinates beyond 3.4e38 mm, the "
+                                                       "most that STL holds; write it as .ply or .obj",
+                                                       path));
+    StlWriter writer(path, mesh.size());
+    std::uint64_t lost = 0;
+    for (std::size_t begin = 0; begin < mesh.size(); begin += triangles_per_block) {
+        std::vector<Triangle3f> triangles(std::min(triangles_per_block, mesh.size() - begin));
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const Triangle3 before = mesh.triangle(begin + i);
+            triangles[i] = rounded(before);
+            const Triangle3 after = widened(triangles[i]);
+            if ((has_different_corners(before) && !has_different_corners(after)) ||
+                (has_area(before) && !has_area(after)))
+                ++lost;
+        }
+        writer.append(TriangleSoup(std::move(triangles)));
+    }
+    std::vector<std::string> warnings;
+    if (lost > 0)
+        warnings.push_back(fmt::format("{} where it is rounded to single precision, which STL has; .ply and "
+                                       ".obj keep it",
+                                       lost == 1
+                                           ? "1 triangle loses its area or a corner"
+                                           : fmt::format("{} triangles lose their area or a corner", lost)));
+    if (strict && !warnings.empty())
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", path, warnings.front()));
+    writer.finish();
+    return warnings;
 }
 
 void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const std::string& name) {

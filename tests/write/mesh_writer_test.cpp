@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "parts/shapes.hpp"
 #include "temporary_folder.hpp"
 
@@ -51,6 +52,27 @@ TEST(WriteStl, WritesUnitNormalsAndZeroForTrianglesWithoutArea) {
         EXPECT_EQ(read_at<float>(bytes, 84 + 50 + 4 * i), 0.0F);
     }
     EXPECT_NEAR(squares, 1, 1e-6);
+}
+
+TEST(WriteStl, CountsWhatRoundingTakesFromTriangles) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("out.stl");
+    const Mesh needle(
+        IndexedMesh{{{1, 0, 0}, {1 + 1e-12, 0, 0}, {1, 1, 0}, {2, 1, 0}}, {{0, 1, 2}, {0, 3, 2}}});
+    const std::vector<std::string> warnings = write_stl(path, needle);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_TRUE(warnings[0].starts_with("1 triangle loses its area or a corner")) << warnings[0];
+    EXPECT_EQ(file_bytes(path).size(), 84U + 2 * 50);
+    EXPECT_NE(test::error_of(ErrorKind::defect,
+                             [&] { static_cast<void>(write_stl(folder.file("no.stl"), needle, true)); })
+                  .find("no.stl: 1 triangle"),
+              std::string::npos);
+    const Mesh far(IndexedMesh{{{0, 0, 0}, {1e40, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+    EXPECT_NE(
+        test::error_of(ErrorKind::output, [&] { static_cast<void>(write_stl(folder.file("no.stl"), far)); })
+            .find("beyond 3.4e38"),
+        std::string::npos);
+    EXPECT_EQ(folder.entries(), std::vector<std::string>{"out.stl"});
 }
 
 TEST(WriteStl, KeepsAllTrianglesBeyondOneBlock) {

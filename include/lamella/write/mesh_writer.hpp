@@ -3,11 +3,13 @@
 // Writing meshes: STL, PLY and OBJ.
 
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace LAMELLA_API lamella {
 
@@ -17,6 +19,11 @@ class AtomicFile;
 /// standard output. Placed corners are rounded to single precision. Throws Error{output}, and Error{limit}
 /// beyond 2^32 - 1 triangles.
 void write_stl(const std::string& path, const TriangleSoup& soup);
+
+/// The same of any mesh; corners that are not in single precision are rounded to it. Gives a warning that
+/// counts triangles which lose their area or a corner by that; with `strict` it is Error{defect}, and no file
+/// is written. Error{output} for coordinates beyond single precision.
+std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict = false);
 
 /// Writes the same file piece by piece, for bodies that are larger than memory.
 class StlWriter {

@@ -19,7 +19,7 @@ std::vector<SweepTask> one_for_all(std::uint32_t planes, unsigned workers, std::
 [[maybe_unused]] bool covers_every_plane_once(const std::vector<SweepTask>& tasks, std::uint32_t planes) {
     std::uint32_t next = 0;
     for (const SweepTask& task : tasks) {
-        if (task.planes.begin != next || (task.planes.end <= next && planes != 0))
+        if (task.planes.begin != next || task.planes.end <= next)
             return false;
         next = task.planes.end;
     }
