@@ -73,7 +73,7 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
     const ComparedPlane& plane = *one.plane;
     const PlaneDetails& details = *one.details;
     if (!plane.first || !plane.second)
-        return fmt::format("z = {} mm: only {} has {} there", brief(plane.z),
+        return fmt::format("z = {} mm: only {} has {} there", height(plane.z),
                            one_line(input_name(arguments.inputs[plane.first ? 0 : 1])),
                            details.first_hatches + details.second_hatches == 0 ? "contours" : "vectors");
     std::vector<std::string> texts;
@@ -90,7 +90,7 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
                                     brief(details.hatch_where.y)));
     if (!details.heights_agree)
         texts.push_back(fmt::format("bottom or top {} mm apart", brief(details.height_distance_mm)));
-    return fmt::format("z = {} mm: {}", brief(plane.z), fmt::join(texts, ", "));
+    return fmt::format("z = {} mm: {}", height(plane.z), fmt::join(texts, ", "));
 }
 
 std::string exposures_text(const FileComparison& found, const CompareArguments& arguments) {
@@ -172,7 +172,7 @@ std::string area_text(const std::vector<AreaDifference>& differences) {
     std::string text = fmt::format("  area in one file only: {} mm2 in all, in {}\n",
                                    brief(sum_of(differences)), counted(differences.size(), "layer"));
     for (const AreaDifference& difference : differences)
-        text += fmt::format("    z = {} mm: {} mm2\n", brief(difference.z), brief(difference.mm2));
+        text += fmt::format("    z = {} mm: {} mm2\n", height(difference.z), brief(difference.mm2));
     return text;
 }
 
@@ -183,7 +183,7 @@ std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
         "{} and {} are cut at different heights: the layer from z = {} to {} mm at {} mm in the first "
         "and at {} mm in the second; formats that do not keep the cut, such as CLI, are read as if it "
         "were in the middle",
-        first.path, second.path, brief(one.bottom), brief(one.top), brief(one.z), brief(other.z));
+        first.path, second.path, height(one.bottom), height(one.top), height(one.z), height(other.z));
 }
 
 int run_compare(const CompareArguments& arguments, const Context& context) {
@@ -259,8 +259,8 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
         context.messages.result(text);
     }
     if (!files.agree())
-        throw Error(ErrorKind::defect,
-                    fmt::format("{} and {} differ", arguments.inputs[0], arguments.inputs[1]));
+        throw Error(ErrorKind::defect, fmt::format("{} and {} differ", input_name(arguments.inputs[0]),
+                                                   input_name(arguments.inputs[1])));
     return 0;
 }
 

@@ -99,8 +99,8 @@ std::vector<std::string> losses(const LayerFile& file) {
     return lost;
 }
 
-Json stats_of(const Command& command, const LayerFile& file, const ScanStrategy& strategy,
-              const ScanResult& result) {
+Json stats_of(const Command& command, const std::string& path, const LayerFile& file,
+              const ScanStrategy& strategy, const ScanResult& result) {
     Json layers = Json::array();
     double volume_mm3 = 0;
     for (std::size_t i = 0; i < result.layers.size(); ++i) {
@@ -119,7 +119,7 @@ Json stats_of(const Command& command, const LayerFile& file, const ScanStrategy&
     Json stats = {
         {"lamella", version()},
         {"options", options_in_effect(command)},
-        {"input", {{"path", file.path}, {"format", file.format}, {"parts", file.parts.size()}}},
+        {"input", {{"path", path}, {"format", file.format}, {"parts", file.parts.size()}}},
         {"seconds", {{"scan", result.scan_seconds}}},
         {"volume_mm3", volume_mm3},
         {"scan", with_thin_rings(with_density(scan_json(result.exposures), volume_mm3), result.thin)}};
@@ -159,7 +159,8 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     for (const std::string& warning : result.warnings)
         context.messages.warn(fmt::format("{}: {}", one_line(output_name(arguments.output)), warning));
     if (!arguments.stats.empty()) {
-        const std::string text = json_text(stats_of(context.command, file, strategy, result));
+        const std::string text =
+            json_text(stats_of(context.command, arguments.input, file, strategy, result));
         if (arguments.stats == "-")
             context.messages.result(text);
         else

@@ -176,7 +176,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
             ErrorKind::usage,
             fmt::format("{}: holds no scan vectors; a strategy says nothing of its contours", file.path));
     bool ok = true;
-    Json object{{"path", file.path}, {"ok", true}};
+    Json object{{"path", arguments.input}, {"ok", true}};
     std::string text;
     if (!plain.parts.empty()) {
         const Verification found =

@@ -18,6 +18,17 @@ namespace lamella {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Also one that may not be written to.
+void remove_folder(const fs::path& folder) {
+    static_cast<void>(::chmod(folder.c_str(), S_IRWXU));
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+}
+
+} // namespace
+
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
     : path_(std::move(path)), may_remove_(std::move(may_remove)) {
     std::error_code error;
@@ -37,7 +48,9 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
     // The permissions of a new folder are the umask's; those of a replaced one stay, and meanwhile this
     // process may write in it.
     if (struct stat replaced{}; ::stat(target_.c_str(), &replaced) == 0) {
-        permissions_ = replaced.st_mode & 07777;
+        // What is granted to its group is granted to no other one.
+        const bool same_group = ::chown(working_.c_str(), static_cast<uid_t>(-1), replaced.st_gid) == 0;
+        permissions_ = replaced.st_mode & (same_group ? 07777U : 07777U & ~(S_IRWXG | S_ISGID));
         static_cast<void>(::chmod(working_.c_str(), *permissions_ | S_IRWXU));
     }
     if (!unfinished_.announce(working_.string())) {
@@ -47,9 +60,8 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
 }
 
 AtomicDirectory::~AtomicDirectory() {
-    std::error_code ignored;
     if (!working_.empty())
-        fs::remove_all(working_, ignored);
+        remove_folder(working_);
 }
 
 void AtomicDirectory::check_replaceable() const {
@@ -99,8 +111,7 @@ void AtomicDirectory::commit() {
     check_replaceable();
     // Old and new one change places at once, so that there is one of them whatever happens.
     if (::renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
-        std::error_code ignored;
-        fs::remove_all(std::exchange(working_, {}), ignored);
+        remove_folder(std::exchange(working_, {}));
         return;
     }
     // Not every file system can do that. The old folder steps aside; should the new one fail to take its
@@ -121,8 +132,7 @@ void AtomicDirectory::commit() {
         throw output_error(target_.string(), system_error);
     }
     working_.clear();
-    std::error_code ignored;
-    fs::remove_all(aside, ignored);
+    remove_folder(aside);
 }
 
 bool begins_with_mark(const fs::path& path, std::string_view mark) {

@@ -47,10 +47,12 @@ struct ShardFile {
 
 ShardFile look_at(const std::string& path, const LayerReadOptions& reading, const Execution& execution) {
     std::error_code unknown; // whoever reads it says what is wrong
-    if (path == "-" || (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path)))
+    const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
+    if (path == "-" || type == std::filesystem::file_type::fifo ||
+        type == std::filesystem::file_type::socket || type == std::filesystem::file_type::character)
         throw Error(ErrorKind::usage, fmt::format("{}: files are read twice to be merged, which standard "
                                                   "input and pipes cannot be; save it to a file first",
-                                                  path));
+                                                  path == "-" ? "standard input" : path));
     const LayerFile file = read_layers(path, reading, execution);
     const LayerStack& layers = file.parts.front().layers;
     if (layers.empty())
@@ -359,7 +361,7 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     for (const ShardFile& shard : shards) {
         const LayerFile file = read_layers(shard.path, reading, execution);
         // Where one file ends and the next one begins, roundings of two heights and of a thickness meet.
-        const double rounded = 2 * file.rounding.step_at(top);
+        const double rounded = file.rounding.single_precision ? 2 * file.rounding.step_at(top) : 0;
         for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
             std::vector<Layer> plane = plane_of(file, i, parts);
             for (Layer& layer : plane)

@@ -82,13 +82,18 @@ TEST(AtomicDirectory, KeepsThePermissionsOfTheFolderThatItReplaces) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "out";
     fs::create_directory(path);
-    fs::permissions(path, fs::perms::owner_all);
-    for (int round = 0; round < 2; ++round) { // empty, and not
-        AtomicDirectory files(path.string(), is_layer);
-        files.write("a.svg", "a");
-        files.commit();
-        EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
+    for (const fs::perms permissions :
+         {fs::perms::owner_all, fs::perms::owner_read | fs::perms::owner_exec}) {
+        fs::permissions(path, permissions);
+        for (int round = 0; round < 2; ++round) { // empty, and not
+            AtomicDirectory files(path.string(), is_layer);
+            files.write("a.svg", "a");
+            files.commit();
+            EXPECT_EQ(fs::status(path).permissions(), permissions);
+        }
     }
+    EXPECT_EQ(folder.entries(), Names{"out"}); // also where the old one was not to be written to
+    fs::permissions(path, fs::perms::owner_all);
 }
 
 TEST(AtomicDirectory, RefusesAFolderWithSomethingElseInIt) {

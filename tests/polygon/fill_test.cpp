@@ -13,7 +13,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -263,6 +266,33 @@ TEST(Fill, IsRightWhereSidesRunBesideOneAnotherForLong) {
                 EXPECT_FALSE(fill(filled, rule).changed());
             }
         }
+}
+
+TEST(Fill, IsRightWhereAllSidesRunThroughOnePlace) {
+    constexpr int bars = 40;
+    constexpr double half_width = 0.5;
+    constexpr double reach = 100;
+    for (const Point2& centre : {Point2{0, 0}, Point2{5000, -3000}}) {
+        std::vector<Contour> rings;
+        for (int i = 0; i < bars; ++i) {
+            const double angle = std::numbers::pi * (i + 0.25) / bars;
+            const Point2 along{reach * std::cos(angle), reach * std::sin(angle)};
+            const Point2 across{-half_width * std::sin(angle), half_width * std::cos(angle)};
+            Contour& ring = rings.emplace_back();
+            for (const auto& [a, b] :
+                 {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)})
+                ring.push_back(
+                    {centre.x + a * along.x + b * across.x, centre.y + a * along.y + b * across.y});
+        }
+        const Layer star = united(rings);
+        EXPECT_EQ(star.rings, 1U);
+        EXPECT_EQ(star.points.size(), 3U * 2 * bars); // the ends of each arm, and where it meets the next one
+        EXPECT_FALSE(has_crossings(star));
+        const double meeting = half_width / std::tan(std::numbers::pi / bars / 2);
+        EXPECT_NEAR(measure(star).area_mm2, 2 * bars * half_width * (2 * reach - meeting), 1e-4);
+        std::reverse(rings.begin(), rings.end());
+        EXPECT_TRUE(same_contours(united(rings), star));
+    }
 }
 
 TEST(WindsOnce, IsTrueOfCleanPartsThatLieApart) {

@@ -118,6 +118,26 @@ test('layers of a share of a part have the numbers that commands give them', asy
   await page.keyboard.press('Enter');
   assert.equal(await shown(page), 7);
   assert.ok(await page.getByRole('complementary').getByRole('heading', { name: 'Layer 47', exact: true }).isVisible());
+  assert.match(await page.locator('canvas[data-layer]').getAttribute('aria-label'), /^Layer 47 of 40 to 49 at z = /);
+});
+
+test('layers whose numbers have holes are found by them', async () => {
+  const layers = [0, 5, 9, 12].map((index, i) => ({
+    ...{ index, z: i + 0.5, bottom: i, top: i + 1 },
+    parts: [{ rings: [[0, 0, 10, 0, 10, 10, 0, 10]] }],
+  }));
+  writeFileSync(file('holes.json'), JSON.stringify({ format: 'lamella layers', version: 1, units: 'mm', parts: [{ label: 'a' }], layers }));
+  lamella('view', 'holes.json');
+  const { page, complaints } = await open('holes.html');
+  await page.keyboard.press('End');
+  await shown(page);
+  const number = page.getByRole('spinbutton', { name: 'Number of the layer' });
+  assert.equal(await number.inputValue(), '12');
+  await number.fill('6');
+  await page.keyboard.press('Enter');
+  assert.equal(await shown(page), 1);
+  assert.equal(await number.inputValue(), '5');
+  assert.deepEqual(complaints, []);
 });
 
 test('play goes through the layers and stops at the last', async () => {

@@ -3,7 +3,7 @@ import { vectorsOf } from '../data/vectors.js';
 import { element } from '../element.js';
 import { hasHatches, layerText } from '../findings.js';
 import { iconButton } from '../icon.js';
-import { mm } from '../text.js';
+import { layerNumber, layerNumbers, mm } from '../text.js';
 import { Camera } from './camera.js';
 import { drawFaults, drawLayer } from './draw_layer.js';
 import { drawBeam, drawOutline, drawVectorDirections, drawVectors } from './draw_vectors.js';
@@ -147,7 +147,7 @@ export class LayerView {
       this.order.show(this.#vectors, number);
     }
     const text =
-      `Layer ${number + 1} of ${this.#shelf.count} at z = ${mm(table.z[number])} mm, seen from above: ${layerText(this.#page, number)}` +
+      `Layer ${layerNumber(table, number)} ${layerNumbers(table)} at z = ${mm(table.z[number])} mm, seen from above: ${layerText(this.#page, number)}` +
       (table.open_chains[number] > 0 ? `, ${table.open_chains[number]} of the contours open` : '');
     this.canvas.setAttribute('aria-label', text);
     this.redraw();

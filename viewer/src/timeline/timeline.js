@@ -26,6 +26,9 @@ const rowsFor = ({ head, table }) =>
     ({ column, extra }) => !extra || table[column]?.some((value) => value > 0),
   );
 
+/** Where the value nearest to the one wanted stands in an ascending list. */
+const nearest = (values, wanted) => values.reduce((best, value, i) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? i : best), 0);
+
 /** The slider over all layers, and under it what they measure, on the same axis. */
 export class Timeline {
   #page;
@@ -48,14 +51,13 @@ export class Timeline {
     this.number = element('input', {
       type: 'number',
       className: 'number',
-      min: this.#first(),
-      max: this.#first() + Math.max(0, page.head.layers - 1),
+      min: page.table.index[0],
+      max: page.table.index.at(-1),
       'aria-label': 'Number of the layer',
     });
     this.number.addEventListener('change', () => {
-      const wanted = Math.round(Number(this.number.value)) - this.#first();
-      if (Number.isFinite(wanted)) player.go(wanted);
-      this.number.value = store.state.layer + this.#first();
+      player.go(nearest(page.table.index, Number(this.number.value)));
+      this.number.value = page.table.index[store.state.layer];
     });
     this.height = element('span', { className: 'height' });
     this.cursor = element('i', { className: 'cursor', 'aria-hidden': true });
@@ -81,11 +83,6 @@ export class Timeline {
     new ResizeObserver(() => this.#draw()).observe(this.plots[0].canvas);
     store.on(['layer'], (state) => this.#follow(state.layer));
     store.on(['theme'], () => this.#draw());
-  }
-
-  /** The number of the lowest layer. */
-  #first() {
-    return this.#page.table.index[0] ?? 0;
   }
 
   #playButton() {
@@ -131,7 +128,7 @@ export class Timeline {
     this.slider.value = layer;
     const faults = table.open_chains[layer] > 0 ? `, ${count(table.open_chains[layer])} open contours` : '';
     this.slider.setAttribute('aria-valuetext', `${layerNumber(table, layer)} ${layerNumbers(table)}, z = ${mm(table.z[layer])} mm${faults}`);
-    if (document.activeElement !== this.number) this.number.value = layer + this.#first();
+    if (document.activeElement !== this.number) this.number.value = table.index[layer];
     this.height.textContent = `z = ${mm(table.z[layer])} mm`;
     for (const plot of this.plots) plot.value.textContent = `${plot.tell(plot.values[layer])} ${plot.unit}`;
     this.#place();
