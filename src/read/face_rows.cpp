@@ -102,6 +102,9 @@ std::int64_t RowWords::integer() {
     for (; at != end_ && static_cast<unsigned char>(*at - '0') < 10; ++at)
         whole = whole * 10 + static_cast<unsigned char>(*at - '0');
     const std::int64_t value = at - digits <= most_digits ? static_cast<std::int64_t>(whole) : too_large;
+    if (at != digits && at != end_ && *at == '.') // some write them as real numbers: "4.0"
+        for (++at; at != end_ && *at == '0';)
+            ++at;
     if (at == digits || (at != end_ && !is_blank(*at)))
         throw TextFault{offset(), "a whole number"};
     at_ = at;

@@ -1,5 +1,6 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
+#include "read/coordinate_text.hpp"
 #include "read/face_mesh.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
@@ -53,7 +54,11 @@ class ObjLines : Words {
     [[nodiscard]] bool begins_with_keyword(std::string_view keyword) const {
         const auto left = static_cast<std::size_t>(end_ - at_);
         return left >= keyword.size() && std::equal(keyword.begin(), keyword.end(), at_) &&
-               (left == keyword.size() || is_blank(at_[keyword.size()]));
+               (left == keyword.size() || is_blank(at_[keyword.size()]) || goes_on(at_ + keyword.size()));
+    }
+    /// A backslash at the end of a line.
+    [[nodiscard]] bool goes_on(const char* at) const {
+        return *at == '\\' && at + 1 != end_ && is_line_end(at[1]);
     }
 
     void vertex() {
@@ -63,9 +68,23 @@ class ObjLines : Words {
             to_word();
             if (at_ == end_ || is_line_end(*at_))
                 throw TextFault{offset(), "the x, y and z of a vertex"};
-            value = take_coordinate();
+            value = coordinate();
         }
         piece_.vertices.push_back({p[0], p[1], p[2]});
+    }
+
+    /// A line may go on right behind a number.
+    double coordinate() {
+        double value = 0;
+        const char* stop = parse_coordinate(at_, end_, value);
+        if (stop == nullptr) {
+            const char* const last = at_ + peek().size() - 1;
+            stop = goes_on(last) ? parse_coordinate(at_, last, value) : nullptr;
+        }
+        if (stop == nullptr)
+            return take_coordinate(); // says what is wrong
+        at_ = stop;
+        return value + 0.0; // turns -0 into +0
     }
 
     bool face() {
@@ -147,7 +166,7 @@ class ObjLines : Words {
     void to_word() {
         for (;;) {
             at_ = skip_spaces(at_, end_);
-            if (at_ == end_ || *at_ != '\\' || at_ + 1 == end_ || !is_line_end(at_[1]))
+            if (at_ == end_ || !goes_on(at_))
                 return;
             at_ += at_[1] == '\r' && at_ + 2 != end_ && at_[2] == '\n' ? 3 : 2;
         }

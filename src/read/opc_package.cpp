@@ -54,6 +54,29 @@ std::string decoded(std::string_view reference) {
     return text;
 }
 
+/// The name of a part that a reference stands for. `part`: where it stands.
+std::string resolved(std::string_view part, std::string_view reference) {
+    std::string path(reference);
+    if (!path.starts_with('/')) {
+        const std::size_t slash = part.rfind('/');
+        if (slash != std::string_view::npos)
+            path.insert(0, part.substr(0, slash + 1));
+    }
+    // Folder by folder, for "." and "..".
+    std::vector<std::string_view> steps;
+    const std::string_view view = path;
+    for (std::size_t at = 0; at <= view.size();) {
+        const std::size_t end = std::min(view.find('/', at), view.size());
+        const std::string_view step = view.substr(at, end - at);
+        at = end + 1;
+        if (step == ".." && !steps.empty())
+            steps.pop_back();
+        else if (!step.empty() && step != "." && step != "..")
+            steps.push_back(step);
+    }
+    return fmt::format("{}", fmt::join(steps, "/"));
+}
+
 } // namespace
 
 std::vector<OpcRelationship> opc_relationships(const ZipReader& package, std::string_view part) {
@@ -78,8 +101,9 @@ std::vector<OpcRelationship> opc_relationships(const ZipReader& package, std::st
                         fmt::format("{}, line {}: found more than {} relationships of one part", source.name,
                                     line, most_relationships));
         const bool external = attributes.find("TargetMode") == "External";
-        found.push_back(
-            {std::string(type), external ? std::string(target) : opc_resolved(part, target), external, line});
+        found.push_back({std::string(type),
+                         external ? std::string(target) : opc_resolved(package, part, target), external,
+                         line});
     };
     handlers.end = [](XmlName) {
     };
@@ -88,26 +112,9 @@ std::vector<OpcRelationship> opc_relationships(const ZipReader& package, std::st
     return found;
 }
 
-std::string opc_resolved(std::string_view part, std::string_view reference) {
-    std::string path = decoded(reference);
-    if (!path.starts_with('/')) {
-        const std::size_t slash = part.rfind('/');
-        if (slash != std::string_view::npos)
-            path.insert(0, part.substr(0, slash + 1));
-    }
-    // Folder by folder, for "." and "..".
-    std::vector<std::string_view> steps;
-    const std::string_view view = path;
-    for (std::size_t at = 0; at <= view.size();) {
-        const std::size_t end = std::min(view.find('/', at), view.size());
-        const std::string_view step = view.substr(at, end - at);
-        at = end + 1;
-        if (step == ".." && !steps.empty())
-            steps.pop_back();
-        else if (!step.empty() && step != "." && step != "..")
-            steps.push_back(step);
-    }
-    return fmt::format("{}", fmt::join(steps, "/"));
+std::string opc_resolved(const ZipReader& package, std::string_view part, std::string_view reference) {
+    std::string name = resolved(part, reference);
+    return package.find(name) != nullptr ? name : resolved(part, decoded(reference));
 }
 
 } // namespace lamella

@@ -23,7 +23,9 @@ struct OpcRelationship {
 /// The relationships of a part, or those of the package for "". None when it has no list of them.
 [[nodiscard]] std::vector<OpcRelationship> opc_relationships(const ZipReader& package, std::string_view part);
 
-/// What a reference that stands in `part` means: absolute ("/3D/a.model") or relative to its folder.
-[[nodiscard]] std::string opc_resolved(std::string_view part, std::string_view reference);
+/// What a reference that stands in `part` means: absolute ("/3D/a.model") or relative to its folder. The
+/// archive may have it as it is written, with "%20" and the like, or without.
+[[nodiscard]] std::string opc_resolved(const ZipReader& package, std::string_view part,
+                                       std::string_view reference);
 
 } // namespace lamella

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -81,7 +82,8 @@ std::uint64_t whole_number_at(const std::byte* at, PlyType type) {
     if (is_real(type)) {
         // Odd, but some write numbers of vertices so; 2^53 and more are not whole numbers any longer.
         const double value = number_at<double, swapped>(at, type);
-        return value >= 0 && value < 0x1p53 ? static_cast<std::uint64_t>(value) : impossible;
+        return value >= 0 && value < 0x1p53 && value == std::floor(value) ? static_cast<std::uint64_t>(value)
+                                                                          : impossible;
     }
     const std::int64_t value = number_at<std::int64_t, swapped>(at, type);
     return value >= 0 ? static_cast<std::uint64_t>(value) : impossible;

@@ -271,7 +271,7 @@ class PackageReader {
     /// A stack in another part, which may not refer to a third one. Its lengths are taken to be in the unit
     /// of the root, as other readers take them.
     std::shared_ptr<const Stack> referred(const ThreeMfElement& reference) {
-        const std::string part = opc_resolved(root_, reference["slicepath"].text);
+        const std::string part = opc_resolved(zip_, root_, reference["slicepath"].text);
         const std::uint32_t id = reference["slicestackid"].index();
         auto& model = parts_[part];
         if (!model)

@@ -148,7 +148,7 @@ class PartLoader {
     /// Takes down the part that an object is used from, under its name in the archive.
     void find_part(ThreeMfUse& use, std::vector<std::string>& others) {
         const ThreeMfModel& root = parts_[0].model;
-        use.part = opc_resolved(root.part, use.part);
+        use.part = opc_resolved(package_, root.part, use.part);
         if (!part_index_.emplace(use.part, 1 + others.size()).second)
             return;
         if (package_.find(use.part) == nullptr)
@@ -273,7 +273,7 @@ class ThreeMfReader {
             if (item.printable)
                 roots_.push_back(std::move(use));
             else
-                not_printable_ += 1;
+                not_printed_.push_back(use.node);
         }
     }
 
@@ -286,10 +286,25 @@ class ThreeMfReader {
                (supports_ && type == ThreeMfObjectType::support);
     }
 
+    [[nodiscard]] std::vector<bool> reached_from(std::vector<std::size_t> open) const {
+        std::vector<bool> reached(nodes_.size());
+        while (!open.empty()) {
+            const std::size_t node = open.back();
+            open.pop_back();
+            if (reached[node])
+                continue;
+            reached[node] = true;
+            for (const AssemblyUse& use : nodes_[node].uses)
+                open.push_back(use.node);
+        }
+        return reached;
+    }
+
     /// The meshes that the build reaches, and where they stand.
     void make_file() {
         if (parts_[0].model.items.empty())
             refuse_package(package_, "holds nothing to slice: its build is empty");
+        std::vector<bool> in_build = reached_from(not_printed_);
         std::vector<bool> reached(nodes_.size());
         std::vector<std::size_t> open;
         for (const AssemblyUse& root : roots_)
@@ -314,7 +329,7 @@ class ThreeMfReader {
         std::size_t degenerate = 0;
         for (std::size_t node = 0; node < nodes_.size(); ++node) {
             if (!reached[node]) {
-                ++unused;
+                unused += in_build[node] ? 0 : 1;
                 continue;
             }
             ThreeMfObject& source = *sources_[node];
@@ -330,9 +345,12 @@ class ThreeMfReader {
             file_.objects.push_back({source.name, Mesh(std::move(source.mesh))});
         }
         if (empty != 0)
-            remarks_.add(fmt::format("{} objects have a mesh without triangles", empty));
+            remarks_.add(fmt::format("{} a mesh without triangles",
+                                     empty == 1 ? "1 object has" : fmt::format("{} objects have", empty)));
         if (degenerate != 0)
-            remarks_.add(fmt::format("{} triangles use a vertex twice; they bound nothing", degenerate));
+            remarks_.add(degenerate == 1 ? "1 triangle uses a vertex twice; it bounds nothing"
+                                         : fmt::format("{} triangles use a vertex twice; they bound nothing",
+                                                       degenerate));
         // These break no rule, and stop no strict caller.
         const auto note_count = [&](std::size_t count, std::string_view thing, std::string_view what) {
             if (count == 1)
@@ -342,7 +360,7 @@ class ThreeMfReader {
         };
         note_count(not_taken, "object",
                    fmt::format("of type {}surface, which is no solid", supports_ ? "" : "support or "));
-        note_count(not_printable_, "item", "marked in the build as not to be printed");
+        note_count(not_printed_.size(), "item", "marked in the build as not to be printed");
         note_count(unused, "object", "not in the build");
         file_.instances = place_meshes(package_.name(), nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
@@ -360,7 +378,7 @@ class ThreeMfReader {
     std::vector<AssemblyNode> nodes_;
     std::vector<ThreeMfObject*> sources_; ///< of each node
     std::vector<AssemblyUse> roots_;
-    std::size_t not_printable_ = 0;
+    std::vector<std::size_t> not_printed_; ///< nodes of items that are not to be
     MeshFile file_;
 };
 

@@ -306,7 +306,7 @@ class ToolpathReader {
         std::vector<RawLayer> layers;
         std::set<const ZipEntry*> known;
         for (const Toolpath::Listed& listed : toolpath.layers) {
-            const std::string part = opc_resolved(root, listed.path);
+            const std::string part = opc_resolved(package_, root, listed.path);
             if (!known.insert(package_.find(part)).second)
                 throw Error(
                     ErrorKind::input,

@@ -54,15 +54,19 @@ struct Picture {
 /// Fills in the figures of a plane and what is wrong with it, and appends the places of the first crossings.
 void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, PlaneFacts& facts,
              std::vector<Point2>& places) {
-    std::optional<Point2> beam;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const Layer& layer = layers[i];
-        facts.hatches += layer.hatches.size() / 2;
+    const auto look_for_crossings = [&](const Layer& layer) {
         const Crossings crossings = find_crossings(layer);
         facts.crossings += crossings.count;
         for (const Crossing& crossing : crossings.first)
             places.push_back(crossing.at);
+    };
+    std::optional<Point2> beam;
+    std::vector<Layer> bounding; // material: what is wrong with it is wrong with all parts together
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Layer& layer = layers[i];
+        facts.hatches += layer.hatches.size() / 2;
         if (parts[i].exposure) {
+            look_for_crossings(layer);
             // Vectors bound no material: their rings have no area, need not lie within one another, and a
             // chain is open by intent.
             facts.scan += measure_vectors(layer, parts[i].exposure->parameters, beam);
@@ -72,12 +76,17 @@ void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, Pla
         }
         facts.measure.add(measure(layer));
         facts.gaps += open_gaps(layer);
-        const Nesting nested = nesting(layer);
-        facts.misoriented += static_cast<std::uint64_t>(
-            std::count(nested.kind.begin(), nested.kind.end(), RingKind::misoriented));
-        facts.overlapping += static_cast<std::uint64_t>(
-            std::count(nested.kind.begin(), nested.kind.end(), RingKind::overlapping));
+        bounding.push_back(layer);
     }
+    if (bounding.empty())
+        return;
+    const Layer all = bounding.size() == 1 ? std::move(bounding.front()) : merged(bounding);
+    look_for_crossings(all);
+    const Nesting nested = nesting(all);
+    facts.misoriented +=
+        static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::misoriented));
+    facts.overlapping +=
+        static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::overlapping));
 }
 
 /// Layers that lose detail step by step, no contour moving by more than `tolerance_mm` in all. What remains

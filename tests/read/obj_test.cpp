@@ -36,6 +36,12 @@ TEST(Obj, TakesAnyLineEndsAndLinesThatGoOn) {
                     corners, {{0, 1, 2}});
 }
 
+TEST(Obj, GoesOnBehindAnyWord) {
+    for (const std::string end : {"\r\n", "\r", "\n"})
+        expect_mesh(fmt::format("v\\{0} 0 0 0{0}v 1 0 0\\{0}{0}v 0 1.5\\{0} -0.2{0}f\\{0} 1 2 3\\{0}", end),
+                    name, corners, {{0, 1, 2}});
+}
+
 TEST(Obj, CountsBackFromTheLastVertex) {
     expect_mesh("v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\nf -3 -2/-1 -1//-1\nv 5 5 5\nf 1 -3 4\n", name,
                 {{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.2}, {5, 5, 5}}, {{0, 1, 2}, {0, 1, 3}});

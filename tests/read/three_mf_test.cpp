@@ -213,6 +213,10 @@ TEST(ThreeMf, ItemsThatAreNotToBePrintedAreLeftOut) {
     EXPECT_EQ(file.instances.size(), 1U);
     ASSERT_EQ(file.warnings.size(), 1U);
     EXPECT_TRUE(says(file.warnings[0], "1 item is marked in the build as not to be printed"));
+    // Its object is not in the way of another one that is not in the build.
+    const MeshFile two = read(package(model(object(1, box_mesh()) + object(2, box_mesh()),
+                                            one_item + "<item objectid=\"2\" printable=\"0\"/>")));
+    EXPECT_EQ(two.warnings.size(), 1U);
 }
 
 TEST(ThreeMf, RequiredExtensionsMustBeKnown) {
@@ -286,6 +290,12 @@ TEST(ThreeMf, FindsTheRootByItsRelationshipAndElseByItsName) {
                       .instances.size(),
                   1U)
             << target;
+    // The archive may have names as references write them, or as they read.
+    for (const char* name : {"x/my%20part.model", "x/my part.model"})
+        EXPECT_EQ(read(with({{"_rels/.rels", relationships({"/x/my%20part.model"})}, {name, text}}))
+                      .instances.size(),
+                  1U)
+            << name;
     EXPECT_TRUE(says(read(with({{"3D/3dmodel.model", text}, {"a.model", "?"}})).warnings.at(0),
                      "took '3D/3dmodel.model'"));
     EXPECT_TRUE(says(read(with({{"other.model", text}})).warnings.at(0), "took 'other.model'"));
@@ -435,7 +445,7 @@ TEST(ThreeMf, StrictReadersAreToldWhatBreaksTheRules) {
     EXPECT_TRUE(
         says(strict(package(replaced(good, "<build>", "<metadata/><build>"))), "metadata without a name"));
     EXPECT_TRUE(says(strict(package(replaced(good, "v1=\"0\" v2=\"2\"", "v1=\"2\" v2=\"2\""))),
-                     "use a vertex twice"));
+                     "1 triangle uses a vertex twice"));
     EXPECT_TRUE(
         says(strict(zip_bytes({{.name = "_rels/.rels", .content = relationships({"3D/3dmodel.model"})},
                                {.name = "3D/3dmodel.model", .content = good}})),

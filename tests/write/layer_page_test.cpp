@@ -294,6 +294,24 @@ TEST(LayerPage, FindsFaults) {
     EXPECT_NEAR(read.crossings[0].y, 5, 0.01);
 }
 
+TEST(LayerPage, FindsPartsThatRunThroughOneAnother) {
+    std::vector<LayerStack> parts;
+    for (const double x : {0.0, 5.0}) {
+        LayerBuilder builder;
+        add_contour(builder, {{x, x}, {x + 10, x}, {x + 10, x + 10}, {x, x + 10}});
+        parts.push_back({builder.finish(0, 0.5, 0, 1)});
+    }
+    LayerBuilder within;
+    add_contour(within, {{1, 1}, {2, 1}, {2, 2}, {1, 2}});
+    parts.push_back({within.finish(0, 0.5, 0, 1)});
+    LayerFileInfo info = info_of(parts[0]);
+    info.parts.resize(parts.size());
+    auto table = numbers_of(write_page(parts, info, options_with()).page.json.at("table"));
+    EXPECT_EQ(table["crossings"][0], 2);
+    EXPECT_GE(table["overlapping"][0], 1);
+    EXPECT_EQ(table["area_mm2"][0], 201);
+}
+
 /// Two exposures: contours of two rings, one within the other and both counter-clockwise, each beginning
 /// elsewhere than in normal form, and a chain; and a hatch.
 std::vector<LayerStack> scanned(std::size_t count, int lines = 40) {
