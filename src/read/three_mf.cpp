@@ -286,6 +286,7 @@ class ThreeMfReader {
                (supports_ && type == ThreeMfObjectType::support);
     }
 
+    /// Those nodes, and what those that are taken consist of.
     [[nodiscard]] std::vector<bool> reached_from(std::vector<std::size_t> open) const {
         std::vector<bool> reached(nodes_.size());
         while (!open.empty()) {
@@ -294,8 +295,9 @@ class ThreeMfReader {
             if (reached[node])
                 continue;
             reached[node] = true;
-            for (const AssemblyUse& use : nodes_[node].uses)
-                open.push_back(use.node);
+            if (is_taken(sources_[node]->type))
+                for (const AssemblyUse& use : nodes_[node].uses)
+                    open.push_back(use.node);
         }
         return reached;
     }
@@ -304,36 +306,27 @@ class ThreeMfReader {
     void make_file() {
         if (parts_[0].model.items.empty())
             refuse_package(package_, "holds nothing to slice: its build is empty");
-        std::vector<bool> in_build = reached_from(not_printed_);
-        std::vector<bool> reached(nodes_.size());
-        std::vector<std::size_t> open;
+        std::vector<std::size_t> printed;
         for (const AssemblyUse& root : roots_)
-            open.push_back(root.node);
+            printed.push_back(root.node);
+        const std::vector<bool> reached = reached_from(std::move(printed));
+        const std::vector<bool> kept_back = reached_from(not_printed_);
         std::size_t not_taken = 0;
         std::size_t empty = 0;
-        while (!open.empty()) {
-            const std::size_t node = open.back();
-            open.pop_back();
-            if (reached[node])
-                continue;
-            reached[node] = true;
-            if (!is_taken(sources_[node]->type)) {
-                nodes_[node].uses.clear();
-                ++not_taken;
-                continue;
-            }
-            for (const AssemblyUse& use : nodes_[node].uses)
-                open.push_back(use.node);
-        }
         std::size_t unused = 0;
         std::size_t degenerate = 0;
         for (std::size_t node = 0; node < nodes_.size(); ++node) {
             if (!reached[node]) {
-                unused += in_build[node] ? 0 : 1;
+                unused += kept_back[node] ? 0 : 1;
                 continue;
             }
             ThreeMfObject& source = *sources_[node];
-            if (!is_taken(source.type) || !source.is_mesh)
+            if (!is_taken(source.type)) {
+                nodes_[node].uses.clear();
+                ++not_taken;
+                continue;
+            }
+            if (!source.is_mesh)
                 continue;
             if (source.mesh.triangles.empty()) {
                 ++empty;
