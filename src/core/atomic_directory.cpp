@@ -87,9 +87,17 @@ void AtomicDirectory::check_replaceable() const {
 }
 
 void AtomicDirectory::write(const std::string& name, std::string_view bytes) {
-    AtomicFile file((working_ / name).string());
-    file.append(bytes);
-    file.commit();
+    try {
+        AtomicFile file((working_ / name).string());
+        file.append(bytes);
+        file.commit();
+    } catch (const Error& error) {
+        // Nobody knows the name that the folder has meanwhile.
+        std::string text = error.what();
+        if (const std::size_t at = text.find(working_.string()); at != std::string::npos)
+            text.replace(at, working_.string().size(), target_.string());
+        throw Error(error.kind(), text);
+    }
     bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
 }
 

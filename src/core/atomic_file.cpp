@@ -168,18 +168,18 @@ void AtomicFile::open_in_place() {
 }
 
 void AtomicFile::spool() {
-    const std::string folder = temporary_folder();
-    spool_ = create_scratch(folder);
-    if (spool_ < 0) {
-        const std::string reason = std::generic_category().message(errno);
-        discard();
-        throw Error(
-            ErrorKind::output,
-            fmt::format("cannot make a temporary file in the folder '{}', where this output waits for "
-                        "its end: {}; set the environment variable TMPDIR to a folder that can be "
-                        "written",
-                        folder, reason));
-    }
+    spool_ = create_scratch(temporary_folder());
+    if (spool_ < 0)
+        fail_spool(errno);
+}
+
+void AtomicFile::fail_spool(int system_error) {
+    discard();
+    throw Error(ErrorKind::output,
+                fmt::format("cannot write a temporary file in the folder '{}', where this output waits for "
+                            "its end: {}; set the environment variable TMPDIR to a folder that can be "
+                            "written and has room",
+                            temporary_folder(), std::generic_category().message(system_error)));
 }
 
 void AtomicFile::open_unfinished() {
@@ -280,7 +280,7 @@ void AtomicFile::overwrite(std::uint64_t place, std::string_view bytes) {
             bytes.remove_prefix(static_cast<std::size_t>(written));
             place += static_cast<std::uint64_t>(written);
         } else if (errno != EINTR) {
-            fail(errno);
+            spool_ >= 0 ? fail_spool(errno) : fail(errno);
         }
     }
 }
@@ -317,7 +317,7 @@ void AtomicFile::write_out(std::string_view bytes) {
             pollfd ready{.fd = descriptor_, .events = POLLOUT, .revents = 0};
             ::poll(&ready, 1, -1); // whatever comes of it, the next write tells
         } else if (errno != EINTR) {
-            fail(errno);
+            spool_ >= 0 ? fail_spool(errno) : fail(errno);
         }
     }
 }

@@ -69,6 +69,8 @@ class AtomicFile {
     void flush();
     void discard() noexcept;
     [[noreturn]] void fail(int system_error);
+    /// Of the temporary file that an output waits in.
+    [[noreturn]] void fail_spool(int system_error);
 
     std::string path_;
     std::string target_;    ///< path_ with symbolic links followed
