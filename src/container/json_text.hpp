@@ -11,7 +11,9 @@ namespace lamella {
 /// A cursor. Values are taken in the order in which they stand; errors are Error{input} with the line.
 class JsonText {
   public:
-    JsonText(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {}
+    /// Of the bytes from `begin` on; places are counted from the first byte.
+    JsonText(std::string_view text, std::string name, std::size_t begin = 0)
+        : text_(text), name_(std::move(name)), at_(begin) {}
 
     /// Calls member(key) for each member of the object that is next; that takes its value.
     template <class Member>

@@ -223,7 +223,7 @@ bool is_json(std::string_view bytes) {
 LayerFile read_layers_json(std::string_view bytes, const std::string& name, ReadLimits& limits,
                            const Execution& execution) {
     LayerFile file{.path = name, .format = "json", .units_mm = 1};
-    JsonText text(bytes.substr(after_byte_order_mark(bytes)), name);
+    JsonText text(bytes, name, after_byte_order_mark(bytes));
     LayersJsonReader(text, bytes.size(), file, limits, execution).read();
     return file;
 }
