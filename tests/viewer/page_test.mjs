@@ -97,6 +97,10 @@ test('the slider, the buttons, the keys, the number and the plots go from layer 
   await page.getByRole('spinbutton', { name: 'Number of the layer' }).fill('7');
   await page.keyboard.press('Enter');
   assert.equal(await shown(page), 7);
+  await page.getByRole('spinbutton', { name: 'Number of the layer' }).fill('');
+  await page.keyboard.press('Tab');
+  assert.equal(await shown(page), 7);
+  assert.equal(await page.getByRole('spinbutton', { name: 'Number of the layer' }).inputValue(), '7');
   const plot = page.locator('canvas.plot').first();
   const { width } = await plot.boundingBox();
   await plot.click({ position: { x: width - 8, y: 10 } });
@@ -400,6 +404,7 @@ test('an open contour is seen in red, counted, and listed', async () => {
     await worst.nth(3).click();
     assert.equal(String(await shown(page)), await worst.nth(3).locator('b').textContent());
     assert.match(await page.locator('canvas[data-layer]').getAttribute('aria-label'), /1 of the contours open/);
+    assert.match(await page.locator('#layer').getAttribute('aria-valuetext'), /mm, 1 open contour, the longest gap 30 mm$/);
   }
 });
 
@@ -490,6 +495,8 @@ test('dark and light follow the system, and the button switches', async () => {
     assert.equal(await isDark(), colorScheme !== 'dark');
     await page.keyboard.press('t');
     assert.equal(await isDark(), colorScheme === 'dark');
+    await page.keyboard.press('T'); // as with Caps Lock
+    assert.equal(await isDark(), colorScheme !== 'dark');
   }
 });
 
@@ -566,10 +573,67 @@ test('nothing moves while the page fills itself', async () => {
   assert.deepEqual(await places(), before);
 });
 
+const noSidewaysScrolling = (page) => page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
+
 test('a narrow page has everything below one another and no sideways scrolling', async () => {
-  const { page, complaints } = await open('open.html', { width: 390, height: 800, view: null });
-  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-  assert.deepEqual(complaints, []);
+  for (const name of ['open.html', 'job.html', 'open_mesh.html'])
+    for (const width of [320, 357, 390]) {
+      const { page, complaints } = await open(name, { width, height: 800, view: null });
+      assert.ok(await noSidewaysScrolling(page), `${name} at ${width}`);
+      assert.ok((await page.locator('#title').boundingBox()).width > 200);
+      const help = await page.getByRole('button', { name: 'Keys and help' }).boundingBox();
+      assert.ok(help.x + help.width <= width, `${name} at ${width}: ${help.x}`);
+      assert.deepEqual(complaints, []);
+    }
+});
+
+test('in a small window of either shape the drawing has a place of its own, and the page scrolls to the rest', async () => {
+  const boxOf = (page, what) => page.locator(what).first().boundingBox();
+  for (const [width, height] of [[900, 700], [390, 800], [1000, 400], [1400, 900]])
+    for (const name of ['open.html', 'job.html', 'open_mesh.html']) {
+      const { page } = await open(name, { width, height, view: null });
+      await page.waitForSelector('canvas[data-ready], canvas[data-layer]');
+      await redrawn();
+      const [drawing, panels] = [await boxOf(page, '.pane:not([hidden]) .drawing'), await boxOf(page, '.panels')];
+      const told = `${name} at ${width} x ${height}: ${JSON.stringify([drawing, panels])}`;
+      assert.ok(drawing.height > 150 && drawing.height < 900, told);
+      if (width <= 900) assert.ok(panels.y >= drawing.y + drawing.height, told);
+      else assert.ok(panels.x >= drawing.x + drawing.width && panels.height > 250, told);
+      const whole = await page.evaluate(() => document.documentElement.scrollHeight);
+      assert.ok(whole >= panels.y + panels.height - 1, told);
+      if (height === 900) assert.equal(whole, height, told);
+    }
+});
+
+test('long names of parts and files stay within the page, and parts without a name have one', async () => {
+  const long = 'a'.repeat(150);
+  const layers = [{ index: 0, z: 0.00005, bottom: 0, top: 0.0001, parts: [0, 20, 40].map((x) => ({ rings: [[x, 0, x + 10, 0, x + 10, 10, x, 10]] })) }];
+  const labels = [long, '  ', 'b'];
+  writeFileSync(file(`${long}.json`), JSON.stringify({ format: 'lamella layers', version: 1, units: 'mm', parts: labels.map((label) => ({ label })), layers }));
+  lamella('view', `${long}.json`, '-o', 'long.html');
+  for (const width of [390, 1400]) {
+    const { page, complaints } = await open('long.html', { width });
+    const wide = await page.evaluate(() => [...document.querySelectorAll('.card')].filter((card) => card.scrollWidth > card.clientWidth).map((card) => card.textContent));
+    assert.deepEqual(wide, []);
+    assert.ok(await noSidewaysScrolling(page));
+    for (const name of [long, 'part', 'b']) assert.equal(await page.getByRole('checkbox', { name, exact: true }).count(), 1, name);
+    assert.match(await page.locator('section', { hasText: 'Cut at z' }).textContent(), /Thickness0\.0001 mm/);
+    assert.deepEqual(complaints, []);
+  }
+});
+
+test('a stack of more layers, and one of more parts, than there are texels in a row', async () => {
+  const n = 9000;
+  const boxes = Array.from({ length: n }, (_, i) => ({ rings: [[i % 100, Math.floor(i / 100), (i % 100) + 0.5, Math.floor(i / 100), i % 100, Math.floor(i / 100) + 0.5]] }));
+  const layers = [{ index: 0, z: 0.5, bottom: 0, top: 1, parts: boxes }];
+  writeFileSync(file('crowd.json'), JSON.stringify({ format: 'lamella layers', version: 1, units: 'mm', parts: boxes.map((_, i) => ({ label: `p${i}` })), layers }));
+  lamella('view', 'crowd.json');
+  lamella('view', 'box.stl', '--layer-height', '0.00006', '-o', 'fine.html'); // 166,667 layers
+  for (const name of ['crowd.html', 'fine.html']) {
+    const { page, complaints } = await open(name, { view: 'stack' });
+    await page.waitForSelector('canvas[data-ready]');
+    assert.deepEqual(complaints, [], name);
+  }
 });
 
 test('a report tells how the run went', async () => {

@@ -1,4 +1,5 @@
 import { hasMaterial, hasVectors, isVectors } from './data/exposures.js';
+import { largest, least } from './extremes.js';
 import { brief, count, counted, duration, mm } from './text.js';
 
 /** What the figures of the layers mean, in plain words. */
@@ -34,7 +35,7 @@ export const faultsOf = (table, i) => sum(faults.map(({ column }) => table[colum
 export function faultText(table, i) {
   return faults
     .filter(({ column }) => table[column][i] > 0)
-    .map(({ column, one, name }) => `${count(table[column][i])} ${table[column][i] === 1 ? one : name}`)
+    .map(({ column, one, name }) => counted(table[column][i], one, name))
     .concat(table.longest_gap_mm[i] > 0 ? [`the longest gap ${brief(table.longest_gap_mm[i])} mm`] : [])
     .join(', ');
 }
@@ -53,10 +54,10 @@ const layersWith = (column) => column.flatMap((n, i) => (n > 0 ? [i] : []));
 export function findings(page) {
   const { head, table } = page;
   const found = [];
-  for (const { column, name, meaning } of faults) {
+  for (const { column, one, name, meaning } of faults) {
     const affected = layersWith(table[column]);
     if (affected.length === 0) continue;
-    const text = `${count(sum(table[column]))} ${name} ${where(table, affected)}: ${meaning}.`;
+    const text = `${counted(sum(table[column]), one, name)} ${where(table, affected)}: ${meaning}.`;
     found.push({ tone: 'bad', text, layer: affected[0] });
   }
   const [widest] = widestGaps(table, 1);
@@ -116,7 +117,7 @@ function accuracy(head, table) {
   const thinned = layersWith(table.tolerance_mm);
   const rounded = `coordinates are rounded to ${brief(head.step_mm)} mm`;
   if (thinned.length === 0) return { tone: 'plain', text: `The page shows every point; ${rounded}.` };
-  const worst = Math.max(...table.tolerance_mm);
+  const worst = largest(table.tolerance_mm);
   const contours = sum(table.contours);
   const missing = contours - sum(table.contours_shown);
   return {
@@ -191,12 +192,12 @@ export function layerText({ head, table }, i) {
 export function remarkableLayers({ head, table }) {
   const layers = [...table.z.keys()];
   if (layers.length < 2) return [];
-  const largest = (value) => layers.reduce((best, i) => (value(i) > value(best) ? i : best), 0);
+  const highest = (value) => layers.reduce((best, i) => (value(i) > value(best) ? i : best), 0);
   const step = (i) => (i === 0 ? 0 : Math.abs(table.area_mm2[i] - table.area_mm2[i - 1]));
-  const [points, contours, area, change] = [(i) => table.points[i], (i) => table.contours[i], (i) => table.area_mm2[i], step].map(largest);
+  const [points, contours, area, change] = [(i) => table.points[i], (i) => table.contours[i], (i) => table.area_mm2[i], step].map(highest);
   const uneven = (column) => column.some((value) => value !== column[0]);
   if (!hasMaterial(head)) {
-    const [time, vectors, jumps] = ['build_seconds', 'vectors', 'jumped_mm'].map((column) => largest((i) => table[column][i]));
+    const [time, vectors, jumps] = ['build_seconds', 'vectors', 'jumped_mm'].map((column) => highest((i) => table[column][i]));
     return [
       { layer: time, text: `longest time, ${duration(table.build_seconds[time])}`, stands: uneven(table.build_seconds) },
       { layer: vectors, text: `most vectors, ${count(table.vectors[vectors])}`, stands: uneven(table.vectors) },
@@ -222,11 +223,11 @@ export function totals(page) {
   const { head, table } = page;
   const n = table.z.length;
   const thickness = table.z.map((_, i) => table.top[i] - table.bottom[i]);
-  const [thin, thick] = [Math.min(...thickness), Math.max(...thickness)];
-  const uneven = thick - thin > 1e-6 * thick;
+  // Briefly: files keep heights as floats, and of a difference of two of them few digits are true.
+  const [thin, thick] = [least(thickness), largest(thickness)].map(brief);
   return [
     ['Layers', count(n)],
-    ['Layer height', n === 0 ? '–' : uneven ? `${mm(thin)} to ${mm(thick)} mm` : `${mm(thin)} mm`],
+    ['Layer height', n === 0 ? '–' : thin === thick ? `${thin} mm` : `${thin} to ${thick} mm`],
     ['From z', n === 0 ? '–' : `${mm(table.bottom[0])} to ${mm(table.top[n - 1])} mm`],
     ['Size', `${head.box[0].map((low, k) => brief(head.box[1][k] - low)).join(' × ')} mm`],
     ...(hasVectors(head) ? totalsOfVectors(table) : []),

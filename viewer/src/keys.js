@@ -15,7 +15,8 @@ export function listenToKeys(table) {
     if (inField(event.target) || document.querySelector('dialog[open]')) return;
     const pressesButton = event.target instanceof Element && event.target.closest('button, summary, input[type=checkbox]');
     if (pressesButton && (event.key === ' ' || event.key === 'Enter')) return;
-    const name = event.shiftKey && event.key.startsWith('Arrow') ? `Shift+${event.key}` : event.key;
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key; // Caps Lock makes letters capitals
+    const name = event.shiftKey && key.startsWith('Arrow') ? `Shift+${key}` : key;
     const act = acts.get(name);
     if (!act) return;
     event.preventDefault();

@@ -47,7 +47,8 @@ async function build() {
   });
   followTheme(store);
   document.title = `${page.head.title} – Lamella`;
-  document.getElementById('title').textContent = page.head.title;
+  const title = document.getElementById('title');
+  title.textContent = title.title = page.head.title; // there may be no room for all of it
   document.getElementById('theme').addEventListener('click', () => switchTheme(store));
   let help;
   const buildPage = page.head.kind === 'mesh' ? buildMeshPage : buildLayerPage;

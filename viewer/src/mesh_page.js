@@ -1,5 +1,6 @@
 import { meshOf } from './data/page.js';
 import { element } from './element.js';
+import { largest } from './extremes.js';
 import { MeshView } from './mesh/mesh_view.js';
 import { meshPanels, middleOf } from './panels/panels.js';
 import { switchTheme } from './theme.js';
@@ -7,7 +8,7 @@ import { switchTheme } from './theme.js';
 /** How far a place reaches, mm, seen from its middle. */
 function reachOf({ points }) {
   const middle = middleOf({ points });
-  return 2 * Math.max(...points.map((p) => Math.hypot(...p.map((value, k) => value - middle[k]))));
+  return 2 * largest(points.map((p) => Math.hypot(...p.map((value, k) => value - middle[k]))));
 }
 
 function verdictOf(page) {

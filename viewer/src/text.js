@@ -33,7 +33,17 @@ export const layerNumber = (table, layer) => count(table.index[layer]);
 /** "of 0 to 99": the numbers that there are. */
 export const layerNumbers = ({ index }) => (index.length > 0 ? `of ${count(index[0])} to ${count(index.at(-1))}` : '');
 
-/** Heights and coordinates, to a thousandth. */
-export const mm = (value) => new Intl.NumberFormat('en', { maximumFractionDigits: 3 }).format(value);
+const rounded = (value, digits) => new Intl.NumberFormat('en', { maximumFractionDigits: digits }).format(value);
+const noise = 1e-9; // mm: what sums leave where there should be 0
+const finest = 12; // digits after the point
+
+/** Heights and lengths: to a millionth, so that the last digits that sums leave are gone, or four digits that matter. */
+export function mm(value) {
+  if (Math.abs(value) < noise) return '0';
+  return rounded(value, Math.min(finest, Math.max(6, 3 - Math.floor(Math.log10(Math.abs(value))))));
+}
+
+/** A coordinate under the pointer: to a thousandth, or further where a pixel is as small as `pixel` mm. */
+export const coordinate = (value, pixel) => rounded(value, Math.min(finest, Math.max(3, Math.ceil(-Math.log10(pixel)))));
 
 export const size = (box) => box[0].map((low, k) => brief(box[1][k] - low)).join(' × ');

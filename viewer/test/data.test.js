@@ -134,6 +134,7 @@ test('vectors are those that are executed, in their order and with their times',
       part({ hatches: [33, 4, 33, 9] }),
     ],
   };
+  assert.deepEqual(bodiesOf({ parts: [{ label: ' \t' }, { label: ' a' }] }).map(({ name }) => name), ['part', ' a']);
   const parts = [{ label: 'material' }, exposure('a', 'core', 'contour'), exposure('a', 'upskin', 'hatch'), exposure('a', 'core', 'hatch')];
   const vectors = vectorsOf(layer, parts);
   assert.equal(vectors.count, 4 + 1 + 2 + 1);

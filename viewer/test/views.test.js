@@ -1,13 +1,26 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { largest, least } from '../src/extremes.js';
 import { faultText, findings, firstLayer, gapText, layerText, remarkableLayers, totals, verdict, widestGaps, worstLayers } from '../src/findings.js';
 import { Camera } from '../src/layer/camera.js';
 import { roundStep } from '../src/layer/round_step.js';
 import { levelsOf } from '../src/stack/levels.js';
 import { Walls, lineKinds, linesOfRow, spacingFor } from '../src/stack/walls.js';
 import { Store } from '../src/store.js';
-import { LayerAxis, columnsOf } from '../src/timeline/plot.js';
-import { brief, counted, duration } from '../src/text.js';
+import { LayerAxis, columnsOf, drawTicks } from '../src/timeline/plot.js';
+import { brief, coordinate, counted, duration, mm } from '../src/text.js';
+
+test('stacks of more layers than a call takes arguments are summed up and plotted', () => {
+  const n = 300_000;
+  const page = pageOf(Array.from({ length: n }, (_, i) => ({ open_chains: i === 7 ? 1 : 0, tolerance_mm: i === 9 ? 0.5 : 0 })));
+  page.head.box = [[0, 0, 0], [1, 1, n]];
+  assert.deepEqual(totals(page)[1], ['Layer height', '1 mm']);
+  assert.match(findings(page).at(-1).text, /up to 0\.5 mm off/);
+  assert.deepEqual([least(page.table.z), largest(page.table.z)], [0.5, n - 0.5]);
+  const drawn = [];
+  drawTicks({ clearRect() {}, fillRect: (...box) => drawn.push(box) }, page.table.open_chains, new LayerAxis(n, 300), 22, 'red');
+  assert.deepEqual(drawn, [[7, 0, 2, 19]]);
+});
 
 test('a camera fits, zooms about a pixel and moves', () => {
   const camera = new Camera();
@@ -62,6 +75,7 @@ test('faults are told, the worst layers first', () => {
   const told = findings(page);
   assert.deepEqual(told.slice(0, 3).map(({ tone, layer }) => [tone, layer]), [['bad', 1], ['bad', 2], ['bad', 3]]);
   assert.match(told[0].text, /^3 open contours in 2 layers, the lowest at z = 1\.5 mm/);
+  assert.match(told[2].text, /^1 ring inside out in 1 layer,/);
   assert.deepEqual(worstLayers(page.table).map(({ layer }) => layer), [2, 1, 3]);
   assert.equal(verdict(page).text, '3 layers with faults');
   assert.equal(firstLayer(page), 2);
@@ -99,6 +113,20 @@ test('what steps made of the layers is told where there were any', () => {
   assert.equal(told.get('Rings dropped'), '1,200');
   assert.equal(told.get('Volume'), '12 mm³');
   assert.equal(told.get('Volume before'), '13 mm³');
+});
+
+test('thin layers have a thickness, and floats are told without their last digits', () => {
+  const page = pageOf([{}, {}, {}]);
+  page.head.box = [[0, 0, 0], [3, 3, 2]];
+  const heightOf = (...bounds) => {
+    page.table.bottom = bounds.slice(0, -1);
+    page.table.top = bounds.slice(1);
+    return totals(page)[1][1];
+  };
+  assert.equal(heightOf(0, 0.0125, 0.025, 0.0375), '0.0125 mm');
+  assert.equal(heightOf(0, 1e-4, 2e-4, 3e-4), '0.0001 mm');
+  assert.equal(heightOf(...[53.05, 53.1, 53.15, 53.2].map(Math.fround)), '0.05 mm');
+  assert.equal(heightOf(0, 0.0125, 0.0625, 0.1), '0.0125 to 0.05 mm');
 });
 
 test('a sound stack is called sound, and thinning is said', () => {
@@ -271,6 +299,8 @@ test('numbers read well', () => {
   assert.deepEqual([0, 0.05, 12.3456, 1234.56, 123456.7, 1e-5].map(brief), ['0', '0.05', '12.35', '1,235', '123,457', '0.00001']);
   assert.deepEqual([1e-6, 9e-7, -1e-16].map(brief), ['0.000001', '< 0.000001', '> −0.000001']);
   assert.deepEqual([4.8712, 59, 187, 3600, 7512].map(duration), ['4.871 s', '59 s', '3 min 07 s', '1 h 00 min', '2 h 05 min']);
+  assert.deepEqual([53.1375, 0.1 + 0.2, 0.0125, 1e-4, 2e-8, -1e-16, 1234.5].map(mm), ['53.1375', '0.3', '0.0125', '0.0001', '0.00000002', '0', '1,234.5']);
+  assert.deepEqual([0.05, 1e-5].map((pixel) => coordinate(1.23456789, pixel)), ['1.235', '1.23457']);
   assert.equal(counted(1, 'layer'), '1 layer');
   assert.equal(counted(1200, 'layer'), '1,200 layers');
 });

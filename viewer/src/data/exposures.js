@@ -29,12 +29,15 @@ export function kindsOf({ parts }) {
   );
 }
 
+/** As the program names parts without a label. */
+const nameOf = (label) => (label.trim() === '' ? 'part' : label);
+
 /** @returns {Group[]} what is built: a part with all its exposures is one */
 export function bodiesOf({ parts }) {
   const bodies = new Map();
   parts.forEach(({ label, exposure }, i) => {
     const key = exposure ? `exposures of ${exposure.part}` : i;
-    if (!bodies.has(key)) bodies.set(key, { name: exposure?.part ?? label, parts: [] });
+    if (!bodies.has(key)) bodies.set(key, { name: nameOf(exposure?.part ?? label), parts: [] });
     bodies.get(key).parts.push(i);
   });
   return [...bodies.values()];

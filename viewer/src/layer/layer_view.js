@@ -3,7 +3,7 @@ import { vectorsOf } from '../data/vectors.js';
 import { element } from '../element.js';
 import { hasHatches, layerText } from '../findings.js';
 import { iconButton } from '../icon.js';
-import { layerNumber, layerNumbers, mm } from '../text.js';
+import { coordinate, layerNumber, layerNumbers, mm } from '../text.js';
 import { Camera } from './camera.js';
 import { drawFaults, drawLayer } from './draw_layer.js';
 import { drawBeam, drawOutline, drawVectorDirections, drawVectors } from './draw_vectors.js';
@@ -201,7 +201,8 @@ export class LayerView {
 
   #tell(pixelX, pixelY) {
     const [x, y] = this.#camera.toPlane(pixelX, pixelY);
-    this.readout.value = `x ${mm(x + this.origin[0])}   y ${mm(y + this.origin[1])} mm`;
+    const [atX, atY] = [x + this.origin[0], y + this.origin[1]].map((value) => coordinate(value, 1 / this.#camera.scale));
+    this.readout.value = `x ${atX}   y ${atY} mm`;
   }
 
   zoomBy(factor) {

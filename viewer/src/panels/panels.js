@@ -43,7 +43,7 @@ function layerCard(page, store) {
   const { head, table } = page;
   const rows = [
     ['Cut at z', (i) => `${mm(table.z[i])} mm`],
-    ['Thickness', (i) => `${mm(table.top[i] - table.bottom[i])} mm`],
+    ['Thickness', (i) => `${brief(table.top[i] - table.bottom[i])} mm`],
   ];
   const rowsOfMaterial = [
     ['Area', (i) => `${brief(table.area_mm2[i])} mm²`],

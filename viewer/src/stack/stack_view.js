@@ -1,13 +1,14 @@
 import { BufferAttribute, BufferGeometry, Color, DataTexture, Mesh, RGBAIntegerFormat, UnsignedIntType, Vector3 } from 'three';
 import { bodyOfParts, colourOfVectors, isVectors } from '../data/exposures.js';
 import { element } from '../element.js';
+import { largest, least } from '../extremes.js';
 import { brief } from '../text.js';
 import { nextTurn } from '../turn.js';
 import { Cap } from './cap.js';
 import { levelsOf } from './levels.js';
 import { placeMarks } from './place_marks.js';
 import { Space } from './space.js';
-import { heightsTexture, topBrightness, wallMaterial } from './wall_material.js';
+import { heightsTexture, partsTexture, topBrightness, wallMaterial } from './wall_material.js';
 import { Walls, linesOfRow, spacingFor } from './walls.js';
 
 const mostLines = 1.5e6; // in the whole stack
@@ -99,9 +100,9 @@ export class StackView {
     if (this.#begun || this.#store.state.view === 'layer') return;
     this.#begun = true;
     const { head, table, notes } = this.#page;
-    const bottom = Math.min(...table.bottom);
+    const bottom = least(table.bottom);
     this.#origin = [head.origin[0] * head.step_mm, head.origin[1] * head.step_mm, bottom];
-    const box = [this.#origin, [head.box[1][0], head.box[1][1], Math.max(...table.top)]];
+    const box = [this.#origin, [head.box[1][0], head.box[1][1], largest(table.top)]];
     try {
       this.#space = new Space(box, 'The stack of layers in space. Buttons look at it from several sides.', (most) => this.#bulkOf(most));
     } catch {
@@ -109,7 +110,7 @@ export class StackView {
       return;
     }
     this.#bodies = bodyOfParts(head);
-    this.#parts = new DataTexture(new Uint8Array(4 * head.parts.length), head.parts.length, 1);
+    this.#parts = partsTexture(head.parts.length);
     const heights = heightsTexture(table.bottom.map((z) => z - bottom), table.top.map((z) => z - bottom));
     this.#walls = wallMaterial(false, heights, head.layers - 1, this.#parts);
     this.#ghosts = wallMaterial(true, heights, head.layers - 1, this.#parts);
@@ -229,7 +230,7 @@ export class StackView {
   async #build() {
     const { table, head } = this.#page;
     const total = table.shown.reduce((sum, n) => sum + n, 0);
-    const least = this.#space.reach / 4000;
+    const leastApart = this.#space.reach / 4000;
     while (this.#stride < head.layers && Math.min(total, mostLines) / this.#stride > linesOfFirstLevel) this.#stride *= 2;
     let widest = 0;
     let done = 0;
@@ -240,7 +241,7 @@ export class StackView {
       let walls = new Walls(head.parts);
       for (const number of numbers) {
         const layer = await this.#shelf.decode(number);
-        const apart = total <= mostLines ? 0 : spacingFor(layer, (mostLines * table.shown[number]) / total, least);
+        const apart = total <= mostLines ? 0 : spacingFor(layer, (mostLines * table.shown[number]) / total, leastApart);
         widest = Math.max(widest, apart);
         walls.add(layer, number, apart);
         ++done;

@@ -3,7 +3,9 @@ import { lineKinds, linesOfRow } from './walls.js';
 
 /** How far ledges reach inwards, in thicknesses of the layer: over slopes of 18 degrees and more there are no gaps. */
 const ledgeWidth = 3;
+// Cards take a few thousand texels in a row.
 const heightsOfRow = 1024;
+const partsOfRow = 1024;
 
 /** Bottom and top of each layer, mm, for the material to look up. */
 export function heightsTexture(bottoms, tops) {
@@ -13,6 +15,12 @@ export function heightsTexture(bottoms, tops) {
   const texture = new DataTexture(data, heightsOfRow, rows, RGFormat, FloatType);
   texture.needsUpdate = true;
   return texture;
+}
+
+/** Four bytes for each part: its colour, and 255 where it is shown. To be filled. */
+export function partsTexture(parts) {
+  const rows = Math.ceil(parts / partsOfRow);
+  return new DataTexture(new Uint8Array(4 * partsOfRow * rows), partsOfRow, rows);
 }
 
 /**
@@ -60,7 +68,7 @@ const vertex = /* glsl */ `
     isLedge = ledge ? 1.0 : 0.0;
     normalSeen = normalize(normalMatrix * (ledge ? vec3(0.0, 0.0, 1.0) : vec3(outward, 0.0)));
     gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
-    vec4 look = texelFetch(parts, ivec2(part, 0), 0);
+    vec4 look = texelFetch(parts, ivec2(part % ${partsOfRow}, part / ${partsOfRow}), 0);
     own = look.rgb;
     bool isHidden = look.a < 0.5;
     // Ledges of open contours would lie nowhere, those of ghosts would hide them, and the top layer has a cap.
@@ -122,7 +130,7 @@ const fragment = /* glsl */ `
  * @param {boolean} above the ghosts of the layers above instead of the stack up to the layer
  * @param {import('three').DataTexture} heights of the layers
  * @param {number} last layer
- * @param {import('three').DataTexture} parts four bytes for each: its colour, and 255 where it is shown
+ * @param {import('three').DataTexture} parts as partsTexture makes it
  */
 export function wallMaterial(above, heights, last, parts) {
   return new ShaderMaterial({

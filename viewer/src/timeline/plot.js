@@ -1,3 +1,5 @@
+import { largest, least } from '../extremes.js';
+
 /** Where layers lie along an axis as wide as a slider's track: in the middle of its thumb. */
 export class LayerAxis {
   static thumb = 16; // pixels, as in styles.css
@@ -43,8 +45,8 @@ export function columnsOf(values, axis) {
 /** Draws one quantity over the layers. */
 export function drawPlot(ctx, values, axis, height, { line, fill }) {
   const columns = columnsOf(values, axis);
-  const top = Math.max(...values, 0);
-  const low = Math.min(...values, 0);
+  const top = Math.max(largest(values), 0);
+  const low = Math.min(least(values), 0);
   const margin = 3;
   const y = (value) => height - margin - ((value - low) / (top - low || 1)) * (height - 2 * margin);
   ctx.clearRect(0, 0, axis.width, height);
@@ -70,7 +72,7 @@ export function drawPlot(ctx, values, axis, height, { line, fill }) {
 
 /** A tick for each layer that has some: rare peaks stay to be seen. */
 export function drawTicks(ctx, values, axis, height, colour) {
-  const top = Math.max(...values, 0);
+  const top = Math.max(largest(values), 0);
   ctx.clearRect(0, 0, axis.width, height);
   ctx.fillStyle = colour;
   for (const column of columnsOf(values, axis))

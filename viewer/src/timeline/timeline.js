@@ -1,5 +1,7 @@
 import { hasMaterial, hasVectors } from '../data/exposures.js';
 import { element } from '../element.js';
+import { largest, least } from '../extremes.js';
+import { faultText } from '../findings.js';
 import { iconButton } from '../icon.js';
 import { brief, count, layerNumber, layerNumbers, mm } from '../text.js';
 import { LayerAxis, drawPlot, drawTicks } from './plot.js';
@@ -56,7 +58,7 @@ export class Timeline {
       'aria-label': 'Number of the layer',
     });
     this.number.addEventListener('change', () => {
-      player.go(nearest(page.table.index, Number(this.number.value)));
+      if (this.number.value !== '') player.go(nearest(page.table.index, Number(this.number.value)));
       this.number.value = page.table.index[store.state.layer];
     });
     this.height = element('span', { className: 'height' });
@@ -97,8 +99,8 @@ export class Timeline {
   #plot(row) {
     const values = this.#page.table[row.column];
     const value = element('span', { className: 'value' });
-    const low = values.length > 0 ? Math.min(...values) : 0;
-    const high = values.length > 0 ? Math.max(...values) : 0;
+    const low = values.length > 0 ? least(values) : 0;
+    const high = values.length > 0 ? largest(values) : 0;
     const text = `${row.name} of the layers, from ${row.tell(low)} to ${row.tell(high)} ${row.unit}`;
     const canvas = element('canvas', { className: 'plot', role: 'img', 'aria-label': text });
     const go = (event) => {
@@ -126,8 +128,8 @@ export class Timeline {
   #follow(layer) {
     const { table } = this.#page;
     this.slider.value = layer;
-    const faults = table.open_chains[layer] > 0 ? `, ${count(table.open_chains[layer])} open contours` : '';
-    this.slider.setAttribute('aria-valuetext', `${layerNumber(table, layer)} ${layerNumbers(table)}, z = ${mm(table.z[layer])} mm${faults}`);
+    const faults = faultText(table, layer);
+    this.slider.setAttribute('aria-valuetext', `${layerNumber(table, layer)} ${layerNumbers(table)}, z = ${mm(table.z[layer])} mm${faults && `, ${faults}`}`);
     if (document.activeElement !== this.number) this.number.value = table.index[layer];
     this.height.textContent = `z = ${mm(table.z[layer])} mm`;
     for (const plot of this.plots) plot.value.textContent = `${plot.tell(plot.values[layer])} ${plot.unit}`;
