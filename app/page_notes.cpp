@@ -73,8 +73,13 @@ PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found) {
     for (const std::string& warning : file.warnings)
         section.facts.push_back({"Remark", warning, Tone::warning});
     PageSection mesh = mesh_section(found.counts);
-    if (found.self_intersections)
-        add(mesh, as_facts(picked(meeting_figures(*found.self_intersections), {"crossing", "overlapping"})));
+    if (const auto& met = found.self_intersections) {
+        // Counted apart from what a surface without defects is without, but listed among the defects below
+        // it.
+        if (found.counts.sound() && met->crossing + met->overlapping > 0)
+            mesh.facts.front() = {"Surface", "closed, but triangles cross or overlap", Tone::warning};
+        add(mesh, as_facts(picked(meeting_figures(*met), {"crossing", "overlapping"})));
+    }
     return {.sections = {std::move(mesh), std::move(section)}, .places = places_of(found)};
 }
 

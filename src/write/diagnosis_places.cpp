@@ -18,8 +18,9 @@ std::string size_text(const Box3& box) {
 }
 
 std::string loop_text(const BoundaryLoop& loop) {
-    return fmt::format("{} of {} edges, {:.4g} mm long: {}", loop.closed ? "rim" : "broken rim", loop.edges(),
-                       loop.length_mm, words_of(&Inspection::boundary_edges).meaning);
+    return fmt::format("{} of {} {}, {:.4g} mm long: {}", loop.closed ? "rim" : "broken rim", loop.edges(),
+                       loop.edges() == 1 ? "edge" : "edges", loop.length_mm,
+                       words_of(&Inspection::boundary_edges).meaning);
 }
 
 /// Its edges as one line: bottom, top, and back along the uprights.
@@ -31,11 +32,6 @@ std::vector<Point3> outline(const Box3& box) {
             {x0, y1, z1}, {x0, y1, z0}, {x0, y1, z1}, {x0, y0, z1}};
 }
 
-/// A kind of which the diagnosis lists only some says so.
-std::string kind_text(std::string_view name, std::size_t listed, std::uint64_t total) {
-    return listed < total ? fmt::format("{}, the first of {}", name, total) : std::string(name);
-}
-
 } // namespace
 
 std::vector<PagePlace> places_of(const Diagnosis& diagnosis) {
@@ -44,32 +40,37 @@ std::vector<PagePlace> places_of(const Diagnosis& diagnosis) {
     const auto edges = [&](std::uint64_t Inspection::*count, const std::vector<EdgePlace>& of) {
         const DefectWords& words = words_of(count);
         for (const EdgePlace& edge : of)
-            places.push_back({kind_text(words.one, of.size(), counts.*count),
-                              std::string(words.meaning),
-                              {edge.begin(), edge.end()}});
+            places.push_back({.kind = std::string(words.one),
+                              .text = std::string(words.meaning),
+                              .points = {edge.begin(), edge.end()},
+                              .found = counts.*count});
     };
     for (const BoundaryLoop& loop : diagnosis.loops)
-        places.push_back({kind_text("boundary loop", diagnosis.loops.size(), diagnosis.boundary_loops),
-                          loop_text(loop), loop.points, loop.closed});
+        places.push_back(
+            {"boundary loop", loop_text(loop), loop.points, loop.closed, diagnosis.boundary_loops});
     edges(&Inspection::orientation_conflicts, diagnosis.conflicting_edges);
     edges(&Inspection::nonmanifold_edges, diagnosis.nonmanifold_edges);
     for (const Point3& vertex : diagnosis.vertices)
-        places.push_back(
-            {kind_text(crowded_vertices.one, diagnosis.vertices.size(), diagnosis.nonmanifold_vertices),
-             std::string(crowded_vertices.meaning),
-             {vertex}});
+        places.push_back({.kind = std::string(crowded_vertices.one),
+                          .text = std::string(crowded_vertices.meaning),
+                          .points = {vertex},
+                          .found = diagnosis.nonmanifold_vertices});
     const DefectWords& inverted = words_of(&Inspection::inverted_shells);
     for (const Shell& shell : diagnosis.shells)
         if (shell.kind == ShellKind::inverted)
-            places.push_back({std::string(inverted.one),
-                              fmt::format("{} triangles in {}: {}", shell.triangles, size_text(shell.box),
-                                          inverted.meaning),
-                              outline(shell.box)});
-    if (diagnosis.self_intersections)
-        for (const Meeting& meeting : diagnosis.self_intersections->first)
+            places.push_back({.kind = std::string(inverted.one),
+                              .text = fmt::format("{} {} in {}: {}", shell.triangles,
+                                                  shell.triangles == 1 ? "triangle" : "triangles",
+                                                  size_text(shell.box), inverted.meaning),
+                              .points = outline(shell.box),
+                              .found = counts.inverted_shells});
+    if (const auto& met = diagnosis.self_intersections)
+        for (const Meeting& meeting : met->first)
             if (meeting.kind != MeetingKind::touching)
-                places.push_back(
-                    {"self-intersection", std::string(words_of(meeting.kind).meaning), {meeting.at}});
+                places.push_back({.kind = "self-intersection",
+                                  .text = std::string(words_of(meeting.kind).meaning),
+                                  .points = {meeting.at},
+                                  .found = met->crossing + met->overlapping});
     return places;
 }
 

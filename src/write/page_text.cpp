@@ -35,8 +35,9 @@ std::string section_json(const PageSection& section) {
 }
 
 std::string place_json(const PagePlace& place) {
-    return fmt::format(R"({{"kind":{},"text":{},"closed":{},"points":{}}})", page_quoted(place.kind),
-                       page_quoted(place.text), place.closed, json_list(place.points, point_json));
+    return fmt::format(R"({{"kind":{},"text":{},"closed":{},"found":{},"points":{}}})",
+                       page_quoted(place.kind), page_quoted(place.text), place.closed, place.found,
+                       json_list(place.points, point_json));
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 import json
 import re
 
-from program import ProgramTest, binary_stl, main, open_box
+from program import ProgramTest, binary_stl, box_triangles, main, open_box
 
 
 def element(page, name):
@@ -132,11 +132,21 @@ class View(ProgramTest):
             self.assertEqual((facts["Boundary edges"], facts["Crowded edges"]), ("4", "none"))
             self.assertIn(" 4 boundary edges: the surface has holes", self.succeed("info", "open.stl").text)
             self.assertIn("the surface has holes", places[0]["text"])
-            self.assertEqual([place["kind"] for place in places], ["boundary loop"])
+            self.assertEqual([(place["kind"], place["found"]) for place in places], [("boundary loop", 1)])
             self.assertEqual(sorted(places[0]["points"]), [[20, y, z] for y in (0, 30) for z in (0, 10)])
         self.assertEqual(element(self.page("open.html"), "table")["open_chains"], [1] * 100)
         head = element(self.page("mesh.html"), "head")
         self.assertEqual((head["triangles"], head["shown"], head["shells"][0]["kind"]), (10, 10, "open"))
+
+    def test_a_surface_whose_triangles_cross_is_not_called_one_without_defects(self):
+        self.need_viewer()
+        moved = [tuple((x + 5, y + 5, z + 5) for x, y, z in t) for t in box_triangles(20, 10, 10)]
+        self.write("two.stl", binary_stl(box_triangles(20, 30, 10) + moved))
+        for options, surface in ((), "closed, without defects"), (["--self-intersections"], "closed, but triangles cross or overlap"):
+            self.succeed("info", "two.stl", "--report", "mesh.html", *options)
+            notes = element(self.page("mesh.html"), "notes")
+            self.assertEqual(notes["sections"][0]["facts"][0]["value"], surface)
+        self.assertEqual({(place["kind"], place["found"]) for place in notes["places"]}, {("self-intersection", len(notes["places"]))})
 
     def test_names_of_files_cannot_break_out_of_a_page(self):
         self.need_viewer()

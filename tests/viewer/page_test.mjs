@@ -456,6 +456,19 @@ test('the defects of a mesh are listed and can be gone to', async () => {
   await page.keyboard.press('ArrowLeft');
 });
 
+test('crossing triangles are counted in full, and no surface that has some is called without defects', async () => {
+  const plates = Array.from({ length: 46 }, (_, i) => boxTriangles().map((corners) => corners.map(([x, y, z]) => (i % 2 ? [x / 40 + i / 2, y - 3, z] : [2 * x - 3, y / 60 + i / 2, z + 1]))));
+  writeFileSync(file('plates.stl'), stl(plates.flat()));
+  lamella('info', 'plates.stl', '--self-intersections', '--report', 'plates.html');
+  const found = JSON.parse(lamella('info', 'plates.stl', '--self-intersections', '--json')).self_intersections;
+  const { page, complaints } = await open('plates.html', { view: null });
+  const all = (found.crossing + found.overlapping).toLocaleString('en');
+  assert.equal(await page.locator('summary').textContent(), `self-intersection, the first 500 of ${all}`);
+  assert.match(await page.getByRole('complementary').textContent(), /Surfaceclosed, but triangles cross or overlap/);
+  assert.match(await page.locator('#verdict').textContent(), /closed, with blemishes/);
+  assert.deepEqual(complaints, []);
+});
+
 test('a defect on the far side is seen from there', async () => {
   const { page } = await open('torn_mesh.html', { view: null });
   await page.waitForSelector('canvas[data-ready]');

@@ -39,6 +39,7 @@ struct PagePlace {
     std::string text;           ///< what is told of this one
     std::vector<Point3> points; ///< one point, or a line through several; at least one
     bool closed = false;        ///< the line leads back to its first point
+    std::uint64_t found = 0;    ///< so many there are of its kind, listed or not; 0: not told
 };
 
 /// What steps made of a plane before it came to the page.

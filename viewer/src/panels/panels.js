@@ -125,9 +125,15 @@ function placesCard(page, show) {
       ),
     );
     if (rest > 0) items.push(element('li', { className: 'rest' }, `and ${count(rest)} more`));
-    return element('details', { open: places.length <= 8 }, element('summary', {}, `${kind} (${count(places.length)})`), element('ol', { className: 'picks' }, ...items));
+    return element('details', { open: places.length <= 8 }, element('summary', {}, kindText(kind, places)), element('ol', { className: 'picks' }, ...items));
   });
   return card('Defects of the mesh', ...lists);
+}
+
+/** "self-intersection (12)"; "self-intersection, the first 500 of 1,014" */
+function kindText(kind, places) {
+  const [{ found }] = places;
+  return found > places.length ? `${kind}, the first ${count(places.length)} of ${count(found)}` : `${kind} (${count(places.length)})`;
 }
 
 function byKind(places) {
