@@ -118,7 +118,13 @@ class Slack {
         if (!cells)
             return;
         const double longer = 1 + rule.overlap / rule.cell;
-        share_more_ = std::max(share_more_, longer * longer - 1);
+        // Where a square is a whole number of lines wide, each has as many as its overlap begins with.
+        constexpr double rounding = 1e-9;
+        const double wider = rule.pattern == HatchPattern::chessboard
+                                 ? std::ceil((rule.cell + rule.overlap) / rule.distance * (1 - rounding)) *
+                                       rule.distance / rule.cell
+                                 : longer;
+        share_more_ = std::max(share_more_, longer * wider - 1);
         share_less_ = std::max(share_less_, (rule.shortest / rule.cell) * (rule.shortest / rule.cell));
     }
     [[nodiscard]] double less(const LayerMeasure& area) const noexcept {
@@ -365,17 +371,34 @@ class VectorCheck {
     void measure_cover(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
         const ScanStrategy& strategy = *options_.strategy;
         Slack slack;
+        double shallow = std::numeric_limits<double>::infinity();
+        double deep = -shallow;
+        const auto expect = [&](ScanRegion region) {
+            const HatchRule& rule = hatch_of(strategy, region);
+            slack.add(rule);
+            const double depth = hatch_depth(contours_of(strategy, region), rule) - bounds.depth;
+            shallow = std::min(shallow, depth);
+            deep = std::max(deep, depth);
+        };
+        // Formats may know only what there is, and skins may leave nothing of the core.
+        if (group.exposures.front()->exposure->region == ScanRegion::support) {
+            expect(ScanRegion::support);
+        } else {
+            expect(ScanRegion::core);
+            if (strategy.upskin.layers > 0)
+                expect(ScanRegion::upskin);
+            if (strategy.downskin.layers > 0)
+                expect(ScanRegion::downskin);
+        }
         double covered = 0;
         double around_skins = 0; // mm; they lie over what is beside them by their overlap
         double over_others = 0;
-        double shallow = std::numeric_limits<double>::infinity();
-        double deep = -shallow;
         for (const LayerPart* const part : group.exposures) {
             const Exposure& exposure = *part->exposure;
             if (exposure.kind != VectorKind::hatch)
                 continue;
+            expect(exposure.region);
             const HatchRule& rule = hatch_of(strategy, exposure.region);
-            slack.add(rule);
             const double area = length_of(part->layers[plane].hatches) * rule.distance;
             covered += area;
             if (exposure.region == ScanRegion::upskin || exposure.region == ScanRegion::downskin) {
@@ -384,16 +407,6 @@ class VectorCheck {
                 over_others += around * (exposure.region == ScanRegion::upskin ? strategy.upskin.overlap
                                                                                : strategy.downskin.overlap);
             }
-            shallow = std::min(shallow, depth_of(exposure, strategy) - bounds.depth);
-            deep = std::max(deep, depth_of(exposure, strategy) - bounds.depth);
-        }
-        if (shallow > deep) { // formats may know only what there is: then all of it is missing
-            const ScanRegion region = group.exposures.front()->exposure->region == ScanRegion::support
-                                          ? ScanRegion::support
-                                          : ScanRegion::core;
-            const HatchRule& rule = hatch_of(strategy, region);
-            slack.add(rule);
-            shallow = deep = hatch_depth(contours_of(strategy, region), rule) - bounds.depth;
         }
         const Layer* section = &bounds.sections.front();
         LayerMeasure to_fill; // of the first section that has any material: heights may be rounded out of it

@@ -86,6 +86,20 @@ class Vectors(ProgramTest):
         self.succeed("slice", "cylinder.stl", "--layer-height", "5", *steps, "-o", "job.json")
         self.verify("job.json", "--mesh", "cylinder.stl", *steps)
 
+    def test_squares_a_whole_number_of_lines_wide_have_one_more(self):
+        self.succeed("make", "box", "--size", "60,60,0.1", "-o", "flat.stl")
+        self.write("squares.toml", '[hatch]\npattern = "chessboard"\noverlap = 0.05\n')
+        self.succeed("slice", "flat.stl", "--strategy", "squares.toml", "-o", "job.cli")
+        self.verify("job.cli", "--strategy", "squares.toml")
+
+    def test_regions_that_a_file_has_nothing_of_have_their_slack(self):
+        self.succeed("make", "box", "--size", "3,0.3,0.1", "-o", "thin.stl")
+        rule = 'distance = 0.05\nborder = {}\nshortest = 0\npattern = "meander"\n'
+        self.write("thin.toml", f"[hatch]\n{rule.format(0)}[downskin]\nlayers = 1\n[downskin.hatch]\n{rule.format(0.15)}")
+        for name in ["job.json", "job.ovf"]:
+            self.succeed("slice", "thin.stl", "--strategy", "thin.toml", "-o", name)
+            self.verify(name, "--strategy", "thin.toml")
+
     def test_a_cut_rounded_to_beside_the_mesh_is_compared_with_what_is_there(self):
         self.succeed("make", "box", "--size", "5", "--translate", "0,0,0.3", "-o", "box.stl")
         self.succeed("slice", "box.stl", "--slice-at", "bottom", "--layer-height", "0.5", "--scan", "-o", "job.cli")
