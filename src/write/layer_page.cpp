@@ -299,7 +299,7 @@ class PageWriter final : public LayerPageWriter {
     }
 
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts.size());
+        order_.check_parts(parts);
         PlaneFacts facts{.place = plane_place(parts)};
         std::vector<Point2> places;
         look_at(parts, parts_, facts, places);

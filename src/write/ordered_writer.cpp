@@ -47,10 +47,15 @@ PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)
       announced_(info.piece != nullptr ? info.piece->layers : info.layers), parts_(info.parts.size()),
       ascending_(ascending) {}
 
-void PlaneOrder::check_parts(std::size_t parts) const {
-    if (parts != parts_)
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} parts were announced and a plane has layers of {}", parts_, parts));
+void PlaneOrder::check_parts(std::span<const Layer> parts) const {
+    if (parts.size() != parts_)
+        throw Error(ErrorKind::usage, fmt::format("{} parts were announced and a plane has layers of {}",
+                                                  parts_, parts.size()));
+    for (const Layer& layer : parts)
+        if (layer.hatches.size() % 2 != 0)
+            throw Error(ErrorKind::usage,
+                        fmt::format("layer {} has {} points of hatch lines; each line has two", layer.index,
+                                    layer.hatches.size()));
 }
 
 void PlaneOrder::next(PlanePlace& plane) {
@@ -72,7 +77,7 @@ void PlaneOrder::end() const {
 }
 
 std::function<void()> OrderedWriter::prepare(std::span<const Layer> parts) {
-    order_.check_parts(parts.size());
+    order_.check_parts(parts);
     return [this, write = formatted(parts), extras = extras_of(parts), place = plane_place(parts)]() mutable {
         extras.gaps.count = order_.adjoins(place) ? 0 : 1;
         order_.next(place);

@@ -46,8 +46,8 @@ class PlaneOrder {
   public:
     explicit PlaneOrder(const LayerFileInfo& info, Ascending ascending = Ascending::z);
 
-    /// Throws Error{usage} when there is not one layer for each part.
-    void check_parts(std::size_t parts) const;
+    /// Throws Error{usage} when there is not one layer for each part, or one has half a hatch line.
+    void check_parts(std::span<const Layer> parts) const;
     /// Tells the plane its position. Throws Error{usage} when it does not follow the one before.
     void next(PlanePlace& plane);
     /// Throws Error{usage} when there were more or fewer planes than announced.

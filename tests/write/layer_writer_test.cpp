@@ -362,6 +362,9 @@ TEST(LayerWriter, RefusesLayersOutOfOrderAndOfAnotherNumberThanAnnounced) {
         info.layers = 3;
         EXPECT_NE(error_of(ErrorKind::usage, write).find("3 layers were announced and 2"), std::string::npos);
         info.layers = 2;
+        layers[1].hatches = PointArray(std::vector<Point2>{{0, 0}, {1, 0}, {2, 0}});
+        EXPECT_NE(error_of(ErrorKind::usage, write).find("3 points of hatch lines"), std::string::npos);
+        layers[1].hatches = {};
         EXPECT_TRUE(folder.entries().empty()) << format.name;
     }
 }
