@@ -62,6 +62,9 @@ void check(std::string_view rule, const HatchRule& hatch) {
     // Otherwise every line in a cell would be shorter than `shortest`, but for rounding.
     if (cells && !(hatch.cell > hatch.shortest))
         refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, the shortest line", hatch.shortest));
+    constexpr double largest_cell = 1e9; // far below where rounding blurs in which cell a line lies
+    if (cells && hatch.cell > largest_cell)
+        refuse(rule, "cell", hatch.cell, fmt::format("at most {:g} mm", largest_cell));
     check(rule, hatch.parameters);
 }
 

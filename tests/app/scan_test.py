@@ -64,6 +64,7 @@ class Strategy(ProgramTest):
         self.check('[hatch]\npattern = "stripe"\n', r's\.toml:2: hatch\.pattern is "stripe", .*did you mean stripes\?')
         self.check("[hatch]\nangle_degrees = 1\ndistance = -0.1\n", r"s\.toml:3: hatch\.distance is -0\.1, but has to be above 0")
         self.check("[hatch]\ncell = 0.1\n", r"s\.toml:2: hatch\.cell is 0\.1, but has to be above 0\.2, twice the overlap")
+        self.check("[hatch]\ncell = 1e17\n", r"s\.toml:2: hatch\.cell is 1e\+17, but has to be at most 1e\+09 mm")
         self.check("[upskin.hatch]\nborder = -1\n", r"s\.toml:2: upskin\.hatch\.border is -1, but has to be 0 or more")
         self.check("[parameters.hatch]\npower_w = 1\nspeed_mm_s = 0\n",
                    r"s\.toml:3: parameters\.hatch\.speed_mm_s is 0, but has to be above 0")
