@@ -12,6 +12,7 @@
 #include "lamella/mesh/repair.hpp"
 
 #include "core/executor.hpp"
+#include "core/let_go.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/edge_survey.hpp"
 #include "mesh/edge_uses.hpp"
@@ -192,7 +193,7 @@ std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& m
     std::vector<UnevenUse> all;
     for (std::vector<UnevenUse>& part : found) {
         all.insert(all.end(), part.begin(), part.end());
-        part = {};
+        let_go(part);
     }
     // Not in the order of workers: areas are added up.
     std::sort(all.begin(), all.end(), [](const UnevenUse& a, const UnevenUse& b) {

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/farthest.hpp"
+#include "core/let_go.hpp"
 #include "core/pages.hpp"
 #include "mesh/polygon_triangulation.hpp"
 #include "mesh/used_vertices.hpp"
@@ -88,7 +89,7 @@ void cut_polygons(FaceMesh& faces, Executor& executor) {
                         fan[k][c] = corners[triangles[k][c]];
             }
         });
-    faces.polygons = {};
+    let_go(faces.polygons);
 }
 
 std::uint64_t bytes_of(const FacePiece& piece) {
@@ -134,10 +135,10 @@ FaceMesh join(std::vector<FacePiece>& pieces, const std::string& source_name, Ex
         for (std::size_t k = 0; k < piece.polygons.size(); ++k)
             faces.polygons[begin.polygon + k] = {piece.polygons[k].first_triangle + begin.triangle,
                                                  piece.polygons[k].triangles};
-        piece.vertices = {};
-        piece.triangles = {};
-        piece.polygons = {};
-        piece.relative = {};
+        let_go(piece.vertices);
+        let_go(piece.triangles);
+        let_go(piece.polygons);
+        let_go(piece.relative);
     });
     return faces;
 }

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "core/let_go.hpp"
 
 #include <fmt/format.h>
 
@@ -116,10 +117,10 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
             layer.hatches = PointArray(std::move(hatches[part]));
     }
     // Those that come after need the height.
-    raw.points = {};
-    raw.ends = {};
-    raw.hatches = {};
-    raw.hatch_ends = {};
+    let_go(raw.points);
+    let_go(raw.ends);
+    let_go(raw.hatches);
+    let_go(raw.hatch_ends);
 }
 
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits) {

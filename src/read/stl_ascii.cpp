@@ -4,6 +4,7 @@
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
+#include "core/let_go.hpp"
 #include "core/lower_case.hpp"
 #include "core/pages.hpp"
 #include "read/coordinate_text.hpp"
@@ -291,7 +292,7 @@ TriangleSoup join(std::vector<FacetPiece>& pieces, Executor& executor) {
     const auto memory = std::make_shared<PageArray<Triangle3f>>(count);
     executor.for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), memory->data() + first[i]);
-        pieces[i].triangles = {};
+        let_go(pieces[i].triangles);
     });
     return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
 }

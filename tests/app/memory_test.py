@@ -65,6 +65,20 @@ class Memory(ProgramTest):
         self.write(name, bytes(bytes_))
         return name
 
+    def peak(self, *arguments):
+        """The most memory, in bytes, that the program had."""
+        with subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdout=subprocess.DEVNULL) as process:
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        return 1024 * usage.ru_maxrss
+
+    def test_points_of_a_slice_file_are_held_once(self):
+        points = self.slice(self.lattice(), "--layer-height", "0.02", "-o", "layers.cli")["points"]
+        self.slice("lattice.stl", "--layer-height", "10", "-o", "few.cli")
+        file = self.path("layers.cli").stat().st_size  # which is mapped
+        self.assertLess(self.peak("info", "layers.cli") - self.peak("info", "few.cli"), file + 1.7 * 16 * points)
+
     def test_slabs_give_the_same_bytes(self):
         self.check(self.lattice(), least_slabs=3)
 
