@@ -4,6 +4,7 @@
 
 #include "config_file.hpp"
 #include "deadline.hpp"
+#include "help_text.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
 #include "suggest.hpp"
@@ -70,13 +71,10 @@ class Splitter {
     [[nodiscard]] std::string instead_of_output(std::string_view name) const {
         if (name != "output" && name != "o")
             return {};
-        std::string operands;
-        bool written = false;
-        for (const Operand& operand : command_.operands) {
-            operands += ' ' + operand.placeholder;
-            written = written || operand.written;
-        }
-        return written ? fmt::format("; the output is an argument: lamella {}{}", command_.name, operands)
+        const bool written = std::any_of(command_.operands.begin(), command_.operands.end(),
+                                         [](const Operand& operand) { return operand.written; });
+        return written ? fmt::format("; the output is an argument: lamella {} {}", command_.name,
+                                     synopsis(command_))
                        : std::string();
     }
 

@@ -95,7 +95,7 @@ std::vector<std::string> losses(const LayerFile& file) {
         lost.push_back(fmt::format(
             "{}: inside out in {} of {}, first at z = {} mm: outer contours run clockwise, as around holes, "
             "and bound no material; lamella convert --fill nonzero turns them round",
-            file.path, grouped(inside_out), counted(planes.size(), "layer"), brief(first_z)));
+            file.path, grouped(inside_out), counted(planes.size(), "layer"), height(first_z)));
     return lost;
 }
 

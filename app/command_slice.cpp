@@ -321,7 +321,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
 std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& result) {
     const auto where = [&](const FileResult::Affected& affected) {
         return fmt::format("in {} of {}, first at z = {} mm", grouped(affected.layers),
-                           counted(result.report.layers, "layer"), brief(affected.first_z));
+                           counted(result.report.layers, "layer"), height(affected.first_z));
     };
     const std::string name = input_name(job.inputs.front().path);
     const std::string hint = ask_info(job.inputs.front().path);
@@ -351,9 +351,9 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
     if (result.thin.rings > 0)
         warnings.push_back(fmt::format("{}: {}", name, result.thin.text()));
     for (const std::string& warning : result.warnings)
-        warnings.push_back(fmt::format("{}: {}", one_line(job.output), warning));
+        warnings.push_back(fmt::format("{}: {}", one_line(output_name(job.output)), warning));
     for (const std::string& warning : result.report_warnings)
-        warnings.push_back(fmt::format("{}: {}", one_line(job.report.path), warning));
+        warnings.push_back(fmt::format("{}: {}", one_line(output_name(job.report.path)), warning));
     return warnings;
 }
 

@@ -199,8 +199,8 @@ std::string brief(double value) {
 }
 
 std::string height(double mm) {
-    constexpr double places = 1e9;
-    return brief(std::abs(mm) < 1 ? std::round(mm * places) / places : mm);
+    constexpr double left_of_0 = 1e-7;
+    return brief(std::abs(mm) < left_of_0 ? 0 : mm);
 }
 
 std::string grouped(std::uint64_t value) {

@@ -34,7 +34,7 @@ namespace lamella::app {
 [[nodiscard]] std::string exact(double value);
 /// For people: "31.75", "115,343", "1.2e-07".
 [[nodiscard]] std::string brief(double value);
-/// The same of a height in mm, without the last digits that sums and products leave.
+/// The same of a height in mm, where what numbers in single precision leave of 0 is 0.
 [[nodiscard]] std::string height(double mm);
 /// "102,812".
 [[nodiscard]] std::string grouped(std::uint64_t value);

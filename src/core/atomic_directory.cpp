@@ -48,9 +48,8 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
     // The permissions of a new folder are the umask's; those of a replaced one stay, and meanwhile this
     // process may write in it.
     if (struct stat replaced{}; ::stat(target_.c_str(), &replaced) == 0) {
-        // What is granted to its group is granted to no other one.
         const bool same_group = ::chown(working_.c_str(), static_cast<uid_t>(-1), replaced.st_gid) == 0;
-        permissions_ = replaced.st_mode & (same_group ? 07777U : 07777U & ~(S_IRWXG | S_ISGID));
+        permissions_ = kept_permissions(replaced.st_mode, same_group);
         static_cast<void>(::chmod(working_.c_str(), *permissions_ | S_IRWXU));
     }
     if (!unfinished_.announce(working_.string())) {
@@ -94,8 +93,9 @@ void AtomicDirectory::write(const std::string& name, std::string_view bytes) {
     } catch (const Error& error) {
         // Nobody knows the name that the folder has meanwhile.
         std::string text = error.what();
-        if (const std::size_t at = text.find(working_.string()); at != std::string::npos)
-            text.replace(at, working_.string().size(), target_.string());
+        const std::string working = working_.string();
+        for (std::size_t at = 0; (at = text.find(working, at)) != std::string::npos;)
+            text.replace(at, working.size(), target_.string());
         throw Error(error.kind(), text);
     }
     bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);

@@ -124,6 +124,10 @@ Error output_error(const std::string& path, int system_error) {
     }
 }
 
+unsigned kept_permissions(unsigned mode, bool same_group) noexcept {
+    return mode & (same_group ? 07777U : 07777U & ~(S_IRWXG | S_ISGID));
+}
+
 AtomicFile::AtomicFile(std::string path, Overwriting overwriting) : path_(std::move(path)) {
     buffer_.reset(new char[buffer_size]); // what is not used takes no memory
     if (path_ == "-") {
@@ -208,8 +212,10 @@ void AtomicFile::open_unfinished() {
         fail(errno);
     // The permissions of a new file are the umask's; those of a replaced one stay. When that is not ours to
     // set, the umask's do.
-    if (replaces && fchmod(descriptor_, status.st_mode & 07777) != 0)
-        errno = 0;
+    if (replaces) {
+        const bool same_group = fchown(descriptor_, static_cast<uid_t>(-1), status.st_gid) == 0;
+        static_cast<void>(fchmod(descriptor_, kept_permissions(status.st_mode, same_group)));
+    }
 }
 
 void AtomicFile::open_named(mode_t permissions) {
@@ -280,7 +286,7 @@ void AtomicFile::overwrite(std::uint64_t place, std::string_view bytes) {
             bytes.remove_prefix(static_cast<std::size_t>(written));
             place += static_cast<std::uint64_t>(written);
         } else if (errno != EINTR) {
-            spool_ >= 0 ? fail_spool(errno) : fail(errno);
+            fail(errno);
         }
     }
 }
@@ -317,7 +323,7 @@ void AtomicFile::write_out(std::string_view bytes) {
             pollfd ready{.fd = descriptor_, .events = POLLOUT, .revents = 0};
             ::poll(&ready, 1, -1); // whatever comes of it, the next write tells
         } else if (errno != EINTR) {
-            spool_ >= 0 ? fail_spool(errno) : fail(errno);
+            fail(errno);
         }
     }
 }
@@ -357,6 +363,8 @@ void AtomicFile::discard() noexcept {
 }
 
 void AtomicFile::fail(int system_error) {
+    if (spool_ >= 0 && (system_error == ENOSPC || system_error == EDQUOT))
+        fail_spool(system_error);
     discard();
     throw output_error(target_.empty() ? path_ : target_, system_error);
 }

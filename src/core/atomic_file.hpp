@@ -17,6 +17,10 @@
 
 namespace lamella {
 
+/// Of what is replaced, for what takes its place. `same_group`: whether that is of the same group; else what
+/// is granted to the group is granted to nobody.
+[[nodiscard]] unsigned kept_permissions(unsigned mode, bool same_group) noexcept;
+
 /// The error for a path that could not be written: the path, what the system said (an errno), and what to do
 /// about it, in one line.
 [[nodiscard]] Error output_error(const std::string& path, int system_error);
@@ -51,6 +55,8 @@ class AtomicFile {
     /// Writes what is left and gives the file its name. To be called once, at the end.
     void commit();
 
+    /// As it was given.
+    [[nodiscard]] const std::string& path() const noexcept { return path_; }
     /// Bytes appended so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
     /// Where the bytes are until `commit`, for other processes to write some of them; "" where they are

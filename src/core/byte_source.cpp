@@ -200,8 +200,7 @@ ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t mo
     // Some files of the system claim to have no bytes, and standard input may be half read: those are read.
     if (S_ISREG(status.st_mode) && status.st_size > 0 && lseek(descriptor.number(), 0, SEEK_CUR) == 0) {
         const auto size = static_cast<std::size_t>(status.st_size);
-        // To map and unmap costs more below: a batch of 10,000 boxes a third more processor time (medians of
-        // five).
+        // To map and unmap a small file costs more than to read it: see the batch of bench/small_parts.
         constexpr std::size_t worth_mapping = std::size_t{1} << 16;
         if (size < worth_mapping)
             return read_whole(descriptor.number(), std::move(name), size);

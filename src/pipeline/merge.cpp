@@ -313,12 +313,21 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
         parts.push_back(std::move(part.info));
     }
     if (parts.size() < all.size()) {
-        const auto stuck =
-            std::find_if(all.begin(), all.end(), [](const KnownPart& part) { return part.waits_for > 0; });
+        // From any part that waits, back along parts that it waits for: where that comes again is the circle.
+        const auto waits = [](const KnownPart& part) {
+            return part.waits_for > 0;
+        };
+        std::set<const KnownPart*> seen;
+        const KnownPart* part = &*std::find_if(all.begin(), all.end(), waits);
+        while (seen.insert(part).second)
+            part = &*std::find_if(all.begin(), all.end(), [&](const KnownPart& one) {
+                return waits(one) && std::any_of(one.next.begin(), one.next.end(),
+                                                 [&](std::size_t next) { return &all[next] == part; });
+            });
         throw Error(ErrorKind::input,
                     fmt::format("{}: the part {} comes before others that come before it in another of the "
                                 "files; they are not of one job",
-                                *stuck->path, stuck->info.label));
+                                *part->path, part->info.label));
     }
     return parts;
 }

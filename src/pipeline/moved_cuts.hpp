@@ -43,15 +43,19 @@ auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, Plan
     return of_layer;
 }
 
-/// The layers of a mesh, after the steps but for `simplify`: which points that leaves out is decided by their
-/// last digits, so it is granted instead.
+/// All steps but for `simplify`: which points that leaves out is decided by their last digits, so what it
+/// moves is granted instead.
+inline LayerSteps steps_to_repeat(LayerSteps steps) {
+    steps.simplify_mm = 0;
+    return steps;
+}
+
+/// The layers of a mesh, after these steps.
 inline LayerStack layers_of(const Mesh& mesh, const Plan& plan, const LayerSteps& steps,
                             const Execution& execution) {
-    LayerSteps others = steps;
-    others.simplify_mm = 0;
     LayerStack layers = slice(mesh, plan, execution);
     LayerChanges changes;
-    return others.any() ? take_steps(others, std::move(layers), changes, execution) : layers;
+    return steps.any() ? take_steps(steps, std::move(layers), changes, execution) : layers;
 }
 
 } // namespace lamella

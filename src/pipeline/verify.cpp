@@ -63,11 +63,12 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     // About the middle of the part, so that a part far from the origin loses no digits.
     const Point2 origin =
         box.empty() ? Point2{} : Point2{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
+    const LayerSteps steps = steps_to_repeat(options.steps);
     const auto sections = at_moved_cuts(layers, options.rounding, options.rule, [&](const Plan& plan) {
-        if (!options.steps.any())
+        if (!steps.any())
             return section_moments(*options.mesh, plan, origin, execution);
         std::vector<AreaMoments> made;
-        for (const Layer& layer : layers_of(*options.mesh, plan, options.steps, execution))
+        for (const Layer& layer : layers_of(*options.mesh, plan, steps, execution))
             made.push_back(area_moments(layer, origin));
         return made;
     });

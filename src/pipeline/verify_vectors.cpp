@@ -227,8 +227,10 @@ std::uint64_t layers_before(const std::vector<HatchLine>& lines, double toleranc
 class VectorCheck {
   public:
     /// `before`: layers of the plan, before the first of those to be checked.
-    VectorCheck(const VerifyOptions& options, double tolerance, std::uint64_t before)
-        : options_(options), tolerance_(tolerance), before_(before) {}
+    /// `rounding`: by which ends may be off.
+    VectorCheck(const VerifyOptions& options, double rounding, std::uint64_t before)
+        : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
+          before_(before) {}
 
     void check(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
         std::uint64_t all = 0;
@@ -304,11 +306,11 @@ class VectorCheck {
     }
 
     void check_lines(const Layer& vectors, const HatchRule& rule, PlaneCheck& found) const {
-        const AskedLines lines(rule, before_ + vectors.index, tolerance_);
+        const AskedLines lines(rule, before_ + vectors.index, rounding_);
         for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
             const Point2& a = vectors.hatches[i];
             const Point2& b = vectors.hatches[i + 1];
-            if (distance(a, b) < rule.shortest - 2 * tolerance_)
+            if (distance(a, b) < rule.shortest - 2 * rounding_)
                 found.too_short.add(vectors, a);
             if (!lines.have(a, b))
                 found.misplaced.add(vectors, a);
@@ -435,7 +437,8 @@ class VectorCheck {
     }
 
     const VerifyOptions& options_;
-    double tolerance_; ///< by which vectors, and contours that stand for material, may be off
+    double rounding_;  ///< by which ends of lines may be off
+    double tolerance_; ///< by which edges of the material may be off, by leaving out points of them, too
     std::uint64_t before_;
 };
 
@@ -498,7 +501,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     std::vector<std::vector<Layer>> sections;
     if (options.mesh)
         sections = at_moved_cuts(planes, options.rounding, options.rule, [&](const Plan& plan) {
-            return layers_of(*options.mesh, plan, options.steps, execution);
+            return layers_of(*options.mesh, plan, steps_to_repeat(options.steps), execution);
         });
 
     double largest = 0;
@@ -508,15 +511,13 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
                 largest = std::max({largest, largest_coordinate(layer.points.span()),
                                     largest_coordinate(layer.hatches.span())});
     // Ends of lines and points of contours, each moved along both axes; and what arithmetic moves.
-    // So does leaving out points, which is decided by their last digits.
-    const double tolerance =
-        std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest + options.steps.simplify_mm;
+    const double rounding = std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest;
 
     Executor executor(execution);
     const VectorCheck vectors(
-        options, tolerance,
+        options, rounding,
         options.strategy
-            ? layers_before(longest_lines(groups, *options.strategy, planes.size()), tolerance, executor)
+            ? layers_before(longest_lines(groups, *options.strategy, planes.size()), rounding, executor)
             : 0);
     std::vector<PlaneCheck> checks(planes.size());
     ProgressMeter progress(execution, Stage::polygon, planes.size());

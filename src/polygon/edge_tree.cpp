@@ -65,7 +65,7 @@ void EdgeTree::build(std::size_t begin, std::size_t end) {
     const auto place = [&](std::size_t i) {
         return edges_.begin() + static_cast<std::ptrdiff_t>(i);
     };
-    // Long walls side by side have their middles on one line: across it they are far apart.
+    // The middles of long walls side by side lie on a line across them, along which they are far apart.
     const bool along_x = middles.width() >= middles.height();
     std::nth_element(place(begin), place(middle), place(end), [&](const Edge& s, const Edge& t) {
         return along_x ? s.middle().x < t.middle().x : s.middle().y < t.middle().y;

@@ -98,6 +98,8 @@ class Boundaries {
     [[nodiscard]] std::vector<bool> surely_gone(double distance, const OffsetCorners& corners) const {
         std::vector<bool> gone(layer_.rings, false);
         const double swept = 2 * surely_swept(distance, corners);
+        if (swept == 0)
+            return gone;
         const auto narrow = [&](std::uint32_t ring) {
             const std::span<const Point2> points = layer_.contour(ring);
             const Box2 box = box_of(points);

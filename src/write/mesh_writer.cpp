@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/atomic_file.hpp"
+#include "mesh/triangle_contact.hpp"
 #include "write/byte_buffer.hpp"
 
 #include <fmt/format.h>
@@ -32,12 +33,21 @@ struct Facet {
 };
 static_assert(sizeof(Facet) == 48, "written as memory has it");
 
-float single(double v, std::size_t triangle) {
+float single(double v, std::uint64_t triangle, const std::string& path) {
     if (!(std::abs(v) <= std::numeric_limits<float>::max()))
-        throw Error(ErrorKind::usage,
-                    fmt::format("triangle {} has a coordinate of {:g} mm, which single precision cannot hold",
-                                triangle, v));
+        throw Error(ErrorKind::output,
+                    fmt::format("{}: triangle {} has a coordinate of {:g} mm, which the single precision of "
+                                "STL cannot hold; write it as .ply or .obj",
+                                path, triangle, v));
     return static_cast<float>(v) + 0.0F;
+}
+
+Triangle3f rounded(const Triangle3& triangle, std::uint64_t number, const std::string& path) {
+    Triangle3f corners;
+    for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = {single(triangle[k].x, number, path), single(triangle[k].y, number, path),
+                      single(triangle[k].z, number, path)};
+    return corners;
 }
 
 // The unit normal of the corners as they are stored; zero for a triangle without area.
@@ -57,16 +67,9 @@ Point3f unit_normal(const Triangle3f& t) {
 }
 
 /// Of triangle i; errors count from the first triangle of the file, `before` this soup.
-Facet facet(const TriangleSoup& soup, std::size_t i, std::uint64_t before = 0) {
+Facet facet(const TriangleSoup& soup, std::size_t i, std::uint64_t before, const std::string& path) {
     Facet f;
-    if (soup.has_placement()) {
-        const Triangle3 placed = soup.placed(i);
-        for (std::size_t c = 0; c < 3; ++c)
-            f.corners[c] = {single(placed[c].x, before + i), single(placed[c].y, before + i),
-                            single(placed[c].z, before + i)};
-    } else {
-        f.corners = soup.stored(i);
-    }
+    f.corners = soup.has_placement() ? rounded(soup.placed(i), before + i, path) : soup.stored(i);
     f.normal = unit_normal(f.corners);
     return f;
 }
@@ -113,30 +116,11 @@ char* put_rest_of_line(char* out, const std::array<Number, 3>& numbers) {
     return out;
 }
 
-Triangle3f rounded(const Triangle3& triangle) {
-    Triangle3f corners;
-    for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = {static_cast<float>(triangle[k].x), static_cast<float>(triangle[k].y),
-                      static_cast<float>(triangle[k].z)};
-    return corners;
-}
-
 Triangle3 widened(const Triangle3f& corners) {
     Triangle3 triangle;
     for (std::size_t k = 0; k < 3; ++k)
         triangle[k] = {corners[k].x, corners[k].y, corners[k].z};
     return triangle;
-}
-
-bool has_different_corners(const Triangle3& t) {
-    return t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-}
-
-/// As far as doubles tell.
-bool has_area(const Triangle3& t) {
-    const Point3 a{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
-    const Point3 b{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
-    return a.y * b.z != a.z * b.y || a.z * b.x != a.x * b.z || a.x * b.y != a.y * b.x;
 }
 
 template <class Point>
@@ -164,7 +148,7 @@ StlWriter::~StlWriter() = default;
 
 void StlWriter::append(const TriangleSoup& soup) {
     append_blocks(*file_, soup.size(), record_size, [&](char* at, std::size_t i) {
-        std::memset(put_value(at, facet(soup, i, written_)), 0, record_size - sizeof(Facet));
+        std::memset(put_value(at, facet(soup, i, written_, file_->path())), 0, record_size - sizeof(Facet));
         return at + record_size;
     });
     written_ += soup.size();
@@ -188,23 +172,14 @@ std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bo
         write_stl(path, *soup);
         return {};
     }
-    const Box3 box = bounding_box(mesh);
-    for (const Point3& p : {box.min, box.max})
-        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= std::numeric_limits<float>::max()))
-            throw Error(ErrorKind::output, fmt::format("{}: the mesh has coordinates beyond 3.4e38 mm, the "
-                                                       "most that STL holds; write it as .ply or .obj",
-                                                       path));
     StlWriter writer(path, mesh.size());
     std::uint64_t lost = 0;
     for (std::size_t begin = 0; begin < mesh.size(); begin += triangles_per_block) {
         std::vector<Triangle3f> triangles(std::min(triangles_per_block, mesh.size() - begin));
         for (std::size_t i = 0; i < triangles.size(); ++i) {
             const Triangle3 before = mesh.triangle(begin + i);
-            triangles[i] = rounded(before);
-            const Triangle3 after = widened(triangles[i]);
-            if ((has_different_corners(before) && !has_different_corners(after)) ||
-                (has_area(before) && !has_area(after)))
-                ++lost;
+            triangles[i] = rounded(before, begin + i, path);
+            lost += !flat(before) && flat(widened(triangles[i])) ? 1 : 0;
         }
         writer.append(TriangleSoup(std::move(triangles)));
     }
@@ -227,7 +202,7 @@ void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const st
     file.append("solid " + title + "\n");
     constexpr std::size_t longest_facet = 400;
     append_blocks(file, soup.size(), longest_facet, [&](char* at, std::size_t i) {
-        const Facet f = facet(soup, i);
+        const Facet f = facet(soup, i, 0, path);
         at = put_rest_of_line(put_text(at, "facet normal"), coordinates(f.normal));
         at = put_text(at, "  outer loop\n");
         for (const Point3f& corner : f.corners)

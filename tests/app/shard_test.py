@@ -42,7 +42,7 @@ class Shard(ProgramTest):
         # In single precision 17.2 is not what 17.3 less 0.1 is.
         self.succeed("make", "box", "--size", "1,1,51.6", "-o", "part.stl")
         shards = self.slice_all(3, "ovf", "--layer-height", "0.1")
-        self.assertNotIn("gaps", self.succeed("merge", "merged.ovf", *shards).err)
+        self.assertNotIn("overlap", self.succeed("merge", "merged.ovf", *shards).err)
 
     def test_what_cannot_be_read_twice_is_refused_and_what_is_packed_is_not(self):
         self.succeed("make", "box", "--size", "1,1,2", "-o", "part.stl")

@@ -85,6 +85,13 @@ class Vectors(ProgramTest):
         steps = ["--simplify", "0.3", "--scan", "--pattern", "lines", "--hatch-distance", "0.05", "--shortest", "0.02"]
         self.succeed("slice", "cylinder.stl", "--layer-height", "5", *steps, "-o", "job.json")
         self.verify("job.json", "--mesh", "cylinder.stl", *steps)
+        # But lines stay where they belong, and as long as they are.
+        job = json.loads(self.bytes_of("job.json"))
+        for layer in job["layers"]:
+            for part in layer["parts"]:
+                part["hatches"] = [v + 0.02 * (i % 8 > 3) for i, v in enumerate(part.get("hatches", []))]
+        self.write("job.json", json.dumps(job))
+        self.assertGreater(self.verify("job.json", "--mesh", "cylinder.stl", *steps, code=4)["misplaced"], 100)
 
     def test_squares_a_whole_number_of_lines_wide_have_one_more(self):
         self.succeed("make", "box", "--size", "60,60,0.1", "-o", "flat.stl")

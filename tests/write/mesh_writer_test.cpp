@@ -61,7 +61,7 @@ TEST(WriteStl, CountsWhatRoundingTakesFromTriangles) {
         IndexedMesh{{{1, 0, 0}, {1 + 1e-12, 0, 0}, {1, 1, 0}, {2, 1, 0}}, {{0, 1, 2}, {0, 3, 2}}});
     const std::vector<std::string> warnings = write_stl(path, needle);
     ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_TRUE(warnings[0].starts_with("1 triangle loses its area or a corner")) << warnings[0];
+    EXPECT_TRUE(warnings[0].starts_with("1 triangle loses its area")) << warnings[0];
     EXPECT_EQ(file_bytes(path).size(), 84U + 2 * 50);
     EXPECT_NE(test::error_of(ErrorKind::defect,
                              [&] { static_cast<void>(write_stl(folder.file("no.stl"), needle, true)); })
@@ -70,7 +70,7 @@ TEST(WriteStl, CountsWhatRoundingTakesFromTriangles) {
     const Mesh far(IndexedMesh{{{0, 0, 0}, {1e40, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
     EXPECT_NE(
         test::error_of(ErrorKind::output, [&] { static_cast<void>(write_stl(folder.file("no.stl"), far)); })
-            .find("beyond 3.4e38"),
+            .find("triangle 0 has a coordinate of 1e+40 mm"),
         std::string::npos);
     EXPECT_EQ(folder.entries(), std::vector<std::string>{"out.stl"});
 }

@@ -39,7 +39,7 @@ struct VerifyOptions {
 };
 
 /// Where layers were cut, whose file keeps bottom and top only and is read as if that were in the middle:
-/// changes their z. Returns the rule that goes with it.
+/// changes their z, but where it is off by 1e-6 mm at most. Returns the rule that goes with it. O(layers).
 PlaneRule place_cuts(LayerStack& layers, SliceAt at);
 
 /// Between which heights layers lie, and the mesh that they are compared with, in mm.
@@ -118,13 +118,13 @@ struct VectorVerification {
     std::uint64_t misplaced = 0;
     /// Planes of a part, of all parts with a mesh, whose lines cover more or less than they are to fill. What
     /// may be off: along the edges of that, and of skins, half a distance and as wide a strip as the shortest
-    /// line is long, and what stripes, islands and skins overlap.
+    /// line is long, and what stripes, islands and skins overlap; and what `simplify_mm` and rounding move.
     std::uint64_t miscovered = 0;
     /// What lines cover by what they are to fill, of all layers; where there is a strategy.
     std::optional<double> cover;
     /// Contours that are missing on a plane of a part, or enclose another area than the material has at their
-    /// depth: by more than both perimeters times four times what rounding moves. Of a mesh of several parts
-    /// these are held against the outermost contours of each.
+    /// depth: by more than both perimeters times four times what rounding and `simplify_mm` move. Of a mesh
+    /// of several parts these are held against the outermost contours of each.
     std::uint64_t wrong_contours = 0;
     /// With a mesh, where there are layers; see Verification::heights.
     std::optional<CoveredHeights> heights = {};

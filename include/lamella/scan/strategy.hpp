@@ -39,8 +39,8 @@ struct HatchRule {
     double turn_degrees = 67; ///< from each layer to the next
     double border = 0.05;     ///< from the innermost contour, or the outline of the part, to where lines end
     double shortest = 0.1;    ///< shorter lines are left out
-    /// Width of a stripe or a square, of a hexagon from side to side; above 0, and above `shortest` where the
-    /// pattern has any of these.
+    /// Width of a stripe or a square, of a hexagon from side to side; above 0, and above `shortest` and at
+    /// most 1e9 where the pattern has any of these.
     double cell = 5;
     /// Of neighbouring stripes or islands, where there are any; less than half of `cell`.
     double overlap = 0.1;

@@ -16,13 +16,12 @@ namespace LAMELLA_API lamella {
 class AtomicFile;
 
 /// Writes a binary STL file with computed normals, atomically: nobody ever sees half a file. "-" writes
-/// standard output. Placed corners are rounded to single precision. Throws Error{output}, and Error{limit}
-/// beyond 2^32 - 1 triangles.
+/// standard output. Placed corners are rounded to single precision. Throws Error{output}, also for
+/// coordinates that this cannot hold, and Error{limit} beyond 2^32 - 1 triangles.
 void write_stl(const std::string& path, const TriangleSoup& soup);
 
-/// The same of any mesh; corners that are not in single precision are rounded to it. Gives a warning that
-/// counts triangles which lose their area or a corner by that; with `strict` it is Error{defect}, and no file
-/// is written. Error{output} for coordinates beyond single precision.
+/// The same of any mesh. Gives a warning that counts triangles which lose their area when their corners are
+/// rounded; with `strict` it is Error{defect}, and no file is written. O(triangles).
 std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict = false);
 
 /// Writes the same file piece by piece, for bodies that are larger than memory.
