@@ -26,7 +26,7 @@ namespace pairing {
 /// The trace of one triangle at the edge.
 struct Ray {
     bool arrives;
-    float angle;            ///< monotone in the true angle, in [0, 4); rounded, so that coplanar rays tie
+    float angle;            ///< monotone in the true angle, in [4, 8); rounded, so that coplanar rays tie
     Point3 third;           ///< the triangle's corner off the edge
     std::uint32_t triangle; ///< tells identical triangles apart
     std::uint32_t node;     ///< arriving: that the contour arrives at; leaving: whose links it follows
@@ -64,9 +64,12 @@ inline float ray_angle(const Point3& low, const Point3& high, const Point3& thir
     const double y = third_y * dz - up * edge_y;
     const double size = std::abs(x) + std::abs(y);
     if (!(size > 0))
-        return 0; // all three corners on a line: no direction
+        return 4; // all three corners on a line: no direction
     const double slope = x / size;
-    return static_cast<float>(y >= 0 ? 1 - slope : 3 + slope);
+    // Far from 0, where floats would tell rounding errors apart; and what lies just before the whole turn, by
+    // such an error, is where it begins.
+    const auto angle = static_cast<float>(y >= 0 ? 5 - slope : 7 + slope);
+    return angle < 8 ? angle : 4;
 }
 
 /// Counter-clockwise; at the same angle wedges close before others open, and identical triangles nest, so

@@ -41,7 +41,7 @@ class Walk {
     }
 
     /// found(NodeSequence) once for every contour of the plane that visits one of the starts, or a node of a
-    /// chain that ended just below, unless it was found on a plane before and is still valid. Planes of a
+    /// sequence that ended just below, unless it was found on a plane before and is still valid. Planes of a
     /// task come in ascending order.
     template <class Found>
     void walk(std::uint32_t plane, std::span<const std::uint32_t> starts,
@@ -84,6 +84,10 @@ class Walk {
         std::uint64_t candidates_end;
         std::vector<std::uint32_t> sequence;
     };
+
+    /// A contour is walked again after so many planes, though nothing in it changes: what is kept of it for
+    /// each plane to come is bounded then, however many layers a part has.
+    static constexpr std::uint32_t longest_run = 64;
 
     /// Several walks at a time hide the memory's latency where nodes lie scattered; one is enough where the
     /// graph fits the cache.
@@ -131,7 +135,7 @@ class Walk {
             if (visited_until_[node] > plane || graph_.nodes[node].last <= plane)
                 continue;
             walker.node = walker.start = node;
-            walker.valid_until = planes_.end;
+            walker.valid_until = end_of_run(plane);
             walker.sequence.clear();
             return true;
         }
@@ -200,7 +204,7 @@ class Walk {
         std::vector<bool> joined(segments_.size());
         const auto join = [&](std::uint32_t head, bool closed) {
             joined_.clear();
-            std::uint32_t valid_until = planes_.end;
+            std::uint32_t valid_until = end_of_run(plane);
             for (std::uint32_t s = head; s != no_node && !joined[s]; s = segments_[s].next) {
                 joined[s] = true;
                 valid_until = std::min(valid_until, segments_[s].valid_until);
@@ -220,14 +224,22 @@ class Walk {
         pending_.clear();
     }
 
+    [[nodiscard]] std::uint32_t end_of_run(std::uint32_t plane) const noexcept {
+        return planes_.end - plane > longest_run ? plane + longest_run : planes_.end;
+    }
+
     template <class Found>
-    void pass_on(const NodeSequence& sequence, [[maybe_unused]] std::uint32_t plane, const Found& found) {
+    void pass_on(const NodeSequence& sequence, std::uint32_t plane, const Found& found) {
         assert(!sequence.nodes.empty());
         assert(plane < sequence.valid_until && sequence.valid_until <= planes_.end);
-        if (!sequence.closed && sequence.valid_until < planes_.end) {
-            // Only a closed contour is sure to go on through a node that begins where its sequence ends.
+        if (sequence.valid_until < planes_.end) {
             std::vector<std::uint32_t>& again = restarts_[sequence.valid_until - planes_.begin];
-            again.insert(again.end(), sequence.nodes.begin(), sequence.nodes.end());
+            // Only a closed contour is sure to go on through a node that begins where its sequence ends, if
+            // anything changes there. If nothing does, any node will do.
+            if (!sequence.closed)
+                again.insert(again.end(), sequence.nodes.begin(), sequence.nodes.end());
+            else if (sequence.valid_until == end_of_run(plane))
+                again.push_back(sequence.nodes.front());
         }
         found(sequence);
     }
@@ -239,7 +251,8 @@ class Walk {
     std::vector<Segment> segments_;      // of the plane that is walked
     std::vector<std::uint32_t> pending_; // the nodes of the segments
     std::vector<std::uint32_t> joined_;  // of a contour that is made of segments
-    /// Per plane of the task: the nodes of chains whose sequence ends before it.
+    /// Per plane of the task: the nodes of chains whose sequence ends before it, and one of each contour that
+    /// is to be walked again.
     std::vector<std::vector<std::uint32_t>> restarts_;
 };
 

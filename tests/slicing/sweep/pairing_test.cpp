@@ -1,5 +1,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "fixtures/solids.hpp"
@@ -9,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -76,14 +79,14 @@ TEST(Match, LeavesOverWhatHasNoPartner) {
 TEST(RayAngle, GrowsWithTheTrueAngle) {
     const Point3 low{1, 2, 0};
     const Point3 high{1, 2, 5};
-    float before = -1;
+    float before = 0;
     for (int degrees = 0; degrees < 360; ++degrees) {
         const double angle = degrees * std::numbers::pi / 180;
         const float here =
             pairing::ray_angle(low, high, {1 + 7 * std::cos(angle), 2 + 7 * std::sin(angle), 3});
         EXPECT_GT(here, before) << degrees;
-        EXPECT_GE(here, 0.0F);
-        EXPECT_LT(here, 4.0F);
+        EXPECT_GE(here, 4.0F);
+        EXPECT_LT(here, 8.0F);
         before = here;
     }
 }
@@ -98,8 +101,16 @@ TEST(RayAngle, OfAPlaneThroughTheEdgeIsTheSameWhereverTheThirdCornerIs) {
                       expected);
 }
 
-TEST(RayAngle, OfACornerOnTheEdgeIsZero) {
-    EXPECT_EQ(pairing::ray_angle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}), 0.0F);
+TEST(RayAngle, OfACornerOnTheEdgeIsTheFirst) {
+    EXPECT_EQ(pairing::ray_angle({0, 0, 0}, {1, 1, 1}, {2, 2, 2}), 4.0F);
+}
+
+// Rounding errors on either side of the angle where a turn begins and ends.
+TEST(RayAngle, OfAPlaneAlongTheXAxisIsTheFirst) {
+    const Point3 low{0, 0, 0};
+    const Point3 high{0, 0, 1};
+    for (const double error : {-1e-16, -0.0, 0.0, 1e-16})
+        EXPECT_EQ(pairing::ray_angle(low, high, {1, error, 0.5}), 4.0F) << error;
 }
 
 TEST(RayAngle, IsTheSameInAnyUnit) {
@@ -122,8 +133,8 @@ TEST(RayAngle, IsTheSameInAnyUnit) {
 TEST(RayAngle, IsANumberWhereDifferencesOverflow) {
     constexpr double most = std::numeric_limits<double>::max();
     const float angle = pairing::ray_angle({-most, -most, -most}, {most, most, most}, {most, -most, 0});
-    EXPECT_GE(angle, 0.0F);
-    EXPECT_LT(angle, 4.0F);
+    EXPECT_GE(angle, 4.0F);
+    EXPECT_LT(angle, 8.0F);
 }
 
 Layer section(const Triangles& triangles, double z = 0.5) {
@@ -214,6 +225,48 @@ TEST(EdgePairing, KeepsBodiesWithACommonFaceApart) {
     for (int degrees = 0; degrees < 360; degrees += 15)
         expect_areas(turned(test::joined({wedge(0, 40), wedge(40, 90)}), degrees),
                      {wedge_area(40), wedge_area(50)});
+}
+
+/// A box 10 wide and high, with a corner in the middle of one of its faces across y.
+Triangles box_with_fan(float y0, float y1, bool on_lower, const Point3f& middle) {
+    Triangles triangles;
+    const float face = on_lower ? y0 : y1;
+    for (const Triangle3f& t : test::box_triangles({0, y0, 0}, {10, y1, 10}))
+        if (t[0].y != face || t[1].y != face || t[2].y != face)
+            triangles.push_back(t);
+    const std::array<Point3f, 4> corners{Point3f{0, face, 0}, Point3f{10, face, 0}, Point3f{10, face, 10},
+                                         Point3f{0, face, 10}};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Point3f& a = corners[k];
+        const Point3f& b = corners[(k + 1) % 4];
+        triangles.push_back(on_lower ? Triangle3f{a, b, middle} : Triangle3f{b, a, middle});
+    }
+    return triangles;
+}
+
+// Each body has triangles of its own on the common face: rays in one direction are computed from different
+// corners, and differ by roundings, also where the turn begins.
+TEST(EdgePairing, KeepsBodiesApartWhoseCommonFaceHasOtherTriangles) {
+    const Triangles one = box_with_fan(0, 5, true, {4, 0, 3.7F});
+    const Triangles other = box_with_fan(-5, 0, false, {6, 0, 6.1F});
+    for (const double about_z : {0.0, 90.0, 180.0, 270.0})
+        for (int about_x = 1; about_x < 90; about_x += 4) {
+            const Transform turn = compose(rotation('z', about_z), rotation('x', about_x));
+            const auto placed = [&](const Triangles& triangles) {
+                return Mesh(test::soup(triangles).transformed(turn));
+            };
+            const Mesh both = placed(test::joined({one, other}));
+            const Box3 box = bounding_box(both);
+            const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = 0.5});
+            const LayerStack layers = slice(both, plan);
+            const LayerStack of_one = slice(placed(one), plan);
+            const LayerStack of_other = slice(placed(other), plan);
+            for (std::size_t i = 0; i < layers.size(); ++i) {
+                EXPECT_EQ(layers[i].rings, of_one[i].rings + of_other[i].rings)
+                    << about_x << ", " << about_z << ", layer " << i;
+                EXPECT_EQ(layers[i].open_chains(), 0U);
+            }
+        }
 }
 
 TEST(EdgePairing, KeepsBodiesAroundAnEdgeApartThatLeaveNoGap) {

@@ -45,6 +45,22 @@ TEST(Walk, FindsTheContourOfAPrismOnceForAllItsPlanes) {
         EXPECT_TRUE(walk_plane(walk, graph, plane).empty());
 }
 
+TEST(Walk, WalksAContourAgainAfterSoManyPlanesThatWhatIsKeptOfItIsBounded) {
+    const Ranks ranks(test::even_planes(0, 10, 1000));
+    const CutGraph<FloatEnds> graph = test::graph_of(make_box(20, 30, 10), ranks);
+    Walk<FloatEnds> walk(graph);
+    walk.begin_task({0, 1000});
+    std::uint32_t served = 0;
+    for (std::uint32_t plane = 0; plane < 1000; ++plane)
+        for (const Found& one : walk_plane(walk, graph, plane)) {
+            EXPECT_EQ(plane, served); // neither a plane left out nor one served twice
+            EXPECT_TRUE(one.closed);
+            EXPECT_LE(one.valid_until - plane, 64U);
+            served = one.valid_until;
+        }
+    EXPECT_EQ(served, 1000U);
+}
+
 TEST(Walk, FollowsTheLinksOfThePlane) {
     const Ranks ranks(test::even_planes(-10, 10, 16));
     const CutGraph<FloatEnds> graph = test::graph_of(make_sphere(10, 3), ranks);
