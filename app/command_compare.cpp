@@ -88,6 +88,8 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
         texts.push_back(fmt::format("ends of hatch lines {} mm apart at ({}, {})",
                                     brief(details.hatch_distance_mm), brief(details.hatch_where.x),
                                     brief(details.hatch_where.y)));
+    if (!details.exposed_alike)
+        texts.emplace_back("contours shared out otherwise among the exposures");
     if (!details.heights_agree)
         texts.push_back(fmt::format("bottom or top {} mm apart", brief(details.height_distance_mm)));
     return fmt::format("z = {} mm: {}", height(plane.z), fmt::join(texts, ", "));
@@ -124,7 +126,8 @@ Json plane_json(const Differing& one) {
             {"hatches", {details.first_hatches, details.second_hatches}},
             {"hatch_distance_mm",
              both && std::isfinite(details.hatch_distance_mm) ? Json(details.hatch_distance_mm) : Json()},
-            {"height_distance_mm", both ? Json(details.height_distance_mm) : Json()}};
+            {"height_distance_mm", both ? Json(details.height_distance_mm) : Json()},
+            {"exposed_alike", both ? Json(details.exposed_alike) : Json()}};
 }
 
 Json parameters_json(const std::vector<ParameterDifference>& parameters) {

@@ -127,12 +127,18 @@ void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPar
     std::erase_if(second, [&](const LayerPart* part) { return taken.count(part) != 0; });
 }
 
-void compare_exposures(const LayerFile& first, const LayerFile& second, FileComparison& result) {
+using PartPair = std::pair<const LayerPart*, const LayerPart*>;
+
+/// The pairs of what is exposed; none where something has no partner.
+std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile& second,
+                                        FileComparison& result) {
     const bool one_format = first.format == second.format;
     std::vector<const LayerPart*> ones = exposed_parts(first);
     std::vector<const LayerPart*> others = exposed_parts(second);
+    std::vector<PartPair> pairs;
     const auto compare = [&](const LayerPart& one, const LayerPart& other) {
         compare_parameters(one, other, one_format, result.parameters);
+        pairs.emplace_back(&one, &other);
     };
     take_pairs(
         ones, others, [](const LayerPart& part) { return std::string_view(part.label); }, compare);
@@ -142,12 +148,30 @@ void compare_exposures(const LayerFile& first, const LayerFile& second, FileComp
             return std::tuple(part.exposure->region, part.exposure->kind, part.exposure->contour);
         },
         compare);
-    if (!one_format)
-        return; // not all keep labels and regions
-    for (const LayerPart* const part : ones)
-        result.only_first.push_back(part->label);
-    for (const LayerPart* const part : others)
-        result.only_second.push_back(part->label);
+    if (one_format) { // else not all keep labels and regions
+        for (const LayerPart* const part : ones)
+            result.only_first.push_back(part->label);
+        for (const LayerPart* const part : others)
+            result.only_second.push_back(part->label);
+    }
+    if (!ones.empty() || !others.empty())
+        pairs.clear();
+    return pairs;
+}
+
+bool has_other_hatches(const LayerFile& file) {
+    return std::any_of(file.parts.begin(), file.parts.end(), [](const LayerPart& part) {
+        return !part.exposure && std::any_of(part.layers.begin(), part.layers.end(),
+                                             [](const Layer& layer) { return !layer.hatches.empty(); });
+    });
+}
+
+/// Whether each exposure of a plane has the contours of its partner.
+bool exposed_alike(std::span<const PartPair> pairs, std::size_t first, std::size_t second,
+                   double tolerance_mm) {
+    return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
+        return compare(pair.first->layers[first], pair.second->layers[second]).within(tolerance_mm);
+    });
 }
 
 } // namespace
@@ -167,13 +191,22 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                           .parameters = {},
                           .only_first = {},
                           .only_second = {}};
-    compare_exposures(first, second, result);
+    const std::vector<PartPair> pairs = compare_exposures(first, second, result);
+    const double of_contours = result.layers.tolerance_mm;
     const double of_ends = tolerance_mm ? *tolerance_mm : moved_ends(first) + moved_ends(second);
     result.layers.tolerance_mm = std::max(result.layers.tolerance_mm, of_ends);
     const std::vector<std::string> labels = hatched_labels(first);
     const bool by_label = labels == hatched_labels(second);
-    const HatchedParts ones = hatched_parts(first, labels, by_label);
-    const HatchedParts others = hatched_parts(second, labels, by_label);
+    HatchedParts ones = hatched_parts(first, labels, by_label);
+    HatchedParts others = hatched_parts(second, labels, by_label);
+    if (!pairs.empty() && !has_other_hatches(first) && !has_other_hatches(second)) {
+        ones.clear();
+        others.clear();
+        for (const auto& [one, other] : pairs) {
+            ones.push_back({one});
+            others.push_back({other});
+        }
+    }
     for (ComparedPlane& plane : result.layers.planes) {
         PlaneDetails& details = result.details.emplace_back();
         if (plane.first && plane.second) {
@@ -187,8 +220,12 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                                                                       moved_cut(other, second.rounding) +
                                                                       same_height_mm;
             plane.agree = plane.agree && details.heights_agree && details.hatch_distance_mm <= of_ends;
-            details.same =
-                plane.difference.same && details.height_distance_mm == 0 && details.hatch_distance_mm == 0;
+            // Where contours differ all together, that is told.
+            details.exposed_alike =
+                !plane.agree || exposed_alike(pairs, *plane.first, *plane.second, of_contours);
+            plane.agree = plane.agree && details.exposed_alike;
+            details.same = plane.difference.same && details.height_distance_mm == 0 &&
+                           details.hatch_distance_mm == 0 && details.exposed_alike;
         } else {
             details.first_hatches = plane.first ? stacks[0][*plane.first].hatches.size() / 2 : 0;
             details.second_hatches = plane.second ? stacks[1][*plane.second].hatches.size() / 2 : 0;

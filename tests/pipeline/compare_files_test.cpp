@@ -109,5 +109,40 @@ TEST(CompareFiles, SeesParameters) {
     EXPECT_TRUE(compare_files(job(), unsaid).agree());
 }
 
+TEST(CompareFiles, SeesLinesThatMovedToAnotherExposure) {
+    for (const char* const format : {"3mf-toolpath", "cli"}) {
+        LayerFile other = job(format);
+        std::swap(other.parts[0].layers[1].hatches, other.parts[1].layers[1].hatches);
+        const FileComparison found = compare_files(job(), other);
+        EXPECT_FALSE(found.agree());
+        EXPECT_FALSE(found.layers.planes[1].agree);
+        EXPECT_TRUE(found.layers.planes[1].difference.same);
+        EXPECT_EQ(same_of(found), 2U);
+    }
+}
+
+TEST(CompareFiles, SeesContoursThatMovedToAnotherExposure) {
+    LayerFile two = job();
+    two.parts.push_back(two.parts[0]);
+    two.parts[2].exposure->contour = 2;
+    two.parts[2].label = two.parts[2].exposure->label();
+    for (Layer& layer : two.parts[2].layers)
+        layer.points = normal_layer({rectangle(1, 1, 3, 3)}).points;
+    LayerFile other = two;
+    std::swap(other.parts[0].layers[1].points, other.parts[2].layers[1].points);
+    const FileComparison found = compare_files(two, other);
+    EXPECT_FALSE(found.agree());
+    EXPECT_TRUE(found.layers.planes[1].difference.same);
+    EXPECT_FALSE(found.details[1].exposed_alike);
+    EXPECT_TRUE(found.details[0].exposed_alike);
+    EXPECT_EQ(same_of(found), 2U);
+    // Where one file does not know which contour is which, all count together.
+    LayerFile plain = two;
+    plain.format = "cli";
+    for (LayerPart& part : plain.parts)
+        part.exposure.reset();
+    EXPECT_TRUE(compare_files(two, plain).agree());
+}
+
 } // namespace
 } // namespace lamella::compare_files_cases

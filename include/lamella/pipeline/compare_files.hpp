@@ -24,7 +24,8 @@ struct PlaneDetails {
     Point2 hatch_where = {};
     double height_distance_mm = 0; ///< of bottoms or of tops, whichever are farther apart
     bool heights_agree = true;
-    bool same = false; ///< all of it and the contours, bit for bit
+    bool exposed_alike = true; ///< whether contours that agree all together do so exposure by exposure
+    bool same = false;         ///< all of it and the contours, bit for bit
 };
 
 /// A number of the parameters by which parts of one label are exposed.
@@ -50,12 +51,14 @@ struct FileComparison {
 };
 
 /// Compares the contours of two files as `compare` does. Hatch lines are compared one by one, in their order:
-/// part by part where the same labels have some, else those of all parts. Their ends agree within the
-/// tolerance; unless given, what rounding explains. Bottoms and tops agree up to what rounding explains and
-/// 1e-6 mm. Parameters of parts that expose anything, of the same label, or else of the same region, kind and
-/// contour in their order, differ where files of one format say other numbers; of different formats, not all
-/// of which have a place for each, where both say one. What has no partner counts in files of one format.
-/// Expected O(n log n) for n points and ends of lines of both, whose contours are in memory a second time.
+/// exposure by exposure where each has a partner, or part by part where the same labels have some, else those
+/// of all parts. Their ends agree within the tolerance; unless given, what rounding explains. Contours have
+/// to agree exposure by exposure, too, where each has a partner. Bottoms and tops agree up to what rounding
+/// explains and 1e-6 mm. Parameters of parts that expose anything, of the same label, or else of the same
+/// region, kind and contour in their order, differ where files of one format say other numbers; of different
+/// formats, not all of which have a place for each, where both say one. What has no partner counts in files
+/// of one format. Expected O(n log n) for n points and ends of lines of both, whose contours are in memory a
+/// second time.
 [[nodiscard]] FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                                            std::optional<double> tolerance_mm = {},
                                            const Execution& execution = {});
