@@ -1,10 +1,13 @@
 #include "lamella/pipeline/merge.hpp"
 
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
+#include "container/common_layer_format.hpp"
 #include "container/gzip.hpp"
+#include "contour/same_height.hpp"
 #include "core/atomic_file.hpp"
 #include "core/byte_source.hpp"
 
@@ -40,8 +43,8 @@ struct ShardFile {
     std::uint64_t layers = 0;
     double bottom = 0;
     double top = 0;
-    double lowest_layer_mm = 0;  ///< how thick it is
-    double highest_layer_mm = 0; ///< how thick it is
+    double thinnest_mm = 0;     ///< of its lowest and its highest layer
+    double rounded_heights = 0; ///< by how much the format may have moved top and bottom, together
     std::vector<std::string> warnings = {};
 };
 
@@ -65,8 +68,9 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .layers = layers.size(),
                     .bottom = layers.front().bottom,
                     .top = layers.back().top,
-                    .lowest_layer_mm = layers.front().thickness(),
-                    .highest_layer_mm = layers.back().thickness(),
+                    .thinnest_mm = std::min(layers.front().thickness(), layers.back().thickness()),
+                    .rounded_heights =
+                        moved_cut(layers.front(), file.rounding) + moved_cut(layers.back(), file.rounding),
                     .warnings = file.warnings};
     for (const LayerPart& part : file.parts) {
         Box3& box = shard.parts.emplace_back(PartInfo{part.label, {}, part.exposure, part.support}).box;
@@ -106,8 +110,9 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
     if (const auto one = labels_of(below), other = labels_of(above);
         one != other && !(may_lack_parts(below) && may_lack_parts(above)))
         refuse(fmt::format("hold different parts ({} and {})", fmt::join(one, ", "), fmt::join(other, ", ")));
-    // Formats round heights, but never by half a layer.
-    const double slack = std::min(below.highest_layer_mm, above.lowest_layer_mm) / 2;
+    // A hundredth of a layer is what programs round heights by that do not say so.
+    const double slack = below.rounded_heights + above.rounded_heights +
+                         std::min(below.thinnest_mm, above.thinnest_mm) / 100 + same_height_mm;
     if (above.bottom > below.top + slack)
         refuse(
             fmt::format("between them is a gap: the layers of one end at z = {:.6g} mm, those of the other "
@@ -153,37 +158,80 @@ struct CommonLayerFile {
                             path));
 }
 
-CommonLayerFile take_apart(const std::string& path, const LayerReadOptions& reading,
+/// Where the first command of the binary form ends, a layer; its end where there is no such. The commands
+/// have to end where the file does.
+std::size_t end_of_first_layer(std::string_view text, std::size_t begin, const std::string& path) {
+    const auto number = [&]<class T>(std::size_t at, T value) -> std::uint64_t {
+        if (text.size() - begin < at + sizeof value)
+            refuse_layout(path);
+        std::memcpy(&value, text.data() + begin + at, sizeof value);
+        return value;
+    };
+    std::size_t first = 0;
+    while (begin < text.size()) {
+        const auto command = static_cast<CommonLayerCommand>(number(0, std::uint16_t{}));
+        std::uint64_t size = 0;
+        switch (command) {
+        case CommonLayerCommand::layer_long:
+            size = 6;
+            break;
+        case CommonLayerCommand::layer_short:
+            size = 4;
+            break;
+        case CommonLayerCommand::polyline_long:
+            size = 14 + 8 * number(10, std::uint32_t{});
+            break;
+        case CommonLayerCommand::polyline_short:
+            size = 8 + 4 * number(6, std::uint16_t{});
+            break;
+        case CommonLayerCommand::hatches_long:
+            size = 10 + 16 * number(6, std::uint32_t{});
+            break;
+        case CommonLayerCommand::hatches_short:
+            size = 6 + 8 * number(4, std::uint16_t{});
+            break;
+        }
+        if (size == 0 || size > text.size() - begin || (first == 0 && size > 6))
+            refuse_layout(path);
+        begin += size;
+        first = first == 0 ? begin : first;
+    }
+    return first;
+}
+
+CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& reading,
                            const Execution& execution) {
+    const std::string& path = shard.path;
     CommonLayerFile file{
         unpacked(open_bytes(path, execution), reading.max_memory, execution), {}, {}, {}, {}};
     const std::string_view text = file.source.text();
-    constexpr std::string_view count_key = "$$LAYERS/";
-    constexpr std::string_view head_end = "$$HEADEREND";
-    const std::size_t key = text.find(count_key);
-    const std::size_t end = text.find(head_end);
-    if (key == std::string_view::npos || end == std::string_view::npos || key > end)
+    // The number of layers ends the head. With comments, what looks like a key need not be one; and files of
+    // others may have data of their own.
+    const std::string count = fmt::format("{}", shard.layers + 1);
+    const std::string counted = fmt::format("\n$$LAYERS/{}\n$$HEADEREND", count);
+    const std::size_t end = text.find("\n$$LAYERS/");
+    if (end == std::string_view::npos || !text.substr(end).starts_with(counted))
         refuse_layout(path);
-    const std::size_t count = key + count_key.size();
-    const std::size_t behind = std::min(text.find_first_not_of("0123456789", count), end);
-    std::size_t first = end + head_end.size();
-    if (text.substr(0, end).find("$$BINARY") != std::string_view::npos) {
-        std::uint16_t command = 0;
-        constexpr std::uint16_t long_layer = 127;
-        if (text.size() < first + sizeof command)
-            refuse_layout(path);
-        std::memcpy(&command, text.data() + first, sizeof command);
-        first += command == long_layer ? 6 : 4;
+    const std::string_view head = text.substr(0, end);
+    if (!head.starts_with("$$HEADERSTART\n") || head.find("\n//") != std::string_view::npos ||
+        head.find("$$USERDATA") != std::string_view::npos || head.find("$$ALIGN") != std::string_view::npos)
+        refuse_layout(path);
+    std::size_t first = end + counted.size();
+    if (head.find("\n$$BINARY\n") != std::string_view::npos) {
+        first = end_of_first_layer(text, first, path);
     } else {
-        first = text.find('\n', text.find("$$LAYER/", first)) + 1;
+        constexpr std::string_view start = "\n$$GEOMETRYSTART\n$$LAYER/";
         constexpr std::string_view tail = "$$GEOMETRYEND\n";
-        if (!text.ends_with(tail))
+        if (!text.substr(first).starts_with(start) || !text.ends_with(tail) ||
+            text.find("//", first) != std::string_view::npos)
+            refuse_layout(path);
+        first = text.find_first_not_of("+-.0123456789Ee", first + start.size());
+        if (text[first++] != '\n')
             refuse_layout(path);
         file.tail = tail;
     }
-    if (first > text.size() - file.tail.size())
-        refuse_layout(path);
-    file.before_count = text.substr(0, count);
+    const std::size_t behind = end + counted.find(count) + count.size();
+    file.before_count = text.substr(0, behind - count.size());
     file.after_count = text.substr(behind, first - behind);
     file.layers = text.substr(first, text.size() - first - file.tail.size());
     return file;
@@ -215,7 +263,7 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
         if (!shards[i].warnings.empty())
             throw Error(ErrorKind::input,
                         fmt::format("{}: is not sound: {}", shards[i].path, shards[i].warnings.front()));
-        const CommonLayerFile file = take_apart(shards[i].path, reading, execution);
+        const CommonLayerFile file = take_apart(shards[i], reading, execution);
         if (i == 0) {
             head = file.before_count;
             out.append(head);
@@ -367,16 +415,23 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     info.box.max.z = result.top;
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(output, format, info, options);
     double top = result.bottom;
+    std::uint64_t next = 0; // the lowest index that is left
     for (const ShardFile& shard : shards) {
         const LayerFile file = read_layers(shard.path, reading, execution);
         // Where one file ends and the next one begins, roundings of two heights and of a thickness meet.
         const double rounded = file.rounding.single_precision ? 2 * file.rounding.step_at(top) : 0;
-        for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
+        // Formats without indices count each file from 0.
+        const LayerStack& known = file.parts.front().layers;
+        const std::uint64_t moved = next > known.front().index ? next - known.front().index : 0;
+        for (std::size_t i = 0; i < known.size(); ++i) {
             std::vector<Layer> plane = plane_of(file, i, parts);
-            for (Layer& layer : plane)
+            for (Layer& layer : plane) {
+                layer.index += moved;
                 if (i == 0 && std::abs(layer.bottom - top) <= rounded)
                     layer.bottom = top;
+            }
             top = plane.front().top;
+            next = plane.front().index + 1;
             writer->prepare(plane)();
         }
     }

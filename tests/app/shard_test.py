@@ -189,6 +189,46 @@ class Shard(ProgramTest):
         self.fail_with(3, "one is cli, the other cli-ascii", "merge", "m.cli", "a.cli", "text.cli", "c.cli")
         self.fail_with(3, "no such file", "merge", "m.cli", "a.cli", "nowhere.cli")
 
+    def test_merge_joins_only_files_that_are_laid_out_as_it_knows_them(self):
+        self.lattice()
+        for name, layers in [("a", ":50"), ("b", "50:")]:
+            self.succeed("slice", "part.stl", "-o", f"{name}.cli", "--layers", layers)
+            self.succeed("slice", "part.stl", "-o", f"{name}-text.cli", "--layers", layers, "--format", "cli-ascii")
+        binary, text = self.bytes_of("b.cli"), self.bytes_of("b-text.cli")
+        head = text[:text.index(b"$$LAYERS/")]
+        count = int(text[text.index(b"$$LAYERS/") + 9:].split(b"\n")[0])
+        without_zero = text.replace(b"$$LAYERS/%d" % count, b"$$LAYERS/%d" % (count - 1))
+        zero = without_zero.index(b"$$LAYER/")
+        without_zero = without_zero[:zero] + without_zero[without_zero.index(b"$$LAYER/", zero + 1):]
+        others = {"binary behind": binary + b"\n", "padded": binary + bytes(4),
+                  "binary user data": binary.replace(b"$$LAYERS/", b"$$USERDATA/x,1,$$HEADEREND\n$$LAYERS/", 1),
+                  "no layer below": without_zero,
+                  "comment": text.replace(b"$$GEOMETRYSTART\n", b"$$GEOMETRYSTART\n// $$LAYER/7 //\n"),
+                  "comment in the head": head + b"// $$LAYERS/9 //\n" + text[len(head):]}
+        for name, content in others.items():
+            with self.subTest(name):
+                self.write("b-other.cli", content)
+                self.succeed("info", "b-other.cli")
+                first = "a.cli" if name.startswith(("binary", "padded")) else "a-text.cli"
+                merged = ["merge", "m.cli", first, "b-other.cli"] + ([] if first == "a.cli" else ["--format", "cli-ascii"])
+                self.fail_with(3, "b-other.cli: is not laid out as Lamella writes it", *merged)
+                self.succeed("merge", "m.json", first, "b-other.cli")
+
+    def test_merged_layers_are_numbered_through(self):
+        self.lattice()
+        shards = self.slice_all(2, "cli")
+        self.succeed("merge", "merged.json", *shards)
+        indices = [layer["index"] for layer in json.loads(self.bytes_of("merged.json"))["layers"]]
+        self.assertEqual(indices, list(range(len(indices))))
+        self.succeed("merge", "pictures", *shards, "--format", "png")
+
+    def test_merge_grants_no_more_than_roundings_between_files(self):
+        self.lattice()
+        self.succeed("slice", "part.stl", "-o", "a.json", "--layers", ":50")
+        for move, what in (("0,0,0.04", "between them is a gap"), ("0,0,-0.04", "overlap")):
+            self.succeed("slice", "part.stl", "-o", "b.json", "--layers", "50:", "--translate", move)
+            self.fail_with(3, what, "merge", "m.json", "a.json", "b.json")
+
     def test_merge_takes_shards_with_open_contours_and_without_some_of_the_parts(self):
         self.write("part.stl", binary_stl(open_box(4, 4, 4)))
         self.succeed("slice", "part.stl", "-o", "whole.svg", "--layer-height", "1")
