@@ -26,6 +26,8 @@ struct VerifyArguments {
     std::string input;
     std::string mesh;
     std::string slice_at;
+    double tolerance = 0;
+    bool strict = false;
     bool json = false;
     PlacementOptions placement;
     LayerStepOptions making;
@@ -60,7 +62,8 @@ Json verification_json(const Verification& found) {
                 {"open_chains", found.open_chains}, {"crossings", found.crossings},
                 {"misoriented", found.misoriented}, {"overlapping", found.overlapping},
                 {"volume_mm3", found.volume_mm3},   {"max_area_error_mm2", nullptr},
-                {"displaced", found.displaced},     {"heights", heights_json(found.heights)}};
+                {"displaced", found.displaced},     {"height_overlaps", found.height_overlaps},
+                {"hatches", found.hatches},         {"heights", heights_json(found.heights)}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
@@ -104,6 +107,7 @@ Json vectors_json(const VectorVerification& found) {
             {"misplaced", found.misplaced},
             {"miscovered", found.miscovered},
             {"wrong_contours", found.wrong_contours},
+            {"height_overlaps", found.height_overlaps},
             {"unbounded", found.unbounded},
             {"cover", found.cover ? Json(*found.cover) : Json()},
             {"heights", heights_json(found.heights)}};
@@ -151,6 +155,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     context.messages.warn_of(file.path, file.warnings);
+    file.rounding.step_mm += 2 * arguments.tolerance;
     std::optional<ScanStrategy> strategy;
     if (arguments.scan || arguments.scanning.given())
         strategy = arguments.scanning.strategy();
@@ -175,14 +180,14 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         throw Error(
             ErrorKind::usage,
             fmt::format("{}: holds no scan vectors; a strategy says nothing of its contours", file.path));
-    bool ok = true;
-    Json object{{"path", arguments.input}, {"ok", true}};
+    bool ok = !arguments.strict || file.warnings.empty();
+    Json object{{"path", arguments.input}, {"ok", ok}, {"warnings", file.warnings}};
     std::string text;
     if (!plain.parts.empty()) {
         const Verification found =
             verify(plain.merged(), {.mesh = mesh, .rule = rule, .steps = steps, .rounding = file.rounding},
                    execution);
-        ok = found.ok();
+        ok = ok && found.ok();
         object.update(verification_json(found));
         text += verification_text(arguments.mesh, found);
     }
@@ -234,6 +239,16 @@ Command verify_command() {
                      choice("slice-at", "WHERE",
                             "where in their thickness the layers were cut, if not where the file says",
                             slice_at_names(), arguments->slice_at),
+                     row("tolerance", ValueKind::number, "MM",
+                         "how far points, ends of lines and cuts may be off, beside what the format rounds; "
+                         "for layers that were rounded before [0]",
+                         [arguments](const std::string& text) {
+                             arguments->tolerance = parse_number(text);
+                             if (!(arguments->tolerance >= 0))
+                                 throw Error(ErrorKind::usage, "it cannot be negative");
+                         }),
+                     flag("strict", "make a failed check of whatever is warned of when the file is read, too",
+                          arguments->strict),
                      flag("json", "print JSON", arguments->json)}},
                    placement_options(arguments->placement),
                    layer_step_options(arguments->making),

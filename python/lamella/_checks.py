@@ -25,7 +25,7 @@ from ._warning import warn
 class Verification:
     """What `verify` finds. Lengths are millimetres."""
 
-    ok: bool  #: no open chains, no crossings, no misoriented rings, no layer gaps, areas and centres agree
+    ok: bool  #: no open chains, crossings, misoriented rings, layer gaps or overlaps; areas and centres agree
     layers: int
     contours: int
     points: int
@@ -37,6 +37,7 @@ class Verification:
     max_area_error: Optional[float]  #: mm^2, the largest difference from the section of the mesh, if one was given
     areas_agree: bool  #: those differences are no larger than rounding explains
     displaced: int  #: layers of the right area that lie elsewhere than the mesh's section, as their centres tell
+    height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without one
     findings: List[str]  #: one line for each kind of finding, with the first layer and place
 
@@ -84,9 +85,10 @@ class VectorVerification:
     misoriented: int  #: rings that run the wrong way round for where they lie
     outside: int  #: vectors that leave the material, or are nearer to its edges than the strategy says
     too_short: int  #: hatch lines shorter than the shortest of the strategy
-    misplaced: int  #: hatch lines beside those of the strategy, or turned otherwise
+    misplaced: int  #: hatch lines beside those of the strategy, turned otherwise or of another exposure
     miscovered: int  #: planes of a part whose lines cover more or less than they are to fill
     wrong_contours: int  #: that are missing on a plane, or of another area than the material has at their depth
+    height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without one
     cover: Optional[float]  #: what lines cover by what they are to fill, where a strategy is given
     unbounded: int  #: vectors of which nothing tells where the material is

@@ -252,6 +252,7 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
     fields["max_area_error"] = found.max_area_error_mm2;
     fields["areas_agree"] = found.areas_agree;
     fields["displaced"] = found.displaced;
+    fields["height_overlaps"] = found.height_overlaps;
     fields["gaps"] = found.heights ? found.heights->gaps : 0;
     fields["findings"] = found.findings;
     return fields;
@@ -290,6 +291,7 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     fields["misplaced"] = found.misplaced;
     fields["miscovered"] = found.miscovered;
     fields["wrong_contours"] = found.wrong_contours;
+    fields["height_overlaps"] = found.height_overlaps;
     fields["gaps"] = found.heights ? found.heights->gaps : 0;
     fields["cover"] = found.cover;
     fields["unbounded"] = found.unbounded;

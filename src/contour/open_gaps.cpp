@@ -198,13 +198,13 @@ void for_each_gap(const std::vector<std::span<const Point2>>& chains, const Visi
 } // namespace
 
 OpenGaps& OpenGaps::operator+=(const OpenGaps& other) noexcept {
-    count += other.count;
-    total_mm += other.total_mm;
-    if (other.longest_mm > longest_mm) {
+    if (other.longest_mm > longest_mm || count == 0) {
         longest_mm = other.longest_mm;
         from = other.from;
         to = other.to;
     }
+    count += other.count;
+    total_mm += other.total_mm;
     return *this;
 }
 

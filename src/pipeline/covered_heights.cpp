@@ -1,13 +1,55 @@
 #include "pipeline/covered_heights.hpp"
 
 #include "contour/same_height.hpp"
+#include "pipeline/layer_check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace lamella {
+
+namespace {
+
+std::vector<const Layer*> from_the_lowest(std::span<const Layer> layers) {
+    std::vector<const Layer*> ascending;
+    for (const Layer& layer : layers)
+        ascending.push_back(&layer);
+    std::stable_sort(ascending.begin(), ascending.end(),
+                     [](const Layer* a, const Layer* b) { return a->bottom < b->bottom; });
+    return ascending;
+}
+
+/// By how much heights of two layers may be apart that are the same.
+double moved_heights(const Layer& below, const Layer& above, const Rounding& rounding) {
+    return moved_cut(below, rounding) + moved_cut(above, rounding) + same_height_mm;
+}
+
+} // namespace
+
+std::uint64_t overlapping_heights(std::span<const Layer> layers, const Rounding& rounding,
+                                  std::vector<std::string>& findings) {
+    std::uint64_t overlaps = 0;
+    std::string first;
+    const Layer* below = nullptr;
+    for (const Layer* const above : from_the_lowest(layers)) {
+        const double moved = below == nullptr ? 0 : moved_heights(*below, *above, rounding);
+        const bool same_height = below != nullptr && above->bottom - below->bottom <= moved &&
+                                 std::abs(above->top - below->top) <= moved;
+        if (below != nullptr && !same_height && below->top - above->bottom > moved && overlaps++ == 0)
+            first = fmt::format("{} begins at z = {:.6g} mm, {} ends at {:.6g} mm", where(*above),
+                                above->bottom, where(*below), below->top);
+        if (below == nullptr || above->top > below->top)
+            below = above;
+    }
+    if (overlaps > 0)
+        findings.push_back(fmt::format("{} begin{} within the height of another one, the first: {}",
+                                       overlaps == 1 ? "a layer" : fmt::format("{} layers", overlaps),
+                                       overlaps == 1 ? "s" : "", first));
+    return overlaps;
+}
 
 std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, const Mesh& mesh,
                                               const Rounding& rounding, const Execution& execution,
@@ -15,16 +57,11 @@ std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, con
     const Box3 box = bounding_box(mesh, execution);
     if (layers.empty() || box.empty())
         return std::nullopt;
-    std::vector<const Layer*> ascending;
-    for (const Layer& layer : layers)
-        ascending.push_back(&layer);
-    std::stable_sort(ascending.begin(), ascending.end(),
-                     [](const Layer* a, const Layer* b) { return a->bottom < b->bottom; });
+    const std::vector<const Layer*> ascending = from_the_lowest(layers);
     const Layer* below = ascending.front();
     Plan middles;
     for (const Layer* const above : ascending) {
-        if (above->bottom - below->top >
-            moved_cut(*below, rounding) + moved_cut(*above, rounding) + same_height_mm)
+        if (above->bottom - below->top > moved_heights(*below, *above, rounding))
             middles.layers.push_back({.index = middles.layers.size(),
                                       .z = below->top + (above->bottom - below->top) / 2,
                                       .bottom = below->top,

@@ -26,13 +26,6 @@ bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding)
 
 } // namespace
 
-double largest_coordinate(std::span<const Point2> points) noexcept {
-    double largest = 0;
-    for (const Point2& p : points)
-        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    return largest;
-}
-
 void check_coordinates(std::span<const Layer> layers) {
     const auto refuse = [](const Layer& layer, const std::string& thing, double length) {
         throw Error(ErrorKind::usage,

@@ -48,8 +48,6 @@ void check_coordinates(std::span<const Layer> layers);
 /// "layer 12 (z 0.375 mm)"
 [[nodiscard]] std::string where(const Layer& layer);
 
-[[nodiscard]] double largest_coordinate(std::span<const Point2> points) noexcept;
-
 /// What is said of one of a kind, and of several, up to where the first one is.
 struct FindingWords {
     const char* one;

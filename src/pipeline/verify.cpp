@@ -84,7 +84,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         own[i] = {area_moments(layers[i], origin),
                   area_tolerance(layers[i], measure, options.rounding, extent) +
                       2 * options.steps.simplify_mm * measure.perimeter_mm,
-                  extent};
+                  extent / 2};
         for (const Point2& p : layers[i].points)
             own[i].reach = std::max({own[i].reach, std::abs(p.x - origin.x), std::abs(p.y - origin.y)});
     });
@@ -182,6 +182,7 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
         result.contours += check.measure.contours;
         result.points += check.measure.points;
         result.volume_mm3 += check.measure.area_mm2 * layers[i].thickness();
+        result.hatches += layers[i].hatches.size() / 2;
         if (check.open_gaps.count > 0)
             result.open_layers.push_back({layers[i].index, layers[i].z, check.open_gaps});
     }
@@ -198,6 +199,11 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
          {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
           "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
          result.findings);
+    result.height_overlaps = overlapping_heights(layers, options.rounding, result.findings);
+    if (result.hatches > 0)
+        result.findings.push_back(fmt::format("{} hatch line{} not checked: nothing tells what {} to fill",
+                                              result.hatches, result.hatches == 1 ? " was" : "s were",
+                                              result.hatches == 1 ? "it is" : "they are"));
     if (options.mesh) {
         compare_areas(layers, checks, options, execution, result);
         result.heights = covered_heights(layers, *options.mesh, options.rounding, execution, result.findings);

@@ -34,6 +34,20 @@ struct Group {
     const LayerPart* outermost = nullptr; ///< of its contours
 };
 
+double area_of(const LayerPart& part) {
+    double area = 0;
+    for (const Layer& layer : part.layers)
+        area += measure(layer).area_mm2;
+    return area;
+}
+
+/// Of contours of one part; some files do not number them.
+bool lies_outside(const LayerPart& part, const LayerPart& other) {
+    return part.exposure->contour != other.exposure->contour
+               ? part.exposure->contour < other.exposure->contour
+               : area_of(part) > area_of(other);
+}
+
 std::vector<Group> groups_of(std::span<const LayerPart> parts, bool all_together) {
     std::map<std::string, Group> groups;
     for (const LayerPart& part : parts) {
@@ -42,7 +56,7 @@ std::vector<Group> groups_of(std::span<const LayerPart> parts, bool all_together
         Group& group = groups[all_together ? std::string() : part.exposure->part];
         group.exposures.push_back(&part);
         if (part.exposure->kind == VectorKind::contour &&
-            (group.outermost == nullptr || part.exposure->contour < group.outermost->exposure->contour))
+            (group.outermost == nullptr || lies_outside(part, *group.outermost)))
             group.outermost = &part;
     }
     std::vector<Group> result;
@@ -237,7 +251,7 @@ class VectorCheck {
         for (const LayerPart* const part : group.exposures) {
             const Layer& vectors = part->layers[plane];
             if (part->exposure->kind == VectorKind::contour)
-                found.add(of_one_exposure(vectors));
+                found.add(of_one_exposure(*part->exposure, vectors));
             std::uint64_t of_contours = 0;
             for (std::size_t i = 0; i < vectors.contours(); ++i)
                 of_contours += vectors.contour(i).size() - (vectors.closed(i) ? 0 : 1);
@@ -245,7 +259,7 @@ class VectorCheck {
             found.hatch_vectors += vectors.hatches.size() / 2;
             all += of_contours + vectors.hatches.size() / 2;
             if (options_.strategy)
-                check_lines(vectors, hatch_of(*options_.strategy, part->exposure->region), found);
+                check_lines(*part->exposure, vectors, found);
         }
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0) {
             found.unbounded += all;
@@ -299,20 +313,31 @@ class VectorCheck {
     }
 
     /// Contours of one number neither cross nor lie within one another's material.
-    [[nodiscard]] ContourFindings of_one_exposure(const Layer& vectors) const {
+    [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
         ContourFindings found = check_layer(vectors, options_.rounding).found;
-        found.misoriented.add(found.overlapping);
+        if (exposure.contour > 0)
+            found.misoriented.add(found.overlapping);
         return found;
     }
 
-    void check_lines(const Layer& vectors, const HatchRule& rule, PlaneCheck& found) const {
+    /// Whether the strategy has lines for an exposure.
+    [[nodiscard]] bool asks_for_lines(const Exposure& exposure) const noexcept {
+        const ScanStrategy& strategy = *options_.strategy;
+        return exposure.kind == VectorKind::hatch &&
+               (exposure.region != ScanRegion::upskin || strategy.upskin.layers > 0) &&
+               (exposure.region != ScanRegion::downskin || strategy.downskin.layers > 0);
+    }
+
+    void check_lines(const Exposure& exposure, const Layer& vectors, PlaneCheck& found) const {
+        const HatchRule& rule = hatch_of(*options_.strategy, exposure.region);
+        const bool asked = asks_for_lines(exposure);
         const AskedLines lines(rule, before_ + vectors.index, rounding_);
         for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
             const Point2& a = vectors.hatches[i];
             const Point2& b = vectors.hatches[i + 1];
             if (distance(a, b) < rule.shortest - 2 * rounding_)
                 found.too_short.add(vectors, a);
-            if (!lines.have(a, b))
+            if (!asked || !lines.have(a, b))
                 found.misplaced.add(vectors, a);
         }
     }
@@ -466,8 +491,8 @@ std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
            "hatch lines are shorter than the strategy says;"}},
          {&PlaneCheck::misplaced,
           &VectorVerification::misplaced,
-          {"hatch line lies beside those of the strategy, or is turned otherwise;",
-           "hatch lines lie beside those of the strategy, or are turned otherwise;"}},
+          {"hatch line lies beside those of the strategy, is turned otherwise or of another exposure;",
+           "hatch lines lie beside those of the strategy, are turned otherwise or of another exposure;"}},
          {&PlaneCheck::miscovered,
           &VectorVerification::miscovered,
           {"layer has lines that cover more or less than they should fill;",
@@ -564,6 +589,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         result.wrong_contours += row.second.missing.total + row.second.elsewhere.total;
         tell_row(row.first, row.second, result.findings);
     }
+    result.height_overlaps = overlapping_heights(planes, options.rounding, result.findings);
     if (options.mesh)
         result.heights = covered_heights(planes, *options.mesh, options.rounding, execution, result.findings);
     if (result.unbounded > 0)

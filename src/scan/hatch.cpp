@@ -1,5 +1,6 @@
 #include "scan/hatch.hpp"
 
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/error.hpp"
 
 #include "scan/hatch_lines.hpp"
@@ -157,9 +158,7 @@ void cut_into_hexagons(const HatchLines& lines, unsigned turns, const HatchRule&
 
 /// Throws where there would be too many cells.
 void check_cells(const Layer& area, const HatchRule& rule) {
-    double reach = 0; // from the origin, in any direction
-    for (const Point2& p : area.points)
-        reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
+    const double reach = largest_coordinate(area.points.span()); // from the origin
     if (!(reach / rule.cell < 0x1p28))
         throw Error(ErrorKind::limit,
                     fmt::format("layer {}: stripes or islands of {:g} mm are too many up to {:.6g} "

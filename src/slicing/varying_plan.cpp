@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "contour/distance.hpp"
 #include "core/executor.hpp"
 #include "mesh/measures.hpp"
 #include "slicing/stacking.hpp"
@@ -111,7 +112,7 @@ class Slopes {
 /// |n.z|, rounded up; 0 for a triangle without area, which bounds nothing.
 float steepness(const Triangle3& t) noexcept {
     const Point3 n = normal(t);
-    const double length = std::hypot(n.x, n.y, n.z);
+    const double length = hypotenuse(hypotenuse(n.x, n.y), n.z);
     if (!(length > 0))
         return 0;
     return std::nextafter(static_cast<float>(std::min(1.0, std::abs(n.z) / length)), 2.0F);

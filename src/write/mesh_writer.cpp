@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/atomic_file.hpp"
+#include "mesh/measures.hpp"
 #include "mesh/triangle_contact.hpp"
 #include "write/byte_buffer.hpp"
 
@@ -52,14 +53,11 @@ Triangle3f rounded(const Triangle3& triangle, std::uint64_t number, const std::s
 
 // The unit normal of the corners as they are stored; zero for a triangle without area.
 Point3f unit_normal(const Triangle3f& t) {
-    const auto edge = [&](int i) {
-        return Point3{double{t[i].x} - double{t[0].x}, double{t[i].y} - double{t[0].y},
-                      double{t[i].z} - double{t[0].z}};
+    const auto corner = [&](int i) {
+        return Point3{t[i].x, t[i].y, t[i].z};
     };
-    const Point3 a = edge(1);
-    const Point3 b = edge(2);
-    const Point3 n{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    const double length = std::hypot(n.x, n.y, n.z);
+    const Point3 n = normal({corner(0), corner(1), corner(2)});
+    const double length = distance(n, {});
     if (!(length > 0) || !std::isfinite(length))
         return {};
     return {static_cast<float>(n.x / length) + 0.0F, static_cast<float>(n.y / length) + 0.0F,

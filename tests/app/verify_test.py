@@ -4,8 +4,8 @@ import json
 
 from program import ProgramTest, main
 
-KEYS = ["path", "ok", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
-        "volume_mm3", "max_area_error_mm2", "displaced", "heights"]
+KEYS = ["path", "ok", "warnings", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
+        "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches", "heights"]
 
 
 def ascii_cli(*polylines):
@@ -29,7 +29,7 @@ class Vectors(ProgramTest):
         result = self.run_program("verify", "--json", *arguments)
         self.assertEqual(result.code, code, result.err)
         found = result.json()
-        self.assertEqual(list(found), ["path", "ok", "vectors"])
+        self.assertEqual(list(found), ["path", "ok", "warnings", "vectors"])
         self.assertEqual(found["ok"], code == 0)
         return found["vectors"]
 
@@ -208,6 +208,46 @@ class Verify(ProgramTest):
         found = self.verify("a.cli")
         self.assertEqual((found["contours"], found["misoriented"], found["crossings"]), (2, 0, 0))
         self.assertAlmostEqual(found["volume_mm3"], 96)
+
+    def test_layers_that_overlap_in_height_are_noticed(self):
+        self.succeed("make", "box", "--size", "6,5,1", "-o", "box.stl")
+        self.succeed("slice", "box.stl", "-o", "right.json")
+        layers = json.loads(self.bytes_of("right.json"))
+        layers["layers"][3]["top"] += 0.03
+        self.write("wrong.json", json.dumps(layers))
+        for mesh in ([], ["--mesh", "box.stl"]):
+            result = self.run_program("verify", "wrong.json", *mesh)
+            self.assertEqual(result.code, 4, result.err)
+            self.assertIn(b"a layer begins within the height of another one, the first: layer 4 (z 0.45 mm) begins at "
+                          b"z = 0.4 mm, layer 3 (z 0.35 mm) ends at 0.43 mm", result.out)
+
+    def test_layers_that_were_rounded_before_need_a_tolerance(self):
+        self.succeed("make", "sphere", "--size", "3", "-o", "ball.stl")
+        self.succeed("slice", "ball.stl", "-o", "ball.cli")
+        self.succeed("convert", "ball.cli", "ball.json")
+        self.assertEqual(self.run_program("verify", "ball.json", "--mesh", "ball.stl").code, 4)
+        self.succeed("verify", "ball.json", "--mesh", "ball.stl", "--tolerance", "0.0005")
+        self.succeed("make", "sphere", "--size", "3.1", "-o", "larger.stl")
+        self.assertEqual(
+            self.run_program("verify", "ball.json", "--mesh", "larger.stl", "--tolerance", "0.0005").code, 4)
+        self.fail_with(2, "negative", "verify", "ball.json", "--tolerance=-1")
+
+    def test_what_was_warned_of_is_told_and_counts_if_asked(self):
+        text = ascii_cli((1, SQUARE)).replace("$$LAYERS/000002", "$$LAYERS/000003")
+        self.write("odd.cli", text)
+        found = self.run_program("verify", "--json", "odd.cli")
+        self.assertEqual(found.code, 0, found.err)
+        self.assertRegex(found.json()["warnings"][0], "announces 3 layers")
+        self.assertEqual(self.run_program("verify", "--strict", "odd.cli").code, 4)
+        self.write("even.cli", ascii_cli((1, SQUARE)))
+        self.succeed("verify", "--strict", "even.cli")
+
+    def test_lines_that_no_exposure_has_are_told(self):
+        text = ascii_cli((1, SQUARE)).replace("$$GEOMETRYEND", "$$HATCHES/1,1,1.0,1.0,90.0,1.0\n$$GEOMETRYEND")
+        self.write("lines.cli", text)
+        result = self.succeed("verify", "lines.cli")
+        self.assertIn(b"1 hatch line was not checked", result.out)
+        self.assertEqual(self.succeed("verify", "--json", "lines.cli").json()["hatches"], 1)
 
     def test_an_open_chain(self):
         self.write("a.cli", ascii_cli((2, SQUARE[:3])))

@@ -193,6 +193,28 @@ TEST(Verify, TakesLayersAtTheSameHeightOrNextToIt) {
     EXPECT_TRUE(verify(layers, {.mesh = mesh, .rounding = {.step_mm = 0.02}}).ok());
 }
 
+TEST(Verify, FindsLayersThatOverlapInHeight) {
+    LayerStack layers;
+    for (int i = 0; i < 3; ++i) {
+        layers.push_back(at(static_cast<std::uint64_t>(i), layer_of({rectangle(0, 0, 4, 4)})));
+        layers.back().bottom = i;
+        layers.back().z = i + 0.5;
+        layers.back().top = i + 1;
+    }
+    EXPECT_TRUE(verify(layers).ok());
+    layers[1].top += 1e-3;
+    std::swap(layers[0], layers[2]); // any order will do
+    const Verification found = verify(layers);
+    EXPECT_FALSE(found.ok());
+    EXPECT_EQ(found.height_overlaps, 1U);
+    ASSERT_EQ(found.findings.size(), 1U);
+    EXPECT_NE(
+        found.findings[0].find("layer 2 (z 2.5 mm) begins at z = 2 mm, layer 1 (z 1.5 mm) ends at 2.001 mm"),
+        std::string::npos)
+        << found.findings[0];
+    EXPECT_TRUE(verify(layers, {.rounding = {.step_mm = 0.001}}).ok());
+}
+
 TEST(Verify, ComparesNoAreaOfLayersWithOpenChains) {
     const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
     const Verification found = verify(LayerStack{at(0, layer_of({}, {{{0, 0}, {4, 0}}}))}, {.mesh = mesh});

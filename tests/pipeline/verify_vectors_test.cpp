@@ -250,6 +250,35 @@ TEST_F(VerifyVectors, FindsWhatIsWrongWithContours) {
     EXPECT_FALSE(found.ok());
 }
 
+TEST_F(VerifyVectors, FindsLinesOfExposuresThatHaveNone) {
+    const std::vector<Point2> line = [&] {
+        const PointArray& lines = part("core hatch").layers[4].hatches;
+        return std::vector<Point2>{lines[0], lines[1]};
+    }();
+    const std::vector<LayerPart> sound = parts_;
+    part("core contour 2").layers[4].hatches = PointArray(line);
+    EXPECT_EQ(with_all().misplaced, 1U);
+    EXPECT_EQ(with_strategy().misplaced, 1U);
+    parts_ = sound;
+    part("upskin hatch").layers[4].hatches = PointArray(line);
+    EXPECT_EQ(with_all().misplaced, 0U);
+    strategy_.upskin.layers = 0;
+    EXPECT_GE(with_all().misplaced, 1U) << "no skin is asked for";
+}
+
+TEST_F(VerifyVectors, TakesContoursThatFilesDoNotNumber) {
+    LayerPart both = part("core contour 1");
+    for (LayerPart& part : parts_)
+        part.exposure->contour = 0;
+    std::swap(parts_[0], parts_[1]); // the inner one comes first
+    EXPECT_TRUE(with_nothing().ok());
+    EXPECT_TRUE(with_mesh().ok());
+    both.layers[3] = layer_of({rectangle(1, 1, 9, 9), rectangle(2, 2, 8, 8)});
+    EXPECT_EQ(verify_vectors(std::vector{both}).misoriented, 1U);
+    both.exposure->contour = 0;
+    EXPECT_EQ(verify_vectors(std::vector{both}).misoriented, 0U);
+}
+
 TEST_F(VerifyVectors, SaysWhereNothingTellsOfTheMaterial) {
     std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::contour; });
     const VectorVerification found = with_nothing();

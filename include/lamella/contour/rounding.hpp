@@ -30,14 +30,20 @@ struct Rounding {
     return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
 }
 
+/// Of any of these points; 0 for none. O(points).
+[[nodiscard]] inline double largest_coordinate(std::span<const Point2> points) noexcept {
+    double largest = 0;
+    for (const Point2& p : points)
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    return largest;
+}
+
 /// How far a format may have moved one of these points, in mm, and what the last digits of numbers in memory
 /// add to that. O(points), where it rounds.
 [[nodiscard]] inline double moved_point(std::span<const Point2> points, const Rounding& rounding) noexcept {
     if (rounding == Rounding{})
         return 0;
-    double largest = 0;
-    for (const Point2& p : points)
-        largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    const double largest = largest_coordinate(points);
     constexpr double last_digits = 0x1p-50;
     return (rounding.step_at(largest) / 2 + last_digits * largest) * std::sqrt(2.0);
 }

@@ -83,15 +83,20 @@ struct Verification {
     /// Layers of the right area that lie elsewhere than the mesh's section, as the centres of both tell; with
     /// VerifyOptions::mesh. One that is turned about its centre is not told.
     std::uint64_t displaced = 0;
+    /// Layers that begin within the height of another one: what is there is made twice. Not those from the
+    /// same bottom to the same top, which may be of several parts.
+    std::uint64_t height_overlaps = 0;
     /// With VerifyOptions::mesh, where there are layers. Layers of a part of the mesh's height are no error,
     /// gaps between them are.
     std::optional<CoveredHeights> heights = {};
+    /// Hatch lines that the layers have: of these nothing is checked.
+    std::uint64_t hatches = 0;
     /// One line for each kind of finding, with the first layer and place where it occurs.
     std::vector<std::string> findings;
 
     [[nodiscard]] bool ok() const noexcept {
         return open_chains == 0 && crossings == 0 && misoriented == 0 && areas_agree && displaced == 0 &&
-               (!heights || heights->gaps == 0);
+               height_overlaps == 0 && (!heights || heights->gaps == 0);
     }
 };
 
@@ -108,12 +113,14 @@ struct VectorVerification {
     // Of contours, those of each exposure by themselves.
     std::uint64_t open_chains = 0;
     std::uint64_t crossings = 0;
-    std::uint64_t misoriented = 0; ///< rings within material of their own exposure among them
+    /// Rings within material of their own exposure among them, where it says which contour it is.
+    std::uint64_t misoriented = 0;
     /// Vectors that leave the material, or are nearer to its edges than the strategy says.
     std::uint64_t outside = 0;
     std::uint64_t too_short = 0; ///< hatch lines
     /// Hatch lines that have another direction than those of their layer and region, or do not lie at a
-    /// multiple of the distance. Where a file begins with a later layer of its plan, it does not say with
+    /// multiple of the distance; with a strategy also all those of contours, and of skins that it has not.
+    /// Where a file begins with a later layer of its plan, it does not say with
     /// which: with that by which most of the lowest layers are right.
     std::uint64_t misplaced = 0;
     /// Planes of a part, of all parts with a mesh, whose lines cover more or less than they are to fill. What
@@ -126,6 +133,7 @@ struct VectorVerification {
     /// depth: by more than both perimeters times four times what rounding and `simplify_mm` move. Of a mesh
     /// of several parts these are held against the outermost contours of each.
     std::uint64_t wrong_contours = 0;
+    std::uint64_t height_overlaps = 0; ///< see Verification
     /// With a mesh, where there are layers; see Verification::heights.
     std::optional<CoveredHeights> heights = {};
     /// Vectors of which nothing tells where the material is: neither a mesh nor an outer contour, or an open
@@ -136,7 +144,8 @@ struct VectorVerification {
 
     [[nodiscard]] bool ok() const noexcept {
         return open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 && too_short == 0 &&
-               misplaced == 0 && miscovered == 0 && wrong_contours == 0 && (!heights || heights->gaps == 0);
+               misplaced == 0 && miscovered == 0 && wrong_contours == 0 && height_overlaps == 0 &&
+               (!heights || heights->gaps == 0);
     }
 };
 
