@@ -161,12 +161,10 @@ class CommonLayerGeometry {
     std::vector<RawLayer> layers_;
     Decimals decimals_;
     PartNumbers<std::int64_t> parts_;
-    Oddity unclosed_{"closed contour did not return to its first point; it was closed",
-                     "closed contours did not return to their first point; they were closed"};
+    UnclosedContours unclosed_;
     Oddity turned_{"contour ran against its stated direction; it was turned round",
                    "contours ran against their stated direction; they were turned round"};
-    Oddity dropped_{"contour had too few different points; it was dropped",
-                    "contours had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 /// Reads the geometry behind the header of an ASCII file. Throws Error{input} naming the line, Error{limit},

@@ -39,6 +39,18 @@ class Oddity {
     std::string first_;
 };
 
+/// What files of all formats can have.
+struct DroppedContours : Oddity {
+    DroppedContours()
+        : Oddity("contour had too few different points; it was dropped",
+                 "contours had too few different points; they were dropped") {}
+};
+struct UnclosedContours : Oddity {
+    UnclosedContours()
+        : Oddity("closed contour did not return to its first point; it was closed",
+                 "closed contours did not return to their first point; they were closed") {}
+};
+
 /// The contours of one height of the file, in millimetres.
 struct RawLayer {
     struct Contour {
@@ -71,7 +83,7 @@ struct RawLayer {
     /// `dropped` notes it.
     template <class Place>
     bool end_contour(bool closed, std::uint32_t part, ReadLimits& limits, const Place& where,
-                     Oddity& dropped) {
+                     DroppedContours& dropped) {
         limits.make_room(ends, 1, where);
         const bool kept = keep_contour(closed, part);
         if (!kept)

@@ -352,8 +352,7 @@ class SvgReader {
                   "elements are no outlines; they were passed over"};
     Oddity transformed_{"element has transforms, which were not followed",
                         "elements have transforms, which were not followed"};
-    Oddity dropped_{"contour had too few different points; it was dropped",
-                    "contours had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 } // namespace

@@ -209,8 +209,7 @@ class LayersJsonReader {
     ProgressMeter progress_;
     std::size_t reported_ = 0;
     bool known_ = false;
-    Oddity dropped_{"contour had too few different points; it was dropped",
-                    "contours had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 } // namespace

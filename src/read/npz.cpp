@@ -338,8 +338,7 @@ class NpzReader {
     const ZipReader& zip_;
     LayerFile& file_;
     ReadLimits& limits_;
-    Oddity dropped_{"contour had too few different points; it was dropped",
-                    "contours had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 } // namespace

@@ -204,8 +204,9 @@ class OvfReader {
         make_layers();
         say(names_, file_.warnings);
         for (const Oddity* oddity :
-             {&moved_, &other_vectors_, &repeated_blocks_, &repeated_planes_, &other_lasers_, &dropped_})
+             {&moved_, &other_vectors_, &repeated_blocks_, &repeated_planes_, &other_lasers_})
             oddity->say(file_.warnings);
+        dropped_.say(file_.warnings);
         progress_.finish();
     }
 
@@ -441,8 +442,7 @@ class OvfReader {
     Oddity other_lasers_{"block is for another laser than the first; which one was left out",
                          "blocks are for another laser than the first; which one was left out"};
     DistinctNames names_;
-    Oddity dropped_{"line sequence had too few different points; it was dropped",
-                    "line sequences had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 } // namespace

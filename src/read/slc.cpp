@@ -228,12 +228,10 @@ class SlcReader {
     std::vector<Sampling> table_;
     std::vector<RawLayer> raw_;
     std::optional<double> top_;
-    Oddity unclosed_{"contour did not return to its first point; it was closed",
-                     "contours did not return to their first point; they were closed"};
+    UnclosedContours unclosed_;
     Oddity gaps_{"contour has gaps, which were taken for lines",
                  "contours have gaps, which were taken for lines"};
-    Oddity dropped_{"contour had too few different points; it was dropped",
-                    "contours had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 } // namespace

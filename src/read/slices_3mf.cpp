@@ -213,8 +213,7 @@ class SliceModelReader {
     std::uint32_t last_ = 0;
     Object* object_ = nullptr;
     Oddity open_{"contour is open", "contours are open"};
-    Oddity dropped_{"contour had too few different points; it was dropped",
-                    "contours had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 /// A stack where a build item puts it.

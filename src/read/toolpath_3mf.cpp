@@ -217,7 +217,7 @@ class LayerReader {
         }
     }
 
-    void end(XmlName name, Oddity& dropped) {
+    void end(XmlName name, DroppedContours& dropped) {
         if (!is_toolpath(name.space) || name.local != "segment")
             return;
         const auto where = [this] {
@@ -397,8 +397,7 @@ class ToolpathReader {
     DistinctNames names_;
     Oddity other_lasers_{"segment is for another laser than the first; which one was left out",
                          "segments are for another laser than the first; which one was left out"};
-    Oddity dropped_{"contour had too few different points; it was dropped",
-                    "contours had too few different points; they were dropped"};
+    DroppedContours dropped_;
 };
 
 } // namespace
