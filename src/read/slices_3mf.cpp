@@ -7,6 +7,7 @@
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
+#include "core/farthest.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
@@ -39,18 +40,11 @@ struct Stack {
     std::vector<Slice> slices;
 };
 
-struct Use {
-    std::uint32_t object = 0;
-    Transform placement; ///< in the unit of the model
-    std::size_t line = 0;
-    bool elsewhere = false; ///< of another part of the package
-};
-
 struct Object {
     std::string name;
     std::shared_ptr<const Stack> stack;
-    std::vector<Use> components;
-    bool support = false;
+    std::vector<ThreeMfUse> components;
+    ThreeMfObjectType type = ThreeMfObjectType::model;
 };
 
 /// What a copy of the contours takes.
@@ -85,7 +79,7 @@ class SliceModelReader {
 
     [[nodiscard]] double unit() const { return unit_; }
     [[nodiscard]] const std::map<std::uint32_t, Object>& objects() const { return objects_; }
-    [[nodiscard]] const std::vector<Use>& items() const { return items_; }
+    [[nodiscard]] const std::vector<ThreeMfUse>& items() const { return items_; }
     [[nodiscard]] const std::map<std::uint32_t, std::shared_ptr<const Stack>>& stacks() const {
         return stacks_;
     }
@@ -102,20 +96,24 @@ class SliceModelReader {
         const std::string_view name = element.name.local;
         if (name == "model") {
             unit_ = element.unit_mm();
+            static_cast<void>(element.required_extensions());
         } else if (name == "object") {
             const std::string_view label = element["name"].text;
             limits_.add_bytes_at(node_bytes + sizeof(Object) + label.size(), place());
-            object_ = &objects_[element["id"].index()];
-            const std::string_view type = element["type"].text;
-            *object_ = {std::string(label), nullptr, {}, type == "solidsupport" || type == "support"};
+            const std::uint32_t id = element["id"].index();
+            const auto [object, is_new] =
+                objects_.try_emplace(id, Object{std::string(label), nullptr, {}, element.object_type()});
+            if (!is_new)
+                element.fail(fmt::format("id {} for the second time", id), "ids that differ");
+            object_ = &object->second;
             if (const ThreeMfValue stack = element[XmlName{three_mf::slices, "slicestackid"}]; stack.is_there)
                 object_->stack = stack_of(stack);
         } else if (name == "component" && object_ != nullptr) {
             limits_.make_room(object_->components, 1, place());
-            object_->components.push_back(use(element));
+            object_->components.push_back(element.use(unit_));
         } else if (name == "item") {
             limits_.make_room(items_, 1, place());
-            items_.push_back(use(element));
+            items_.push_back(element.use(unit_));
         }
     }
 
@@ -195,18 +193,13 @@ class SliceModelReader {
         return found->second;
     }
 
-    static Use use(const ThreeMfElement& element) {
-        return {element["objectid"].index(), element.transform(), element.line,
-                element[XmlName{three_mf::production, "path"}].is_there};
-    }
-
     FindStack find_;
     ReadLimits& limits_;
     std::size_t line_ = 0;
     double unit_ = 1;
     std::map<std::uint32_t, std::shared_ptr<const Stack>> stacks_;
     std::map<std::uint32_t, Object> objects_;
-    std::vector<Use> items_;
+    std::vector<ThreeMfUse> items_;
     std::shared_ptr<Stack> stack_; ///< under construction
     std::vector<Point2> vertices_;
     std::optional<std::uint32_t> start_; ///< of the polygon under construction
@@ -220,7 +213,7 @@ class SliceModelReader {
 struct Placed {
     std::string label;
     std::shared_ptr<const Stack> stack;
-    Transform placement; ///< to millimetres
+    Transform placement; ///< of millimetres
     double scale = 1;    ///< of heights
     double shift = 0;
     bool support = false;
@@ -242,13 +235,15 @@ class PackageReader {
         unit_ = model->unit();
         // The build of a package of meshes alone may say more than is understood here.
         if (!model->stacks().empty())
-            for (const Use& item : model->items())
+            for (const ThreeMfUse& item : model->items())
                 place(*model, item, {}, false, 0);
         if (placed_.empty())
             throw NoLayers(
                 fmt::format("{}: found no slice stack in the build; a 3MF file of layers has one for each "
                             "object",
                             zip_.name()));
+        for (const Oddity* oddity : {&without_slices_, &no_solid_, &not_printed_})
+            oddity->say(file_.warnings);
         make_layers();
     }
 
@@ -284,12 +279,12 @@ class PackageReader {
         return found->second;
     }
 
-    void place(const SliceModelReader& model, const Use& use, const Transform& outer, bool in_support,
+    void place(const SliceModelReader& model, const ThreeMfUse& use, const Transform& outer, bool in_support,
                int depth) {
         constexpr int deepest = 32;
         constexpr std::size_t most = std::size_t{1} << 20;
         // Such packages are read for their meshes.
-        if (use.elsewhere)
+        if (!use.part.empty())
             throw NoLayers(fmt::format("{}, line {}: found an object of another part; slices are read of the "
                                        "objects of one part",
                                        zip_.name(), use.line));
@@ -301,10 +296,23 @@ class PackageReader {
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: found components within components without end",
                                     zip_.name(), use.line));
+        const ThreeMfObjectType type = object->second.type;
+        const bool is_other = type == ThreeMfObjectType::other;
+        if (depth == 0 && is_other)
+            throw Error(ErrorKind::input, fmt::format("{}, line {}: the build holds object {}, whose type "
+                                                      "'other' says that it is not to be made",
+                                                      zip_.name(), use.line, use.object));
+        if (depth == 0 && !use.printable)
+            return not_printed_.note(at_line(use.line));
+        if (is_other || type == ThreeMfObjectType::surface)
+            return no_solid_.note(at_line(use.line));
         const Transform placement = compose(outer, use.placement);
-        const bool support = in_support || object->second.support;
+        const bool support =
+            in_support || type == ThreeMfObjectType::support || type == ThreeMfObjectType::solid_support;
         if (!object->second.stack) { // a stack above its components counts, not theirs
-            for (const Use& component : object->second.components)
+            if (object->second.components.empty())
+                without_slices_.note(at_line(use.line));
+            for (const ThreeMfUse& component : object->second.components)
                 place(model, component, placement, support, depth + 1);
             return;
         }
@@ -325,7 +333,13 @@ class PackageReader {
                 fmt::format("{}, line {}: found a transform that tilts slices or changes their heights; "
                             "slices may only be moved, and turned, scaled and mirrored in their plane",
                             zip_.name(), line));
-        return {object.name, object.stack, placement, unit_, placement.offset[2] * unit_};
+        return {object.name, object.stack, placement, unit_, placement.offset[2]};
+    }
+
+    void check_reach(const Point3& p) const {
+        if (is_too_far(p))
+            throw Error(ErrorKind::input, fmt::format("{}: the build puts slices further away than {} mm",
+                                                      zip_.name(), farthest_mm));
     }
 
     /// A part of the file, counted as in the build, for errors.
@@ -343,8 +357,10 @@ class PackageReader {
         for (std::size_t k = 0; k < placed_.size(); ++k) {
             const Placed& part = placed_[k];
             limits_.make_room(heights, 1 + part.stack->slices.size(), place_of(k));
+            check_reach({0, 0, part.height(part.stack->bottom)});
             heights.push_back(part.height(part.stack->bottom));
             for (const Slice& slice : part.stack->slices) {
+                check_reach({0, 0, part.height(slice.top)});
                 heights.push_back(part.height(slice.top));
                 points += slice.raw.points.size();
             }
@@ -425,8 +441,9 @@ class PackageReader {
             for (std::size_t i = begin; i < contour.end; ++i) {
                 // A mirrored ring would run the wrong way round.
                 const Point2& p = raw.points[mirrors ? contour.end - 1 - (i - begin) : i];
-                const Point3 at = part.placement(Point3{p.x, p.y, 0});
-                builder.add_point({at.x * unit_, at.y * unit_});
+                const Point3 at = part.placement(Point3{p.x * unit_, p.y * unit_, 0});
+                check_reach(at);
+                builder.add_point({at.x, at.y});
             }
             builder.end_contour(contour.closed);
             begin = contour.end;
@@ -443,6 +460,12 @@ class PackageReader {
     std::map<std::string, std::unique_ptr<SliceModelReader>> parts_;
     std::vector<Placed> placed_;
     std::size_t uses_ = 0;
+    Oddity without_slices_{"object of the build has no slices; it was left out",
+                           "objects of the build have no slices; they were left out"};
+    Oddity no_solid_{"object is of type surface or other, which is no solid; it was left out",
+                     "objects are of type surface or other, which are no solids; they were left out"};
+    Oddity not_printed_{"item is marked in the build as not to be printed; it was left out",
+                        "items are marked in the build as not to be printed; they were left out"};
 };
 
 } // namespace

@@ -14,7 +14,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -28,52 +27,10 @@ namespace {
 
 constexpr std::string_view xml_space = "http://www.w3.org/XML/1998/namespace";
 
-/// Extensions without which a reader of meshes gets on, also where a file requires them.
-constexpr std::array extensions = {
-    three_mf::core,
-    three_mf::production,
-    three_mf::slices,
-    three_mf::beams, // beams themselves are refused
-    three_mf::materials,
-    std::string_view("http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04"),
-    std::string_view("http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07"),
-};
-
-constexpr std::array<std::pair<std::string_view, ThreeMfObjectType>, 5> types = {{
-    {"model", ThreeMfObjectType::model},
-    {"solidsupport", ThreeMfObjectType::solid_support},
-    {"support", ThreeMfObjectType::support},
-    {"surface", ThreeMfObjectType::surface},
-    {"other", ThreeMfObjectType::other},
-}};
-
 constexpr std::uint32_t largest_id = 0x7FFFFFFF;
 constexpr std::size_t longest_object_name = 200;
 constexpr std::size_t longest_model_title = 1000;
 constexpr std::size_t most_remarks = 50;
-
-/// The extensions that a <model> requires, by the prefixes that it declares.
-std::set<std::string> required_extensions(const ThreeMfElement& element,
-                                          const std::map<std::string, std::string>& spaces) {
-    std::set<std::string> required;
-    std::string_view prefixes = element["requiredextensions"].text;
-    while (!prefixes.empty()) {
-        const std::string prefix(prefixes.substr(0, prefixes.find_first_of(" \t\r\n")));
-        prefixes = trimmed(prefixes.substr(prefix.size()));
-        const auto space = spaces.find(prefix);
-        if (space == spaces.end())
-            element.fail(fmt::format("that the file requires the extension '{}' without saying what that is",
-                                     printable(prefix, 40)),
-                         "a prefix that it declares");
-        if (std::find(extensions.begin(), extensions.end(), space->second) == extensions.end())
-            element.fail(
-                fmt::format("that the file requires the extension '{}' ({}), which is not known here",
-                            printable(prefix, 40), printable(space->second, 200)),
-                "none, or one that readers of meshes get on without");
-        required.insert(space->second);
-    }
-    return required;
-}
 
 /// An <object> without what is in it.
 ThreeMfObject object_of(const ThreeMfElement& element) {
@@ -81,14 +38,7 @@ ThreeMfObject object_of(const ThreeMfElement& element) {
     object.id = element["id"].index();
     object.line = element.line;
     object.name = printable(element["name"].text, longest_object_name);
-    if (const ThreeMfValue type = element["type"]; type.is_there) {
-        const auto* const known =
-            std::find_if(types.begin(), types.end(), [&](const auto& row) { return row.first == type.text; });
-        if (known == types.end())
-            element.fail(fmt::format("an object of type '{}'", printable(type.text, 40)),
-                         "model, solidsupport, support, surface or other");
-        object.type = known->second;
-    }
+    object.type = element.object_type();
     return object;
 }
 
@@ -102,24 +52,6 @@ TriangleIndices triangle_of(const ThreeMfElement& element, std::size_t vertices)
                          fmt::format("less than {}, the number of vertices", vertices));
     }
     return corners;
-}
-
-/// A <component> of an object, or an <item> of the build.
-ThreeMfUse use_of(const ThreeMfElement& element, bool is_root, double unit_mm) {
-    ThreeMfUse use;
-    use.line = element.line;
-    use.object = element["objectid"].index();
-    use.printable = element["printable"].text != "0";
-    if (const ThreeMfValue path = element[XmlName{three_mf::production, "path"}]; path.is_there) {
-        if (!is_root)
-            element.fail(fmt::format("path '{}' in a part that is not the root", printable(path.text, 100)),
-                         "none: only the root may refer to other parts");
-        use.part = path.text;
-    }
-    use.placement = element.transform();
-    for (double& offset : use.placement.offset)
-        offset *= unit_mm;
-    return use;
 }
 
 /// The ids of a part: all its resources share one set of them.
@@ -230,7 +162,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
             is_beta_ = name.space == three_mf::beta_core;
         if (is_beta_ && name.space == three_mf::beta_core)
             name.space = three_mf::core;
-        return start({document().source, name, attributes, line()});
+        return start({document().source, name, attributes, line(), spaces_});
     }
 
     Where start(const ThreeMfElement& element) {
@@ -282,7 +214,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         document().unit_mm = element.unit_mm();
         if (element[XmlName{xml_space, "space"}].is_there)
             remark("found xml:space, which 3MF files must not use");
-        required_ = required_extensions(element, spaces_);
+        required_ = element.required_extensions();
         return Where::model;
     }
 
@@ -352,15 +284,22 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         return Where::elsewhere;
     }
 
-    Where add_component(const ThreeMfElement& element) {
+    [[nodiscard]] ThreeMfUse use_of(const ThreeMfElement& element) {
         count(sizeof(ThreeMfUse));
-        object().components.push_back(use_of(element, is_root_, document().unit_mm));
+        ThreeMfUse use = element.use(document().unit_mm);
+        if (!is_root_ && !use.part.empty())
+            element.fail(fmt::format("path '{}' in a part that is not the root", printable(use.part, 100)),
+                         "none: only the root may refer to other parts");
+        return use;
+    }
+
+    Where add_component(const ThreeMfElement& element) {
+        object().components.push_back(use_of(element));
         return Where::elsewhere;
     }
 
     Where add_item(const ThreeMfElement& element) {
-        count(sizeof(ThreeMfUse));
-        document().items.push_back(use_of(element, is_root_, document().unit_mm));
+        document().items.push_back(use_of(element));
         return Where::elsewhere;
     }
 

@@ -3,10 +3,10 @@
 // One model part of a 3MF package, as it stands there.
 
 #include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/mesh/transform.hpp"
 
 #include "core/byte_source.hpp"
 #include "read/mesh_text.hpp"
+#include "read/three_mf_part.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -15,17 +15,6 @@
 #include <vector>
 
 namespace lamella {
-
-enum class ThreeMfObjectType { model, solid_support, support, surface, other };
-
-/// An object that is put somewhere: a component of another one, or an item of the build.
-struct ThreeMfUse {
-    std::uint32_t object = 0; ///< its id
-    std::string part;         ///< where it is defined; empty for the part that uses it
-    Transform placement;      ///< lengths in millimetres
-    bool printable = true;
-    std::size_t line = 0;
-};
 
 struct ThreeMfObject {
     std::uint32_t id = 0;

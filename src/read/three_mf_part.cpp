@@ -10,12 +10,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
 namespace lamella {
+
+namespace {
+
+/// Extensions without which readers of meshes and slices get on, also where a file requires them.
+constexpr std::array extensions = {
+    three_mf::core,
+    three_mf::production,
+    three_mf::slices,
+    three_mf::beams, // beams themselves are refused
+    three_mf::materials,
+    std::string_view("http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04"),
+    std::string_view("http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07"),
+};
+
+constexpr std::array<std::pair<std::string_view, ThreeMfObjectType>, 5> types = {{
+    {"model", ThreeMfObjectType::model},
+    {"solidsupport", ThreeMfObjectType::solid_support},
+    {"support", ThreeMfObjectType::support},
+    {"surface", ThreeMfObjectType::surface},
+    {"other", ThreeMfObjectType::other},
+}};
+
+} // namespace
 
 std::uint32_t ThreeMfValue::index() const {
     require();
@@ -108,6 +132,48 @@ Transform ThreeMfElement::transform() const {
     return map;
 }
 
+std::set<std::string> ThreeMfElement::required_extensions() const {
+    std::set<std::string> required;
+    std::string_view prefixes = (*this)["requiredextensions"].text;
+    while (!prefixes.empty()) {
+        const std::string prefix(prefixes.substr(0, prefixes.find_first_of(" \t\r\n")));
+        prefixes = trimmed(prefixes.substr(prefix.size()));
+        const auto space = spaces.find(prefix);
+        if (space == spaces.end())
+            fail(fmt::format("that the file requires the extension '{}' without saying what that is",
+                             printable(prefix, 40)),
+                 "a prefix that it declares");
+        if (std::find(extensions.begin(), extensions.end(), space->second) == extensions.end())
+            fail(fmt::format("that the file requires the extension '{}' ({}), which is not known here",
+                             printable(prefix, 40), printable(space->second, 200)),
+                 "none, or one that can be done without");
+        required.insert(space->second);
+    }
+    return required;
+}
+
+ThreeMfObjectType ThreeMfElement::object_type() const {
+    const ThreeMfValue type = (*this)["type"];
+    if (!type.is_there)
+        return ThreeMfObjectType::model;
+    for (const auto& [name, known] : types)
+        if (name == type.text)
+            return known;
+    fail(fmt::format("an object of type '{}'", printable(type.text, 40)),
+         "model, solidsupport, support, surface or other");
+}
+
+ThreeMfUse ThreeMfElement::use(double unit_mm) const {
+    ThreeMfUse use{.object = (*this)["objectid"].index(),
+                   .part = std::string((*this)[XmlName{three_mf::production, "path"}].text),
+                   .placement = transform(),
+                   .printable = (*this)["printable"].text != "0",
+                   .line = line};
+    for (double& offset : use.placement.offset)
+        offset *= unit_mm;
+    return use;
+}
+
 void ThreeMfElement::fail(std::string_view found, std::string_view expected) const {
     throw Error(ErrorKind::input,
                 fmt::format("{}, line {}: found {}, expected {}", document, line, found, expected));
@@ -131,8 +197,15 @@ ByteSource unpack_part(const ZipReader& package, const std::string& name) {
 void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,
                 const std::function<void(XmlName)>& end, Executor& executor) {
     XmlHandlers handlers;
+    std::map<std::string, std::string> spaces;
+    bool in_root = false;
+    handlers.declare = [&](std::string_view prefix, std::string_view space) {
+        if (!in_root)
+            spaces.emplace(prefix, space);
+    };
     handlers.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
-        start({part.name, name, attributes, line});
+        in_root = true;
+        start({part.name, name, attributes, line, spaces});
     };
     handlers.end = end;
     handlers.progress = [&](std::size_t) {

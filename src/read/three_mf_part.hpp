@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -20,6 +22,17 @@ namespace lamella {
 
 class Executor;
 struct ThreeMfElement;
+
+enum class ThreeMfObjectType { model, solid_support, support, surface, other };
+
+/// An object that is put somewhere: a component of another one, or an item of the build.
+struct ThreeMfUse {
+    std::uint32_t object = 0; ///< its id
+    std::string part;         ///< where it is defined; empty for the part that uses it
+    Transform placement;      ///< lengths in millimetres
+    bool printable = true;
+    std::size_t line = 0;
+};
 
 /// What an attribute of an element says. What is wrong with it is Error{input}, as ThreeMfElement::fail has
 /// it.
@@ -47,6 +60,7 @@ struct ThreeMfElement {
     XmlName name;
     const XmlAttributes& attributes;
     std::size_t line;
+    const std::map<std::string, std::string>& spaces; ///< by the prefixes that the root element declares
 
     [[nodiscard]] ThreeMfValue operator[](std::string_view attribute) const;
     [[nodiscard]] ThreeMfValue operator[](XmlName attribute) const;
@@ -56,6 +70,13 @@ struct ThreeMfElement {
     /// How a component or an item of the build is placed, in the unit of the model: twelve numbers, row by
     /// row of a matrix that rows are multiplied with from the left. Where there are none, nothing moves.
     [[nodiscard]] Transform transform() const;
+
+    /// The extensions that a <model> requires. Refuses those that readers of meshes and slices do not know.
+    [[nodiscard]] std::set<std::string> required_extensions() const;
+    /// Of an <object>.
+    [[nodiscard]] ThreeMfObjectType object_type() const;
+    /// What a <component> or an <item> of the build says, in a part of that unit.
+    [[nodiscard]] ThreeMfUse use(double unit_mm) const;
 
     /// Throws Error{input}: "x, part 'y', line 7: found `found`, expected `expected`".
     [[noreturn]] void fail(std::string_view found, std::string_view expected) const;

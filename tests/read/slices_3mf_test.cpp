@@ -16,9 +16,9 @@ namespace lamella::slices_3mf_cases {
 namespace {
 
 std::string model(const std::string& resources, const std::string& build,
-                  const std::string& unit = "millimeter") {
-    return "<model unit=\"" + unit +
-           "\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+                  const std::string& unit = "millimeter", const std::string& more = "") {
+    return "<model unit=\"" + unit + "\" " + more +
+           " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
            "xmlns:t=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"><resources>" +
            resources + "</resources><build>" + build + "</build></model>";
 }
@@ -118,6 +118,27 @@ TEST(ReadSlices3mf, MarksOfSupportsAreKept) {
         EXPECT_EQ(again.parts[i].support, file.parts[i].support);
 }
 
+TEST(ReadSlices3mf, WhatIsNoSolidNotPrintedOrWithoutSlicesIsLeftOutWithAWarning) {
+    const auto typed = [](int id, const std::string& type, const std::string& content) {
+        return "<object id=\"" + std::to_string(id) + "\" type=\"" + type + "\"" + content;
+    };
+    const LayerFile file =
+        read(model(stack(1, slice("1")) + object(2, 1) + typed(3, "surface", " t:slicestackid=\"1\"/>") +
+                       typed(4, "other", " t:slicestackid=\"1\"/>") + typed(5, "model", "><mesh/></object>") +
+                       typed(6, "model",
+                             "><components><component objectid=\"2\"/><component objectid=\"4\"/>"
+                             "<component objectid=\"5\"/></components></object>"),
+                   "<item objectid=\"2\"/><item objectid=\"2\" printable=\"0\"/><item objectid=\"3\"/>"
+                   "<item objectid=\"5\"/><item objectid=\"6\"/>"));
+    EXPECT_EQ(file.parts.size(), 2U);
+    EXPECT_EQ(file.warnings,
+              (std::vector<std::string>{
+                  "2 objects of the build have no slices; they were left out (first at line 1)",
+                  "2 objects are of type surface or other, which are no solids; they were left out (first at "
+                  "line 1)",
+                  "1 item is marked in the build as not to be printed; it was left out (first at line 1)"}));
+}
+
 TEST(ReadSlices3mf, PartsOfDifferentHeightsAreDividedAtAll) {
     const LayerFile file = read(
         model(stack(1, slice("2") + slice("4")) + object(2, 1) + stack(3, slice("3"), "1") + object(4, 3),
@@ -173,6 +194,25 @@ TEST(ReadSlices3mf, WhatBreaksTheRulesIsRefused) {
     expect(error_of(model(stack(1, slice("1")) + object(2, 1), item, "mile")), "found unit 'mile', expected");
     expect(error_of(model(stack(1, slice("1")) + stack(1, slice("1")) + object(2, 1), item)),
            "a second slice stack 1, expected ids that differ");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1) + object(2, 1), item)),
+           "found id 2 for the second time, expected ids that differ");
+    expect(error_of(
+               model(stack(1, slice("1")) + "<object id=\"2\" type=\"other\" t:slicestackid=\"1\"/>", item)),
+           "the build holds object 2, whose type 'other' says that it is not to be made");
+    expect(error_of(
+               model(stack(1, slice("1")) + "<object id=\"2\" type=\"solid\" t:slicestackid=\"1\"/>", item)),
+           "found an object of type 'solid', expected model");
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1), item, "millimeter",
+                          "requiredextensions=\"q\" xmlns:q=\"urn:unknown\"")),
+           "requires the extension 'q' (urn:unknown), which is not known here");
+    const auto over = [](int id, const std::string& inner) {
+        return "<object id=\"" + std::to_string(id) + "\"><components><component objectid=\"" +
+               std::to_string(id - 1) + "\" " + inner + "/></components></object>";
+    };
+    const std::string wide = "transform=\"1e38 0 0 0 1e38 0 0 0 1 0 0 0\"";
+    expect(error_of(model(stack(1, slice("1")) + object(2, 1) + over(3, wide) + over(4, wide) + over(5, wide),
+                          "<item objectid=\"5\"/>")),
+           "the build puts slices further away than 1e+100 mm");
     expect(error_of(model(stack(1, slice("1")), "")), "no slice stack in the build");
     expect(error_of(model(stack(1, "") + object(2, 1), item)), "without slices");
     expect(error_of(model(stack(1, "<t:sliceref slicestackid=\"1\" slicepath=\"/no.model\"/>") + object(2, 1),
