@@ -86,6 +86,7 @@ class CommonLayerGeometry {
         RawLayer& layer = layers_.back();
         std::vector<Point2>& points = hatches ? layer.hatches : layer.points;
         limits_.make_room(points, count, place);
+        layer.drawn = layer.drawn || count != 0;
         return points;
     }
     void add_point(std::vector<Point2>& to, double x, double y) {

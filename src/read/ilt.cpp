@@ -8,6 +8,7 @@
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"
 #include "core/parse_number.hpp"
+#include "read/common_layer.hpp"
 #include "read/coordinate_text.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
@@ -199,9 +200,10 @@ bool is_ilt(const ZipReader& zip) {
 
 LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
     const ByteSource list = zip.read(*zip.find(ilt_parameters));
-    std::vector<LayerFile> files;
+    std::vector<CommonLayerContent> contents;
     LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.oddities()};
     std::uint64_t bytes = 0;
+    std::vector<std::string> sections; // of `contents`
     std::set<const ZipEntry*> known;
     Oddity pulsed("file is for a pulsed beam; the distance and time of its points were left out",
                   "files are for a pulsed beam; the distance and time of its points were left out");
@@ -227,15 +229,22 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                 fmt::format("{}: found no Common Layer Interface header ($$HEADERSTART); files of this "
                             "archive must have one",
                             source.name));
-        files.push_back(read_common_layer(
+        contents.push_back(read_common_layer_content(
             source.text(), source.name, [&](std::string_view label) { return exposure_of(section, label); },
             limits, execution));
-        for (const std::string& warning : files.back().warnings)
-            result.warnings.push_back(fmt::format("{}: {}", section.name, warning));
+        sections.push_back(section.name);
     }
-    if (files.empty())
+    if (contents.empty())
         throw Error(ErrorKind::input,
                     fmt::format("{}: found parameters of no file; there must be one at least", list.name));
+    // The files tell together whether heights are tops or bottoms of layers.
+    const std::vector<double> bottoms = bottoms_of(contents, one_plane_mm, limits);
+    std::vector<LayerFile> files;
+    for (std::size_t i = 0; i < contents.size(); ++i) {
+        files.push_back(layers_of(std::move(contents[i]), bottoms, limits));
+        for (const std::string& warning : files.back().warnings)
+            result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
+    }
     pulsed.say(result.warnings);
     tell_unlisted(zip, known, result.warnings);
     result.units_mm = files.front().units_mm;

@@ -182,6 +182,7 @@ void sort_by_height(std::vector<RawLayer>& layers, std::vector<std::string>& war
         into.hatches.insert(into.hatches.end(), layers[i].hatches.begin(), layers[i].hatches.end());
         for (const auto& [end, part, behind] : layers[i].hatch_ends)
             into.hatch_ends.push_back({hatches + end, part, contours + behind});
+        into.drawn = into.drawn || layers[i].drawn;
         ++joined;
     }
     if (!layers.empty())

@@ -70,6 +70,7 @@ struct RawLayer {
     std::vector<Contour> ends;
     std::vector<Point2> hatches; ///< two points each
     std::vector<Hatches> hatch_ends;
+    bool drawn = false; ///< points came for it, be it of a contour that was dropped (Common Layer Interface)
 
     /// Where the contour under construction begins, in `points`.
     [[nodiscard]] std::size_t contour_begin() const { return ends.empty() ? 0 : ends.back().end; }

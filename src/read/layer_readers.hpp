@@ -11,8 +11,6 @@
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
 
-#include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,11 +30,6 @@ struct NoLayers : Error {
 /// Common Layer Interface 2.0, ASCII and binary. Comments may come before its header.
 [[nodiscard]] bool is_common_layer(std::string_view bytes);
 [[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
-                                          const Execution& execution);
-/// The same for a file of scan vectors: `exposure_of` tells what the part of a label is.
-using ExposureOfLabel = std::function<std::optional<Exposure>(std::string_view label)>;
-[[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name,
-                                          const ExposureOfLabel& exposure_of, ReadLimits& limits,
                                           const Execution& execution);
 
 /// ILT: Common Layer Interface files in a zip archive, with the list of their parameters, which tells it from

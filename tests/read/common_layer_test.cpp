@@ -183,6 +183,30 @@ TEST(ReadCommonLayer, ContoursOnTheBottomMakeHeightsBottoms) {
     EXPECT_EQ(file.warnings.size(), 1U);
 }
 
+TEST(ReadCommonLayer, WithoutABoxHeightsAreBottomsWhereTheFirstIsZeroOnly) {
+    const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
+    const LayerFile file = read(ascii("$$LAYER/-20\n" + triangle + "$$LAYER/0\n" + triangle));
+    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(file.parts.at(0).layers[0].bottom, -0.4, 1e-12);
+    EXPECT_EQ(file.parts.at(0).layers[1].top, 0);
+    EXPECT_TRUE(file.warnings.empty());
+}
+
+TEST(ReadCommonLayer, TheLayerThatTellsTheBottomHasNoPoints) {
+    const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
+    const std::string layers = "$$LAYER/50\n" + triangle + "$$LAYER/100\n" + triangle;
+    for (const std::string nothing : {"", "$$HATCHES/1,0\n", "$$POLYLINE/1,1,0\n"}) {
+        const LayerStack stack = read(ascii("$$LAYER/0\n" + nothing + layers)).parts.at(0).layers;
+        ASSERT_EQ(stack.size(), 2U) << nothing;
+        EXPECT_EQ(stack[0].bottom, 0);
+        EXPECT_EQ(stack[0].top, 0.5);
+    }
+    // A tip: contours that shrank to a point are dropped, their layer is not.
+    const LayerStack tip = read(ascii("$$LAYER/25\n$$POLYLINE/1,1,2,0,0,0,0\n" + layers)).parts.at(0).layers;
+    ASSERT_EQ(tip.size(), 3U);
+    EXPECT_EQ(tip[0].bottom, 0);
+}
+
 TEST(ReadCommonLayer, ASingleLayerBelowTheBottomOfThePartHasNoThickness) {
     const LayerFile file = read(ascii("$$LAYER/-10\n$$POLYLINE/1,1,4,0,0,9,0,9,9,0,0\n"));
     ASSERT_EQ(file.parts.at(0).layers.size(), 1U);

@@ -36,6 +36,37 @@ TEST(ReadIlt, NumbersMayHaveUnitsBehindThem) {
     EXPECT_EQ(set.focus_mm, -1.5);
 }
 
+TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
+    const auto layers = [](const std::vector<std::string>& heights) {
+        std::string text = "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n";
+        for (const std::string& height : heights)
+            text += "$$LAYER/" + height + "\n$$HATCHES/1,1,0,0," + height + ",5\n";
+        return text + "$$GEOMETRYEND\n";
+    };
+    const auto archive_of = [&](const std::vector<std::string>& high, const std::vector<std::string>& low) {
+        return zip_test::zip_bytes({{.name = std::string(ilt_parameters),
+                                     .content = "[a.cli]\nLaserSpeed = 1\nLaserPower = 1\n"
+                                                "[b.cli]\nLaserSpeed = 1\nLaserPower = 1\n"},
+                                    {.name = "a.cli", .content = layers(high)},
+                                    {.name = "b.cli", .content = layers(low)}});
+    };
+    // Vectors end at x = z of the file.
+    const auto expect_bottoms = [](const LayerFile& file) {
+        for (const LayerPart& part : file.parts) {
+            ASSERT_EQ(part.layers.size(), 4U);
+            for (const Layer& layer : part.layers)
+                for (std::size_t i = 1; i < layer.hatches.size(); i += 2)
+                    EXPECT_EQ(layer.bottom, layer.hatches[i].x);
+        }
+        EXPECT_EQ(file.parts.at(0).layers[3].top, 4);
+    };
+    const std::vector<std::string> all = {"0", "1", "2", "3"};
+    expect_bottoms(read(archive_of({"2", "3"}, all)));
+    expect_bottoms(read(archive_of({"1", "3"}, all)));
+    expect_bottoms(read(archive_of({"0", "2"}, {"1", "3"})));
+    EXPECT_EQ(read(archive_of({"2", "3"}, {"1", "2"})).parts.at(0).layers.at(0).bottom, 0);
+}
+
 TEST(ReadIlt, RefusesWhatIsANumberOnlyAtItsBeginning) {
     for (const std::string value : {"800,5", "800,5 mm/s", "800mm/s", "0x10", "1.5.2"}) {
         const std::string error = test::error_of(
