@@ -84,13 +84,20 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             begin += 1;
     }
     Bytes in(bytes, std::min(begin, bytes.size()), header.aligned, name);
-    // The standard says that 16-bit coordinates are unsigned; exports exist that are signed, and only the
+    // The standard says that 16-bit numbers are unsigned; exports exist that are signed, and only the
     // header's box tells: unsigned where it is said to be non-negative.
-    const bool has_signs = header.dimension && ((*header.dimension)[0] < 0 || (*header.dimension)[1] < 0);
+    const auto reaches_below = [&](std::size_t axis) {
+        return header.dimension && (*header.dimension)[axis] < 0;
+    };
+    const bool signed_heights = reaches_below(2);
+    const bool signed_points = reaches_below(0) || reaches_below(1);
+    const auto number = [](std::uint16_t bits, bool has_sign) {
+        return has_sign ? static_cast<double>(static_cast<std::int16_t>(bits)) : static_cast<double>(bits);
+    };
     const auto short_number = [&](const char* from) {
         std::uint16_t bits = 0;
         std::memcpy(&bits, from, sizeof bits);
-        return has_signs ? static_cast<double>(static_cast<std::int16_t>(bits)) : static_cast<double>(bits);
+        return number(bits, signed_points);
     };
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
@@ -113,7 +120,7 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             break;
         }
         case CommonLayerCommand::layer_short:
-            geometry.start_layer(in.take<std::uint16_t>("a layer"), place());
+            geometry.start_layer(number(in.take<std::uint16_t>("a layer"), signed_heights), place());
             break;
         case CommonLayerCommand::polyline_short:
         case CommonLayerCommand::polyline_long:

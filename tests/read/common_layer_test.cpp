@@ -278,6 +278,16 @@ TEST(ReadCommonLayer, ShortNumbersAreSignedWhereTheBoxIsNegative) {
     expect_ring(read(binary(geometry, "$$UNITS/0.01\n$$DIMENSION/-5,-5,0,5,5,0.5\n")), 100);
 }
 
+TEST(ReadCommonLayer, ShortHeightsAreSignedWhereTheBoxReachesBelowZero) {
+    const std::string geometry =
+        u16(128, 65526, 128, 65536 - 5, 129, 1, 1, 5, 0, 0, 10, 0, 10, 10, 0, 10, 0, 0);
+    const LayerFile file = read(binary(geometry, "$$UNITS/1\n$$DIMENSION/0,0,-10,10,10,0\n"));
+    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
+    EXPECT_EQ(file.parts[0].layers[0].bottom, -10);
+    EXPECT_EQ(file.parts[0].layers[0].top, -5);
+    EXPECT_TRUE(file.warnings.empty());
+}
+
 TEST(ReadCommonLayer, AlignedGeometryStartsOnAWordAndPadsShortNumbers) {
     std::string head = "$$HEADERSTART\n$$BINARY\n$$UNITS/0.01\n$$ALIGN\n";
     while ((head.size() + 12) % 4 != 0)
