@@ -43,6 +43,8 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
     std::size_t reported = 0;
+    std::size_t layer_at = 0; // the last one begins there
+    std::uint64_t layer_line = 1;
     for (;;) {
         text.skip_blanks();
         if (text.done())
@@ -62,7 +64,9 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
         if (command == "LAYER") {
             text.expect('/', "the layer's height");
             const double z = text.number("the layer's height");
-            geometry.start_layer(z, fmt::format("byte {}", command_at));
+            layer_line += line_at(bytes.substr(layer_at), command_at - layer_at) - 1;
+            layer_at = command_at;
+            geometry.start_layer(z, fmt::format("line {}", layer_line));
         } else if (command == "POLYLINE" || command == "HATCHES") {
             if (!geometry.in_layer())
                 text.fail(fmt::format("$${} before the first $$LAYER", command),

@@ -1,7 +1,7 @@
 #include "read/common_layer_header.hpp"
 
+#include "container/xml.hpp"
 #include "read/common_layer_text.hpp"
-#include "read/coordinate_text.hpp"
 
 #include <fmt/format.h>
 
@@ -15,20 +15,15 @@ namespace {
 
 constexpr std::string_view end_command = "$$HEADEREND";
 
-std::string_view unquoted(std::string_view text) {
-    while (!text.empty() && is_blank(text.back()))
-        text.remove_suffix(1);
-    if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
-        text = text.substr(1, text.size() - 2);
-    return text;
-}
-
-/// A label's line without the comment that may follow.
-std::string_view before_comment(std::string_view line) {
+/// The label that begins a line: up to its other quote, or else to the comment or command that may follow.
+std::string_view label_of(std::string_view line) {
+    line = trimmed(line);
+    if (line.starts_with('"') && line.find('"', 1) != std::string_view::npos)
+        return line.substr(1, line.find('"', 1) - 1);
     const std::size_t comment = line.find("//");
-    const bool ends =
-        comment != std::string_view::npos && line.find("//", comment + 2) != std::string_view::npos;
-    return ends ? line.substr(0, comment) : line;
+    if (comment != std::string_view::npos && line.find("//", comment + 2) != std::string_view::npos)
+        line = line.substr(0, comment);
+    return trimmed(line.substr(0, line.find("$$")));
 }
 
 /// The part's number in "/1,name".
@@ -88,11 +83,15 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
                 header.layers = static_cast<std::uint64_t>(count);
         } else if (command == "LABEL") {
             const std::size_t line_end = std::min(bytes.find_first_of("\r\n", text.at()), bytes.size());
-            const std::string_view line = before_comment(bytes.substr(text.at(), line_end - text.at()));
+            const std::string_view line = bytes.substr(text.at(), line_end - text.at());
             const std::size_t comma = line.find(',');
-            if (const auto part = label_number(line); part && comma != std::string_view::npos)
-                header.labels.try_emplace(*part, unquoted(line.substr(comma + 1)));
-            text.move_to(line_end);
+            if (const auto part = label_number(line); part && comma != std::string_view::npos) {
+                const std::string_view label = label_of(line.substr(comma + 1));
+                header.labels.try_emplace(*part, label);
+                if (!label.empty())
+                    text.move_to(static_cast<std::size_t>(label.data() + label.size() - bytes.data()));
+            }
+            text.skip_to_command();
         } else if (command == "USERDATA") {
             // $$USERDATA/uid,length,bytes: the bytes may hold anything.
             const std::size_t first = bytes.find(',', text.at());

@@ -3,16 +3,14 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
-#include "core/parse_number.hpp"
 #include "read/coordinate_text.hpp"
+#include "read/decimal_text.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 namespace lamella {
 
@@ -74,18 +72,11 @@ class CommonLayerText {
 
     double number(const char* what) {
         skip_blanks();
-        const std::size_t begin = at_;
-        const char* from = text_.data() + at_;
-        const char* const end = text_.data() + text_.size();
-        if (from != end && *from == '+')
-            ++from;
         double value = 0;
-        const char* const to = parse_number(from, end, value);
-        if (to == from || !std::isfinite(value)) {
-            at_ = begin;
+        const char* const to = read_decimal(text_.data() + at_, text_.data() + text_.size(), value);
+        if (to == nullptr)
             fail(fmt::format("'{}'", printable(rest().substr(0, rest().find_first_of(", \t\r\n")), 40)),
                  fmt::format("{} must be a number", what));
-        }
         at_ = static_cast<std::size_t>(to - text_.data());
         return value;
     }

@@ -142,6 +142,30 @@ TEST(ReadCommonLayer, LabelsEndWhereACommentBegins) {
     EXPECT_EQ(read(ascii(ring, "$$UNITS/0.01\n$$LABEL/1,http://a\n")).parts.at(0).label, "http://a");
 }
 
+TEST(ReadCommonLayer, CommandsMayFollowALabelOnItsLine) {
+    for (const std::string label : {"a part", "\"a part\"", "\"a part\" // 1 //"}) {
+        const LayerFile file = read(ascii(ring, "$$LABEL/1," + label + " $$UNITS/0.01 $$LABEL/2,other\n"));
+        expect_ring(file, 96);
+        EXPECT_EQ(file.parts.at(0).label, "a part");
+        EXPECT_EQ(file.parts.at(1).label, "other");
+    }
+    EXPECT_EQ(read(ascii(ring, "$$LABEL/1,\"5 $$ // a //\"\n$$UNITS/0.01\n")).parts.at(0).label,
+              "5 $$ // a //");
+    EXPECT_EQ(read(ascii(ring, "$$LABEL/1,\"half\n$$UNITS/0.01\n")).parts.at(0).label, "\"half");
+}
+
+TEST(ReadCommonLayer, NumbersHaveOneSign) {
+    expect_error(ascii("$$LAYER/+-1.0\n"), "line 7: found '+-1.0'; the layer's height must be a number");
+}
+
+TEST(ReadCommonLayer, PlacesInTextsAreLines) {
+    const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$LAYER/20\n"));
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_NE(file.warnings[0].find("z = 0.2 mm follows z = 0.5 mm (line 9)"), std::string::npos)
+        << file.warnings[0];
+    expect_error(ascii("$$LAYER/0\n$$LAYER/1e200\n"), "layer at line 8");
+}
+
 TEST(ReadCommonLayer, UserDataMayHoldCommands) {
     expect_ring(read(ascii(ring, "$$USERDATA/me,12,$$HEADEREND\n\n$$UNITS/0.01\n")), 96);
     expect_error(ascii(ring, "$$USERDATA/me,99999,x\n$$UNITS/0.01\n"), "user data of 99999 bytes");

@@ -206,7 +206,7 @@ TEST_F(LimitsOfReading, LayersOfTheCommonLayerInterfaceAreCountedBeforeTheyAreMa
                                repeated("\x81\0\1\0\1\0\4\0\0\0\0\0\1\0\0\0\1\0\1\0\0\0\0\0"s, 1'000'000)),
         "byte ");
     const std::string text = head + "$$ASCII\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n";
-    expect_refused(file("layers.cli", text + repeated("$$LAYER/1\n", 500'000) + "$$GEOMETRYEND"), "byte ");
+    expect_refused(file("layers.cli", text + repeated("$$LAYER/1\n", 500'000) + "$$GEOMETRYEND"), "line ");
     expect_refused(
         file("rings.cli", text + repeated("$$POLYLINE/1,1,3,0,0,1,0,0,1\n", 1'000'000) + "$$GEOMETRYEND"),
         "line ");
