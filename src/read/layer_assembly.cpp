@@ -153,43 +153,21 @@ void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_
                                 file.path, file.parts.size(), planes, bytes));
 }
 
+void RawLayer::append(const RawLayer& other) {
+    const std::size_t contours = ends.size();
+    const std::size_t had_points = points.size();
+    points.insert(points.end(), other.points.begin(), other.points.end());
+    for (const auto& [end, closed, part] : other.ends)
+        ends.push_back({had_points + end, closed, part});
+    const std::size_t had_hatches = hatches.size();
+    hatches.insert(hatches.end(), other.hatches.begin(), other.hatches.end());
+    for (const auto& [end, part, behind] : other.hatch_ends)
+        hatch_ends.push_back({had_hatches + end, part, contours + behind});
+    drawn = drawn || other.drawn;
+}
+
 void sort_by_height(std::vector<RawLayer>& layers, std::vector<std::string>& warnings) {
-    const auto below = [](const RawLayer& a, const RawLayer& b) {
-        return a.z < b.z;
-    };
-    if (!std::is_sorted(layers.begin(), layers.end(), below)) {
-        const auto first = std::is_sorted_until(layers.begin(), layers.end(), below);
-        warnings.push_back(
-            fmt::format("layers do not ascend: z = {} mm follows z = {} mm ({}); they were sorted", first->z,
-                        std::prev(first)->z, first->place));
-        std::stable_sort(layers.begin(), layers.end(), below);
-    }
-    std::size_t kept = 0;
-    std::size_t joined = 0;
-    for (std::size_t i = 1; i < layers.size(); ++i) {
-        if (layers[i].z != layers[kept].z) {
-            if (++kept != i)
-                layers[kept] = std::move(layers[i]);
-            continue;
-        }
-        RawLayer& into = layers[kept];
-        const std::size_t contours = into.ends.size();
-        const std::size_t points = into.points.size();
-        into.points.insert(into.points.end(), layers[i].points.begin(), layers[i].points.end());
-        for (const auto& [end, closed, part] : layers[i].ends)
-            into.ends.push_back({points + end, closed, part});
-        const std::size_t hatches = into.hatches.size();
-        into.hatches.insert(into.hatches.end(), layers[i].hatches.begin(), layers[i].hatches.end());
-        for (const auto& [end, part, behind] : layers[i].hatch_ends)
-            into.hatch_ends.push_back({hatches + end, part, contours + behind});
-        into.drawn = into.drawn || layers[i].drawn;
-        ++joined;
-    }
-    if (!layers.empty())
-        layers.resize(kept + 1);
-    if (joined != 0)
-        warnings.push_back(
-            fmt::format("{} layers have the height of the one before; they were joined", joined));
+    sort_by_height(layers, warnings, [](const RawLayer& a, const RawLayer& b) { return a.z == b.z; });
 }
 
 } // namespace lamella

@@ -8,11 +8,16 @@
 #include "core/distinct_names.hpp"
 #include "read/read_limits.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -98,6 +103,9 @@ struct RawLayer {
         hatch_ends.push_back({hatches.size(), part, ends.size()});
     }
 
+    /// Puts contours and hatches of a layer of the same height behind its own.
+    void append(const RawLayer& other);
+
   private:
     bool keep_contour(bool closed, std::uint32_t part);
 };
@@ -167,7 +175,38 @@ void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double t
 /// of small parts is such.
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes);
 
-/// Puts heights in ascending order and joins equal ones; warns when it had to.
+/// Puts heights in ascending order and joins layers that are the same, such as those of equal heights; warns
+/// when it had to. `T` is a RawLayer with what else the file says of it.
+template <class T, class Same>
+void sort_by_height(std::vector<T>& layers, std::vector<std::string>& warnings, const Same& same) {
+    const auto below = [](const T& a, const T& b) {
+        return a.z < b.z;
+    };
+    if (!std::is_sorted(layers.begin(), layers.end(), below)) {
+        const auto first = std::is_sorted_until(layers.begin(), layers.end(), below);
+        warnings.push_back(
+            fmt::format("layers do not ascend: z = {} mm follows z = {} mm ({}); they were sorted", first->z,
+                        std::prev(first)->z, first->place));
+        std::stable_sort(layers.begin(), layers.end(), below);
+    }
+    std::size_t kept = 0;
+    std::size_t joined = 0;
+    for (std::size_t i = 1; i < layers.size(); ++i) {
+        if (same(layers[i], layers[kept])) {
+            layers[kept].append(layers[i]);
+            ++joined;
+        } else if (++kept != i) {
+            layers[kept] = std::move(layers[i]);
+        }
+    }
+    if (joined != 0) {
+        layers.resize(kept + 1);
+        warnings.push_back(joined == 1 ? "1 layer has the height of the one before; they were joined"
+                                       : fmt::format("{} layers have the height of the one before; they were "
+                                                     "joined",
+                                                     joined));
+    }
+}
 void sort_by_height(std::vector<RawLayer>& layers, std::vector<std::string>& warnings);
 
 } // namespace lamella

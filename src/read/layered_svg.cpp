@@ -4,7 +4,7 @@
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
-#include "core/parse_number.hpp"
+#include "read/decimal_text.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
@@ -45,12 +45,8 @@ class Numbers {
     double next() {
         skip_separators();
         double value = 0;
-        const char* from = text_.data();
-        const char* const end = from + text_.size();
-        if (from != end && *from == '+')
-            ++from;
-        const char* const to = parse_number(from, end, value);
-        if (to == from || is_too_far(value))
+        const char* const to = read_decimal(text_.data(), text_.data() + text_.size(), value);
+        if (to == nullptr || is_too_far(value))
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: found '{}'; a coordinate must be a number within {}", name_,
                                     line_, printable(text_.substr(0, text_.find_first_of(" ,")), 40),
@@ -69,12 +65,11 @@ class Numbers {
     std::size_t line_;
 };
 
-/// One <g> of the file.
-struct Group {
-    RawLayer contours; ///< z as the file has it
+/// One <g> of the file. Its own z is as the file has it.
+struct Group : RawLayer {
     std::optional<double> slice_z;
     std::optional<double> height;
-    double z = 0; ///< where its layer lies
+    double cut = 0; ///< where its layer lies
     double bottom = 0;
     double top = 0;
 };
@@ -85,23 +80,19 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
     double highest = 0;
     bool has_slice_z = false;
     for (const Group& group : groups) {
-        highest = std::max(highest, std::abs(group.contours.z));
+        highest = std::max(highest, std::abs(group.z));
         has_slice_z = has_slice_z || group.slice_z.has_value();
     }
     const bool legacy = !has_slice_z && highest < 0.01;
     for (Group& group : groups)
-        group.contours.z *= legacy ? 1e6 : 1;
-    const auto below = [](const Group& a, const Group& b) {
-        return a.contours.z < b.contours.z;
-    };
-    if (!std::is_sorted(groups.begin(), groups.end(), below)) {
-        warnings.emplace_back("layers do not ascend; they were sorted");
-        std::stable_sort(groups.begin(), groups.end(), below);
-    }
+        group.z *= legacy ? 1e6 : 1;
+    // Layers that are cut at different heights are not one, though their tops be rounded to one.
+    sort_by_height(groups, warnings,
+                   [](const Group& a, const Group& b) { return a.z == b.z && a.slice_z == b.slice_z; });
     const std::size_t n = groups.size();
     const auto step_below = [&](std::size_t i) {
         const auto z = [&](std::size_t k) {
-            return groups[k].contours.z;
+            return groups[k].z;
         };
         if (i > 0)
             return z(i) - z(i - 1);
@@ -110,21 +101,22 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
     for (std::size_t i = 0; i < n; ++i) {
         Group& group = groups[i];
         const double thickness = group.height.value_or(step_below(i));
-        group.top = legacy ? group.contours.z + thickness / 2 : group.contours.z;
+        group.top = legacy ? group.z + thickness / 2 : group.z;
         group.bottom = group.top - thickness;
         const double middle = group.bottom + thickness / 2;
-        group.z = legacy ? group.contours.z : group.slice_z.value_or(middle);
+        group.cut = legacy ? group.z : group.slice_z.value_or(middle);
         // Heights are rounded each by itself, or somebody else's: a layer is cut within its thickness.
-        group.bottom = std::min(group.bottom, group.z);
-        group.top = std::max(group.top, group.z);
+        group.bottom = std::min(group.bottom, group.cut);
+        group.top = std::max(group.top, group.cut);
     }
-    std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.z < b.z; });
+    std::stable_sort(groups.begin(), groups.end(),
+                     [](const Group& a, const Group& b) { return a.cut < b.cut; });
     // Heights and thicknesses were rounded each by itself: what is no farther from the layer below than that
     // lies on it.
     constexpr double rounding = 1e-3;
     for (std::size_t i = 1; i < n; ++i) {
         const double top_below = groups[i - 1].top;
-        if (std::abs(groups[i].bottom - top_below) <= rounding && top_below <= groups[i].z)
+        if (std::abs(groups[i].bottom - top_below) <= rounding && top_below <= groups[i].cut)
             groups[i].bottom = top_below;
     }
 }
@@ -141,7 +133,8 @@ class SvgReader {
         if (is_root) {
             if (local(element) != "svg")
                 fail(line, fmt::format("found <{}>; the document must be <svg>", printable(element, 40)));
-            height_ = number(attributes, "height", line).value_or(0);
+            if (const std::string_view height = attributes.find("height"); height.data() != nullptr)
+                height_ = Numbers(height, name_, line).next(); // a unit may follow
             if (const std::string_view origin = attributes.find("data-lamella-origin");
                 origin.data() != nullptr) {
                 Numbers numbers(origin, name_, line);
@@ -158,9 +151,14 @@ class SvgReader {
             }
         } else if (depth_ == 2 && local(element) == "g") {
             start_layer(attributes, line);
-        } else if (in_layer_) {
+        } else {
             const std::string_view kind = local(element);
-            if (kind == "polygon" || kind == "polyline")
+            const bool has_points = kind == "polygon" || kind == "polyline";
+            if (!in_layer_ && (has_points || kind == "path"))
+                outside_.note(at_line(line));
+            else if (!in_layer_)
+                return;
+            else if (has_points)
                 add_points(attributes, kind == "polygon", line);
             else if (kind == "path")
                 add_path(attributes, line);
@@ -187,6 +185,7 @@ class SvgReader {
                                     "each layer",
                                     name_));
         open_.say(file_.warnings);
+        outside_.say(file_.warnings);
         other_.say(file_.warnings);
         transformed_.say(file_.warnings);
         dropped_.say(file_.warnings);
@@ -194,7 +193,7 @@ class SvgReader {
         check_part_planes(file_, groups_.size(), bytes_);
         for (std::size_t i = 0; i < groups_.size(); ++i) {
             Group& group = groups_[i];
-            add_layer(file_, group.contours, i, group.z, group.bottom, group.top, limits_);
+            add_layer(file_, group, i, group.cut, group.bottom, group.top, limits_);
         }
     }
 
@@ -213,7 +212,12 @@ class SvgReader {
         const std::string_view text = attributes.find(name);
         if (text.data() == nullptr)
             return std::nullopt;
-        return Numbers(text, name_, line).next();
+        Numbers numbers(text, name_, line);
+        const double value = numbers.next();
+        if (!numbers.done())
+            fail(line, fmt::format("found {} = '{}'; it must be one number with a decimal point", name,
+                                   printable(text, 40)));
+        return value;
     }
 
     void start_layer(const XmlAttributes& attributes, std::size_t line) {
@@ -222,8 +226,8 @@ class SvgReader {
             return; // a group of something else, such as a legend
         in_layer_ = true;
         Group group;
-        group.contours.z = *z;
-        group.contours.place = fmt::format("line {}", line);
+        group.z = *z;
+        group.place = fmt::format("line {}", line);
         group.slice_z = number(attributes, "slic3r:slice-z", line);
         group.height = number(attributes, "slic3r:layer-height", line);
         if (group.height && *group.height < 0)
@@ -252,7 +256,7 @@ class SvgReader {
     }
 
     void add_points(const XmlAttributes& attributes, bool closed, std::size_t line) {
-        RawLayer& layer = groups_.back().contours;
+        RawLayer& layer = groups_.back();
         Numbers numbers(attributes.find("points"), name_, line);
         while (!numbers.done()) {
             const double x = numbers.next();
@@ -267,7 +271,7 @@ class SvgReader {
         if (const std::string_view type = attributes.find("slic3r:type");
             type == "infill" || type == "perimeter")
             return; // tool paths inside the outlines
-        RawLayer& layer = groups_.back().contours;
+        RawLayer& layer = groups_.back();
         Numbers numbers(attributes.find("d"), name_, line);
         Point2 at;
         std::optional<Point2> first; // of the contour: closing it returns there
@@ -325,7 +329,7 @@ class SvgReader {
 
     /// Where one is under construction.
     void end_contour(bool closed, std::size_t line) {
-        RawLayer& layer = groups_.back().contours;
+        RawLayer& layer = groups_.back();
         if (layer.points.size() != layer.contour_begin() &&
             layer.end_contour(closed, part_, limits_, at_line(line), dropped_) && !closed)
             open_.note(at_line(line));
@@ -348,6 +352,8 @@ class SvgReader {
     Point2 origin_; ///< of the part, where our own files tell it; else coordinates are relative to its corner
     std::vector<Group> groups_;
     Oddity open_{"contour is open", "contours are open"};
+    Oddity outside_{"outline lies outside of the groups with slic3r:z; it was left out",
+                    "outlines lie outside of the groups with slic3r:z; they were left out"};
     Oddity other_{"element is no outline; it was passed over",
                   "elements are no outlines; they were passed over"};
     Oddity transformed_{"element has transforms, which were not followed",

@@ -79,6 +79,44 @@ TEST(ReadLayeredSvg, LayersWhoseHeightsWereRoundedEachByItselfMeet) {
     EXPECT_NEAR(layers[2].bottom, 0.1667, 1e-12); // a gap
 }
 
+TEST(ReadLayeredSvg, GroupsOfOneHeightAreOneLayer) {
+    const auto groups = [](const std::string& more) {
+        return read(svg("<g slic3r:z=\"1\">" + square + "</g><g slic3r:z=\"1\"" + more + ">" + hole +
+                        "</g><g slic3r:z=\"2\">" + square + "</g>"));
+    };
+    const LayerFile file = groups("");
+    const LayerStack& layers = file.parts.at(0).layers;
+    ASSERT_EQ(layers.size(), 2U);
+    EXPECT_EQ(layers[0].rings, 2U);
+    EXPECT_DOUBLE_EQ(layers[0].bottom, 0);
+    EXPECT_EQ(file.warnings,
+              std::vector<std::string>{"1 layer has the height of the one before; they were joined"});
+    EXPECT_EQ(groups(" slic3r:slice-z=\"0.9\"").parts.at(0).layers.size(), 3U); // another cut
+}
+
+TEST(ReadLayeredSvg, OutlinesOutsideOfLayersAreToldOf) {
+    const std::string layer = "<g slic3r:z=\"1\">" + square + "</g>";
+    for (const std::string& lost :
+         std::vector<std::string>{square, "<g id=\"layer7\">" + square + "</g>", "<g>" + layer + "</g>",
+                                  "<path d=\"M 0 0 L 1 1\"/>"}) {
+        const LayerFile file = read(svg(lost + layer));
+        EXPECT_EQ(file.parts.at(0).layers.size(), 1U);
+        EXPECT_EQ(file.warnings,
+                  std::vector<std::string>{"1 outline lies outside of the groups with slic3r:z; it "
+                                           "was left out (first at line 3)"});
+    }
+}
+
+TEST(ReadLayeredSvg, AnAttributeThatIsNoNumberToItsEndIsRefused) {
+    for (const std::string value : {"0,2", "1abc", "1mm", "1 5", "+-1"})
+        expect_error(svg("<g slic3r:z=\"" + value + "\">" + square + "</g>"), "line 3: found ");
+    expect_error(svg("<g slic3r:z=\"0,2\"/>"),
+                 "found slic3r:z = '0,2'; it must be one number with a decimal point");
+    std::string sized = svg("<g slic3r:z=\"1\">" + square + "</g>");
+    sized.replace(sized.find("height=\"10\""), 11, "height=\"10mm\"");
+    EXPECT_TRUE(read(sized).warnings.empty());
+}
+
 TEST(ReadLayeredSvg, NoSlabIsUpsideDown) {
     const LayerFile file = read(svg("<g slic3r:z=\"-1\">" + square + "</g>"));
     EXPECT_EQ(file.parts.at(0).layers.at(0).bottom, file.parts.at(0).layers.at(0).top);
