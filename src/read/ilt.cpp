@@ -7,19 +7,22 @@
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"
-#include "core/parse_number.hpp"
 #include "read/common_layer.hpp"
 #include "read/coordinate_text.hpp"
+#include "read/decimal_text.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
+#include "read/text_pieces.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -34,16 +37,48 @@ struct Section {
     std::size_t line;
     ParameterSet parameters = unknown_parameters();
     bool pulsed = false; ///< the beam; read to be told of
+    bool has_speed = false;
+    bool has_power = false;
 };
 
-/// A number, alone or with a unit behind a blank, such as "200.0 watt".
-std::optional<double> number_before_unit(std::string_view text) {
-    const char* const end = text.data() + text.size();
+struct IltUnit {
+    std::string_view name; ///< in lower case
+    double factor;
+};
+constexpr IltUnit speeds[] = {{"mm/s", 1}, {"m/s", 1000}};
+constexpr IltUnit powers[] = {{"w", 1}, {"watt", 1}, {"watts", 1}, {"kw", 1000}};
+constexpr IltUnit lengths[] = {
+    {"mm", 1}, {"um", 1e-3}, {"\xb5m", 1e-3}, {"\xc2\xb5m", 1e-3}, {"\xce\xbcm", 1e-3}};
+
+/// What the list may say of a file.
+struct Parameter {
+    std::string_view key;
+    double ParameterSet::*to; ///< null for what is only told of
+    std::span<const IltUnit> units;
+    bool may_be_negative;
+    const char* form;
+};
+constexpr Parameter known_parameters[] = {
+    {"LaserSpeed", &ParameterSet::speed_mm_s, speeds, false, "0 or more, in mm/s or m/s"},
+    {"LaserPower", &ParameterSet::power_w, powers, false, "0 or more, in W (watt) or kW"},
+    {"FocusShift", &ParameterSet::focus_mm, lengths, true, "in mm or um"},
+    {"PointDistance", nullptr, {}, true, "with any unit"},
+    {"ExposureTime", nullptr, {}, true, "with any unit"}};
+
+/// A number, alone or with one of these units behind a blank, such as "200.0 watt".
+std::optional<double> number_with_unit(std::string_view text, const Parameter& parameter) {
     double number = 0;
-    const char* const stop = parse_number(text.data(), end, number);
-    if (stop == text.data() || (stop != end && !is_blank(*stop)) || !std::isfinite(number))
+    const char* const end = text.data() + text.size();
+    const char* const stop = read_decimal(text.data(), end, number);
+    if (stop == nullptr || (stop != end && !is_blank(*stop)) || (number < 0 && !parameter.may_be_negative))
         return std::nullopt;
-    return number;
+    const std::string name = lower_case(trimmed({stop, static_cast<std::size_t>(end - stop)}));
+    if (name.empty() || parameter.units.empty())
+        return number;
+    for (const IltUnit& unit : parameter.units)
+        if (unit.name == name)
+            return number * unit.factor;
+    return std::nullopt;
 }
 
 /// Lines such as "[file.cli]" and, for that file, "LaserPower = 200.0 watt". Other lines say nothing here.
@@ -65,27 +100,26 @@ std::vector<Section> read_parameters(std::string_view text, const std::string& n
             continue;
         const std::string_view key = trimmed(words.substr(0, equals));
         Section& section = sections.back();
-        ParameterSet& set = section.parameters;
-        double* const to = key == "LaserSpeed"   ? &set.speed_mm_s
-                           : key == "LaserPower" ? &set.power_w
-                           : key == "FocusShift" ? &set.focus_mm
-                                                 : nullptr;
-        const bool only_told = key == "PointDistance" || key == "ExposureTime";
-        if (to == nullptr && !only_told)
+        const auto* const parameter = std::find_if(std::begin(known_parameters), std::end(known_parameters),
+                                                   [&](const Parameter& known) { return known.key == key; });
+        if (parameter == std::end(known_parameters))
             continue;
         const std::string_view value = trimmed(words.substr(equals + 1));
-        const std::optional<double> number = number_before_unit(value);
-        if (only_told && (value.empty() || value == "-"))
+        if (parameter->to == nullptr && (value.empty() || value == "-"))
             continue;
+        const std::optional<double> number = number_with_unit(value, *parameter);
         if (!number)
             throw Error(
                 ErrorKind::input,
-                fmt::format("{}, line {}: found '{}'; {} must be a number, with a unit behind a blank", name,
-                            line, printable(value, 40), key));
-        if (only_told)
+                fmt::format("{}, line {}: found '{}'; {} must be a number, {}, with the unit behind a "
+                            "blank",
+                            name, line, printable(value, 40), key, parameter->form));
+        if (parameter->to == nullptr)
             section.pulsed = section.pulsed || *number != 0;
         else
-            *to = *number;
+            section.parameters.*parameter->to = *number;
+        section.has_speed = section.has_speed || key == "LaserSpeed";
+        section.has_power = section.has_power || key == "LaserPower";
     }
     return sections;
 }
@@ -128,10 +162,8 @@ std::optional<Exposure> exposure_of(const Section& section, std::string_view lab
     std::optional<Exposure> exposure = labelled_exposure(label);
     if (!exposure && section.parameters.speed_mm_s > 0)
         exposure = named_exposure(section.name);
-    if (exposure) {
+    if (exposure)
         exposure->parameters = section.parameters;
-        exposure->parameters.speed_mm_s = std::max(0.0, section.parameters.speed_mm_s);
-    }
     return exposure;
 }
 
@@ -207,7 +239,10 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     std::set<const ZipEntry*> known;
     Oddity pulsed("file is for a pulsed beam; the distance and time of its points were left out",
                   "files are for a pulsed beam; the distance and time of its points were left out");
-    for (const Section& section : read_parameters(list.text(), list.name, limits)) {
+    Oddity one_of_two("file has but one of LaserSpeed and LaserPower; the other one is taken to be 0",
+                      "files have but one of LaserSpeed and LaserPower; the other one is taken to be 0");
+    const std::string_view text = list.text().substr(after_byte_order_mark(list.text()));
+    for (const Section& section : read_parameters(text, list.name, limits)) {
         const ZipEntry* const entry = zip.find(section.name);
         if (entry == nullptr)
             throw Error(ErrorKind::input,
@@ -221,6 +256,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                             list.name, section.line, printable(section.name, 80)));
         if (section.pulsed)
             pulsed.note(at_line(section.line));
+        if (section.has_speed != section.has_power)
+            one_of_two.note(at_line(section.line));
         const ByteSource source = zip.read(*entry);
         bytes += source.bytes.size();
         if (!is_common_layer(source.text()))
@@ -245,6 +282,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
         for (const std::string& warning : files.back().warnings)
             result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
     }
+    one_of_two.say(result.warnings);
     pulsed.say(result.warnings);
     tell_unlisted(zip, known, result.warnings);
     result.units_mm = files.front().units_mm;

@@ -67,6 +67,41 @@ TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
     EXPECT_EQ(read(archive_of({"2", "3"}, {"1", "2"})).parts.at(0).layers.at(0).bottom, 0);
 }
 
+TEST(ReadIlt, UnitsCount) {
+    const LayerFile file =
+        read(archive("LaserSpeed = 0.8 m/s\nLaserPower = 0.2 kW\nFocusShift = -1500 \xc2\xb5m\n"));
+    const ParameterSet& set = file.parts.at(0).exposure->parameters;
+    EXPECT_DOUBLE_EQ(set.speed_mm_s, 800);
+    EXPECT_DOUBLE_EQ(set.power_w, 200);
+    EXPECT_DOUBLE_EQ(set.focus_mm, -1.5);
+    const std::string good = "LaserSpeed = 1 mm/s\nLaserPower = 1 W\n";
+    for (const std::string line :
+         {"LaserSpeed = 800 furlongs", "LaserSpeed = -800 mm/s", "LaserPower = 200 mm/s", "LaserPower = -1",
+          "FocusShift = 1 W", "LaserSpeed = +-1 mm/s"}) {
+        const std::string error =
+            test::error_of(ErrorKind::input, [&] { static_cast<void>(read(archive(good + line + "\n"))); });
+        EXPECT_NE(error.find(", line 4: found '"), std::string::npos) << error;
+    }
+}
+
+TEST(ReadIlt, SaysWhichFilesLackPowerOrSpeed) {
+    for (const char* lines : {"LaserSpeed = 800 mm/s\nLaserPwr = 200 watt\n", "LaserPower = 200 watt\n"})
+        EXPECT_EQ(
+            read(archive(lines)).warnings,
+            (std::vector<std::string>{"1 file has but one of LaserSpeed and LaserPower; the other one is "
+                                      "taken to be 0 (first at line 1)"}));
+}
+
+TEST(ReadIlt, TheListMayBeginWithAByteOrderMark) {
+    std::string bytes = zip_test::zip_bytes(
+        {{.name = std::string(ilt_parameters),
+          .content = "\xEF\xBB\xBF[a.cli]\nLaserSpeed = 1\nLaserPower = 1\n"},
+         {.name = "a.cli",
+          .content = "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n"
+                     "$$HATCHES/1,1,0,0,5,5\n$$GEOMETRYEND\n"}});
+    EXPECT_EQ(read(bytes).parts.at(0).exposure->parameters.speed_mm_s, 1);
+}
+
 TEST(ReadIlt, RefusesWhatIsANumberOnlyAtItsBeginning) {
     for (const std::string value : {"800,5", "800,5 mm/s", "800mm/s", "0x10", "1.5.2"}) {
         const std::string error = test::error_of(
@@ -79,7 +114,7 @@ TEST(ReadIlt, RefusesWhatIsANumberOnlyAtItsBeginning) {
 TEST(ReadIlt, SaysWhichFilesAreForAPulsedBeam) {
     for (const char* line : {"PointDistance = 50 \xb5m\n", "ExposureTime = 80 \xb5s\n"}) {
         const std::vector<std::string> warnings =
-            read(archive(std::string("LaserSpeed = 800 mm/s\n") + line)).warnings;
+            read(archive(std::string("LaserSpeed = 800 mm/s\nLaserPower = 200 watt\n") + line)).warnings;
         ASSERT_EQ(warnings.size(), 1U);
         EXPECT_TRUE(
             warnings[0].starts_with("1 file is for a pulsed beam; the distance and time of its points"))
@@ -89,7 +124,7 @@ TEST(ReadIlt, SaysWhichFilesAreForAPulsedBeam) {
 
 TEST(ReadIlt, SaysWhichFilesTheListDoesNotName) {
     const std::string bytes = zip_test::zip_bytes(
-        {{.name = std::string(ilt_parameters), .content = "[a.cli]\nLaserSpeed = 1\n"},
+        {{.name = std::string(ilt_parameters), .content = "[a.cli]\nLaserSpeed = 1\nLaserPower = 1\n"},
          {.name = "a.cli",
           .content = "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n"
                      "$$HATCHES/1,1,0,0,5,5\n$$GEOMETRYEND\n"},
