@@ -12,5 +12,9 @@ namespace lamella {
 
 /// Of that, what a run may take unless somebody says more or less: three quarters.
 [[nodiscard]] std::uint64_t usual_memory();
+/// That, unless somebody wished for another limit than 0.
+[[nodiscard]] inline std::uint64_t memory_limit(std::uint64_t wished) {
+    return wished != 0 ? wished : usual_memory();
+}
 
 } // namespace lamella

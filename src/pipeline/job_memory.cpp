@@ -25,8 +25,7 @@ std::uint64_t triangle_bytes(bool placed, unsigned threads) {
 
 } // namespace
 
-JobMemory::JobMemory(const FileJob& job)
-    : limit(job.max_memory != 0 ? job.max_memory : usual_memory()), asked(job.max_memory != 0) {}
+JobMemory::JobMemory(const FileJob& job) : limit(memory_limit(job.max_memory)), asked(job.max_memory != 0) {}
 
 std::uint64_t JobMemory::points_in_flight(unsigned threads) const noexcept {
     return std::clamp<std::uint64_t>(limit / 4 / bytes_per_point, 1, usual_points_in_flight(threads));

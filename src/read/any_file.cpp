@@ -7,8 +7,6 @@
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
 
-#include <cstdint>
-
 namespace lamella {
 
 namespace {
@@ -34,8 +32,8 @@ std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const st
 
 std::variant<MeshFile, LayerFile> read_any(const std::string& path, const MeshReadOptions& options,
                                            const Execution& execution) {
-    const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    return read_opened(open_bytes(path, execution, most), path, options, execution);
+    return read_opened(open_bytes(path, execution, memory_limit(options.max_memory)), path, options,
+                       execution);
 }
 
 std::variant<MeshFile, LayerFile> read_any(std::span<const std::byte> bytes, const std::string& name,

@@ -89,9 +89,8 @@ LayerStack LayerFile::merged() const {
 }
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
-    const std::uint64_t most = options.max_memory != 0 ? options.max_memory : usual_memory();
-    return read_unpacked_layers(unpacked(open_bytes(path, execution, most), options.max_memory, execution),
-                                options, execution);
+    const ByteSource opened = open_bytes(path, execution, memory_limit(options.max_memory));
+    return read_unpacked_layers(unpacked(opened, options.max_memory, execution), options, execution);
 }
 
 LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,

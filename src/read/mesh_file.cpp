@@ -6,6 +6,7 @@
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
+#include "core/memory_size.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/mesh_readers.hpp"
 
@@ -34,8 +35,8 @@ MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& opt
 }
 
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {
-    MeshFile file = read_unpacked_mesh(unpacked(open_bytes(path, execution), options.max_memory, execution),
-                                       options, execution);
+    const ByteSource opened = open_bytes(path, execution, memory_limit(options.max_memory));
+    MeshFile file = read_unpacked_mesh(unpacked(opened, options.max_memory, execution), options, execution);
     file.path = path;
     return file;
 }

@@ -114,7 +114,7 @@ struct Records {
 Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
                      Executor& executor, ProgressMeter& progress) {
     const std::size_t size = n * stl_record_bytes - normal_bytes;
-    const std::uint64_t most = (options.max_memory != 0 ? options.max_memory : usual_memory()) / 4;
+    const std::uint64_t most = memory_limit(options.max_memory) / 4;
     std::shared_ptr<PageArray<std::byte>> memory;
     if (source.descriptor >= 0 && size <= most)
         memory = std::make_shared<PageArray<std::byte>>(size);

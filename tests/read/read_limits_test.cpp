@@ -12,10 +12,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -23,6 +25,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -111,6 +114,18 @@ class LimitsOfReading : public ::testing::Test {
   private:
     TemporaryFolder folder_;
 };
+
+TEST_F(LimitsOfReading, MeshesThatComeThroughAPipeWaitInAFileWhereTheyAreTooLong) {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    while (text.size() < 60 * megabyte)
+        text += "# nothing but a remark\n";
+    const std::string path = file("part.obj", "") + ".pipe";
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    std::thread writer([&] { std::ofstream(path, std::ios::binary) << text; });
+    EXPECT_EQ(outcome(path, {.max_memory = 10 * megabyte}, 40 * megabyte), "read");
+    writer.join();
+}
 
 TEST_F(LimitsOfReading, AsciiStlIsRefusedAtTheFacetThatIsTooMany) {
     std::string text = "solid many\n";
