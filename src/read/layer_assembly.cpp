@@ -58,6 +58,13 @@ void tell_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
 
 } // namespace
 
+std::string_view negative_parameter(const ParameterSet& set) {
+    return set.power_w < 0           ? "power"
+           : set.speed_mm_s < 0      ? "speed"
+           : set.jump_speed_mm_s < 0 ? "speed of jumps"
+                                     : "";
+}
+
 void say(const DistinctNames& names, std::vector<std::string>& warnings) {
     constexpr std::size_t longest = 60;
     if (const std::uint64_t changed = names.changed(); changed != 0)

@@ -17,6 +17,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -152,6 +153,9 @@ class PartNumbers {
     std::map<Key, std::uint32_t> numbers_;
     typename std::map<Key, std::uint32_t>::iterator last_ = numbers_.end();
 };
+
+/// Which of the parameters of scan vectors is below 0 and must not be; empty where none is.
+[[nodiscard]] std::string_view negative_parameter(const ParameterSet& set);
 
 /// Warns of names of parts that were changed.
 void say(const DistinctNames& names, std::vector<std::string>& warnings);

@@ -19,9 +19,9 @@
 #include <cmath>
 #include <compare>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -70,10 +70,13 @@ class JobShell {
                 read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
                     labels_[key] = read_part(value);
                 });
+            else if (job.field() == ovf::job::work_plane_count)
+                planes_ = job.integer();
         }
     }
 
-    /// 0 where it says nothing.
+    // 0 where it says nothing.
+    [[nodiscard]] std::int64_t planes() const noexcept { return planes_; }
     [[nodiscard]] double layer_thickness() const noexcept { return layer_thickness_; }
     /// The key of a part, for blocks that name none.
     [[nodiscard]] std::int64_t first_part() const { return labels_.empty() ? 0 : labels_.begin()->first; }
@@ -156,6 +159,8 @@ class JobShell {
                 if (fields.field() == number.field)
                     set.*number.member = finite_real(fields);
         }
+        if (const std::string_view name = negative_parameter(set); !name.empty())
+            fields.fail(fmt::format("parameters with a {} below 0", name), "it must be 0 or more");
         return set;
     }
 
@@ -181,6 +186,7 @@ class JobShell {
     ReadLimits& limits_;
     std::map<std::int64_t, ParameterSet> parameters_;
     std::map<std::int64_t, std::string> labels_;
+    std::int64_t planes_ = 0;
     double layer_thickness_ = 0;
 };
 
@@ -196,15 +202,17 @@ class OvfReader {
         job_.read(bytes_, planes.shell);
         for (const std::uint64_t plane : planes.positions)
             read_plane(plane);
-        check_that_none_share();
         if (layers_.empty())
             throw Error(ErrorKind::input,
                         fmt::format("{}: found no work plane; there must be one at least", name_));
+        if (job_.planes() != 0 && job_.planes() != static_cast<std::int64_t>(layers_.size()))
+            file_.warnings.push_back(fmt::format("the job announces {} work planes; the file has {}",
+                                                 job_.planes(), layers_.size()));
         number_parts();
         make_layers();
         say(names_, file_.warnings);
-        for (const Oddity* oddity :
-             {&moved_, &other_vectors_, &repeated_blocks_, &repeated_planes_, &other_lasers_})
+        for (const Oddity* oddity : {&other_blocks_, &other_numbers_, &moved_, &other_vectors_,
+                                     &repeated_blocks_, &repeated_planes_, &other_lasers_})
             oddity->say(file_.warnings);
         dropped_.say(file_.warnings);
         progress_.finish();
@@ -233,23 +241,18 @@ class OvfReader {
     ProtobufReader message_at(std::uint64_t place) {
         std::uint64_t end = place;
         ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
-        read_bytes_ += end - place;
-        if (read_bytes_ > bytes_.size())
-            fail_twice(place);
-        limits_.make_room(messages_, 1, at_byte(place));
-        messages_.push_back({place, end});
+        progress_.add(end - place);
+        const auto next = taken_.upper_bound(place);
+        const auto last = next == taken_.begin() ? taken_.end() : std::prev(next);
+        if ((next != taken_.end() && next->first < end) || (last != taken_.end() && last->second > place))
+            fail(place, "a table, a head or a block once more", "work planes must share none");
+        if (last != taken_.end() && last->second == place) {
+            last->second = end;
+        } else {
+            limits_.add_bytes_at(node_bytes, at_byte(place));
+            taken_.emplace_hint(next, place, end);
+        }
         return fields;
-    }
-
-    [[noreturn]] void fail_twice(std::uint64_t place) const {
-        fail(place, "a table, a head or a block once more", "work planes must share none");
-    }
-
-    void check_that_none_share() {
-        std::sort(messages_.begin(), messages_.end());
-        for (std::size_t i = 1; i < messages_.size(); ++i)
-            if (messages_[i].first < messages_[i - 1].second)
-                fail_twice(messages_[i].first);
     }
 
     Table read_table(std::uint64_t place) {
@@ -275,15 +278,20 @@ class OvfReader {
 
     void read_plane(std::uint64_t begin) {
         executor_.check_cancelled();
-        const std::uint64_t read_before = read_bytes_;
         const Table table = read_table(position_at(begin));
         limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
         raw.place = fmt::format("byte {}", begin);
+        std::int64_t blocks = 0; // that the plane announces
+        std::uint64_t number = 0;
         ProtobufReader shell = message_at(table.shell);
         while (shell.next()) {
             if (shell.field() == ovf::work_plane::z)
                 raw.z = finite_real(shell);
+            else if (shell.field() == ovf::work_plane::block_count)
+                blocks = shell.integer();
+            else if (shell.field() == ovf::work_plane::number)
+                number = static_cast<std::uint64_t>(shell.integer());
             else if (shell.field() == ovf::work_plane::repeats && shell.integer() != 0)
                 repeated_planes_.note(at_byte(begin));
             else if (shell.type() == ProtobufType::bits_32 &&
@@ -292,9 +300,14 @@ class OvfReader {
                      shell.real() != 0)
                 moved_.note(at_byte(begin));
         }
+        if (blocks != 0 && blocks != static_cast<std::int64_t>(table.positions.size()))
+            other_blocks_.note(at_byte(begin));
+        // Where planes have no numbers, all are 0.
+        if (number != 0 && number != last_number_ + 1)
+            other_numbers_.note(at_byte(begin));
+        last_number_ = number;
         for (const std::uint64_t block : table.positions)
             read_block(block, raw);
-        progress_.add(read_bytes_ - read_before);
     }
 
     void read_block(std::uint64_t begin, RawLayer& raw) {
@@ -429,8 +442,13 @@ class OvfReader {
     JobShell job_;
     std::vector<RawLayer> layers_;
     PartNumbers<BlockKind> parts_;
-    std::uint64_t read_bytes_ = 0; ///< of messages, as often as they were read
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> messages_; ///< where those begin and end
+    std::map<std::uint64_t, std::uint64_t> taken_; ///< by messages: from where to where
+    std::uint64_t last_number_ = 0;                ///< of a work plane
+    Oddity other_blocks_{"work plane announces another number of blocks than the file has",
+                         "work planes announce another number of blocks than the file has"};
+    Oddity other_numbers_{
+        "number of a work plane does not follow that of the one before; planes may be missing",
+        "numbers of work planes do not follow those of the ones before; planes may be missing"};
     Oddity moved_{"work plane is moved or turned; its vectors were read as they stand",
                   "work planes are moved or turned; their vectors were read as they stand"};
     Oddity other_vectors_{"block holds other vectors than lines and hatches; it was left out",

@@ -152,6 +152,8 @@ class ToolpathModelReader {
                .spot_mm = 2 * number("spotradius"),
                .mark_delay_us = own("markdelay").number_or(0),
                .jump_delay_us = own("jumpdelay").number_or(0)};
+        if (const std::string_view name = negative_parameter(set); !name.empty())
+            element.fail(fmt::format("a profile with a {} below 0", name), "0 or more");
         profile.other_laser = is_other_laser(element);
         const std::string_view region = own("region").text;
         const ThreeMfValue kind = own("kind");

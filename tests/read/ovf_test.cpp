@@ -75,10 +75,13 @@ struct Plane {
     std::int64_t repeats = 0;
     bool backwards = false; ///< the last block comes first in the file; the table has them in order
     std::size_t named = 1;  ///< how often the table has the first block
+    std::int64_t announced = 0;
+    std::int64_t number = 0;
 };
 
-/// A job with the parameters 1, 2 and 3 and these parts.
-std::string job_of(const std::vector<Plane>& planes, const std::vector<std::string>& parts = {"AA1"}) {
+/// A job with the parameters 1, 2 and 3 and these parts, which announces so many planes.
+std::string job_of(const std::vector<Plane>& planes, const std::vector<std::string>& parts = {"AA1"},
+                   std::int64_t announced = 0, double speed = 800) {
     std::string file(ovf::magic);
     file.append(8, '\0');
     std::vector<std::uint64_t> places;
@@ -95,7 +98,9 @@ std::string job_of(const std::vector<Plane>& planes, const std::vector<std::stri
             blocks.insert(blocks.begin(), plane.named - 1, blocks.front());
         ProtobufMessage head;
         head.real(ovf::work_plane::z, plane.z);
+        head.integer(ovf::work_plane::block_count, plane.announced);
         head.integer(ovf::work_plane::repeats, plane.repeats);
+        head.integer(ovf::work_plane::number, plane.number);
         ProtobufMessage table;
         table.integer(ovf::table::shell, static_cast<std::int64_t>(file.size()));
         table.integers(ovf::table::positions, blocks);
@@ -104,9 +109,10 @@ std::string job_of(const std::vector<Plane>& planes, const std::vector<std::stri
         file += table.delimited();
     }
     ProtobufMessage job;
+    job.integer(ovf::job::work_plane_count, announced);
     for (std::int64_t key = 1; key <= 3; ++key) {
         ProtobufMessage parameters;
-        parameters.real(ovf::marking::speed_mm_s, 800);
+        parameters.real(ovf::marking::speed_mm_s, speed);
         job.entry(ovf::job::marking_params, key, parameters);
     }
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -210,6 +216,28 @@ TEST(ReadOvf, SaysWhatItLeavesOutOfTheExecution) {
     EXPECT_TRUE(warnings[0].starts_with("1 block is to be executed more than once")) << warnings[0];
     EXPECT_TRUE(warnings[1].starts_with("1 work plane is to be executed more than once")) << warnings[1];
     EXPECT_TRUE(warnings[2].starts_with("2 blocks are for another laser than the first")) << warnings[2];
+}
+
+TEST(ReadOvf, SaysWherePlanesAndBlocksLack) {
+    const ProtobufMessage hatch = block(ovf::block::hatches, 1);
+    const Plane first{.z = 1, .blocks = {hatch}, .announced = 1};
+    Plane second{.z = 2, .blocks = {hatch, hatch}, .announced = 2, .number = 1};
+    EXPECT_TRUE(read(job_of({first, second}, {"AA1"}, 2)).warnings.empty());
+    EXPECT_EQ(read(job_of({first, second}, {"AA1"}, 3)).warnings,
+              std::vector<std::string>{"the job announces 3 work planes; the file has 2"});
+    second.announced = 3;
+    second.number = 2;
+    const std::vector<std::string> warnings = read(job_of({first, second}, {"AA1"}, 2)).warnings;
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_TRUE(warnings[0].starts_with("1 work plane announces another number of blocks")) << warnings[0];
+    EXPECT_TRUE(warnings[1].starts_with("1 number of a work plane does not follow")) << warnings[1];
+}
+
+TEST(ReadOvf, RefusesNegativeSpeeds) {
+    const std::string file = job_of({{1, {block(ovf::block::hatches, 1)}}}, {"AA1"}, 0, -800);
+    EXPECT_NE(error_of(file).find("found parameters with a speed below 0; it must be 0 or more"),
+              std::string::npos)
+        << error_of(file);
 }
 
 TEST(ReadOvf, PartsOfOneNameGetNamesOfTheirOwn) {

@@ -2,6 +2,7 @@
 #include "lamella/read/layer_file.hpp"
 
 #include "container/toolpath_3mf_format.hpp"
+#include "fixtures/expect_error.hpp"
 #include "read/package_checks.hpp"
 
 #include <algorithm>
@@ -16,10 +17,13 @@ using package_test::replaced;
 
 /// A job of layers, one above the other, listed under these names: a.xml has these segments, b.xml none. Both
 /// parts have one name.
-std::string job(const std::vector<std::string>& layers, const std::string& segments = "") {
+std::string job(const std::vector<std::string>& layers, const std::string& segments = "",
+                const std::string& speed = "800") {
     std::string resource =
         "<t:toolpathresource id=\"1\" unitfactor=\"0.001\"><t:toolpathprofiles>"
-        "<t:toolpathprofile uuid=\"fill\" name=\"fill\" laserspeed=\"800\" laserindex=\"0\"/>"
+        "<t:toolpathprofile uuid=\"fill\" name=\"fill\" laserspeed=\"" +
+        speed +
+        "\" laserindex=\"0\"/>"
         "<t:toolpathprofile uuid=\"other\" name=\"other\" laserspeed=\"900\" laserindex=\"1\"/>"
         "</t:toolpathprofiles><t:toolpathlayers>\n";
     for (std::size_t i = 0; i < layers.size(); ++i)
@@ -85,6 +89,14 @@ TEST(ReadToolpath3mf, SaysWhichSegmentsAreForAnotherLaser) {
     EXPECT_EQ(read(job({"/L/a.xml"}, hatch(1, 1) + hatch(1, 1, "laserindex=\"2\"") + hatch(2, 1))).warnings,
               (std::vector<std::string>{"2 segments are for another laser than the first; which one was left "
                                         "out (first at test.3mf, part 'L/a.xml', line 1)"}));
+}
+
+TEST(ReadToolpath3mf, RefusesNegativeSpeeds) {
+    const std::string error = test::error_of(
+        ErrorKind::input, [] { static_cast<void>(read(job({"/L/a.xml"}, hatch(1, 1), "-800"))); });
+    EXPECT_NE(error.find("line 3: found a profile with a speed below 0, expected 0 or more"),
+              std::string::npos)
+        << error;
 }
 
 TEST(ReadToolpath3mf, PartsOfOneNameGetNamesOfTheirOwn) {
