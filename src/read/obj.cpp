@@ -39,15 +39,17 @@ class ObjLines : Words {
         skip_blanks();
         if (at_ == end_ || offset() >= piece_.limit)
             return false;
-        if (begins_with_keyword("v"))
-            vertex();
-        else if (begins_with_keyword("f"))
+        if (begins_with_keyword("f") || begins_with_keyword("fo")) // its old name
             return face();
-        else if (*at_ == '#')
-            at_ = skip_to_line_end(at_, end_); // a comment does not go on after a backslash
-        else
-            other();
-        skip_line();
+        if (begins_with_keyword("v")) {
+            vertex();
+            skip_line();
+            return true;
+        }
+        other();
+        // Neither a comment nor the name of a folder goes on after a backslash. What else does, such as the
+        // numbers of a curve, begins no line that counts.
+        at_ = skip_to_line_end(at_, end_);
         return true;
     }
 
@@ -89,7 +91,7 @@ class ObjLines : Words {
 
     bool face() {
         const std::size_t begin = offset();
-        ++at_;
+        at_ += begins_with_keyword("f") ? 1 : 2;
         corners_.clear();
         bool relative = false;
         for (to_word(); at_ != end_ && !is_line_end(*at_) && *at_ != '#'; to_word())
@@ -172,11 +174,12 @@ class ObjLines : Words {
         }
     }
 
+    /// What is left of a vertex or a face, and the comment behind it.
     void skip_line() {
         for (;;) {
             const char* const from = at_;
             at_ = skip_to_line_end(at_, end_);
-            if (at_ == from || at_ == end_ || at_[-1] != '\\')
+            if (at_ == from || at_ == end_ || at_[-1] != '\\' || std::find(from, at_, '#') != at_)
                 return;
             at_ += *at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n' ? 2 : 1;
         }

@@ -42,6 +42,19 @@ TEST(Obj, GoesOnBehindAnyWord) {
                     name, corners, {{0, 1, 2}});
 }
 
+TEST(Obj, NeitherCommentsNorFoldersGoOnBehindABackslash) {
+    const std::string points = "v 0 0 0 # in C:\\\nv 1 0 0\nv 0 1.5 -0.2\n";
+    for (const std::string line : {"mtllib C:\\parts\\", "usemtl lib\\", "g a\\", "# C:\\"})
+        expect_mesh(line + "\n" + points + line + "\nf 1 2 3 # by C:\\tool\\\nf 3 2 1\n", name, corners,
+                    {{0, 1, 2}, {2, 1, 0}});
+    // Numbers of other statements may go on.
+    expect_mesh("curv2 1 \\\n 2 3\n" + points + "l 1 2 \\\n3\nf 1 2 3\n", name, corners, {{0, 1, 2}});
+}
+
+TEST(Obj, FacesMayHaveTheirOldName) {
+    expect_mesh("v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\nfo 1/1 2/2 \\\n3/3\n", name, corners, {{0, 1, 2}});
+}
+
 TEST(Obj, CountsBackFromTheLastVertex) {
     expect_mesh("v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\nf -3 -2/-1 -1//-1\nv 5 5 5\nf 1 -3 4\n", name,
                 {{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.2}, {5, 5, 5}}, {{0, 1, 2}, {0, 1, 3}});
