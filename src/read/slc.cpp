@@ -111,7 +111,9 @@ class SlcReader {
                                                             printable(*unit, 20))
                                               : "the header has no unit; millimetres are taken");
         }
-        open_ = lower_case(value_of(header, "-type").value_or("")).starts_with("web");
+        const std::string type = lower_case(value_of(header, "-type").value_or(""));
+        open_ = type.starts_with("web");
+        file_.parts.emplace_back().support = type.starts_with("support");
         at_ = bytes_.find(header_end, header.size()) + 1;
         if (left() < reserved)
             fail(at_, fmt::format("{} bytes", left()), "256 reserved bytes must follow the header");
@@ -143,6 +145,10 @@ class SlcReader {
             const auto contours = take<std::uint32_t>("a layer");
             if (contours == no_more_layers) {
                 top_ = z;
+                if (left() != 0)
+                    file_.warnings.push_back(fmt::format(
+                        "{} bytes follow the mark of the end, from byte {} on; they were left out", left(),
+                        at_));
                 break;
             }
             if (contours > left() / (2 * sizeof(std::uint32_t)))
@@ -194,7 +200,6 @@ class SlcReader {
     /// last one reaches to the top of the part.
     void place_layers() {
         sort_by_height(raw_, file_.warnings);
-        file_.parts.emplace_back();
         add_layers_by_bottoms(file_, raw_, last_top(), limits_);
     }
 

@@ -83,6 +83,20 @@ TEST(ReadSlc, WhatIsOddIsTold) {
     EXPECT_TRUE(web.warnings.empty());
 }
 
+TEST(ReadSlc, WhatFollowsTheEndIsTold) {
+    const std::string whole = head() + two_layers();
+    const LayerFile file = read(whole + "more");
+    expect_square(file);
+    EXPECT_EQ(file.warnings,
+              std::vector<std::string>{"4 bytes follow the mark of the end, from byte " +
+                                       std::to_string(whole.size()) + " on; they were left out"});
+}
+
+TEST(ReadSlc, SupportsAreMarked) {
+    EXPECT_FALSE(read(head() + two_layers()).parts.at(0).support);
+    EXPECT_TRUE(read(head("-SLCVER 2.0 -UNIT MM -TYPE SUPPORT ") + two_layers()).parts.at(0).support);
+}
+
 TEST(ReadSlc, TheOthersOfThatNameAreNamed) {
     EXPECT_NE(error_of("Slice V01\nZ 0.1 0.1\n").find("Stratasys"), std::string::npos);
     EXPECT_NE(error_of("11111\n10 10 10 8\n").find("voxels"), std::string::npos);
