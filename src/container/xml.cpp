@@ -90,6 +90,7 @@ class Parse {
                 static_cast<std::size_t>(XML_GetSpecifiedAttributeCount(parse.parser_.get())) / 2 >
                     most_attributes)
                 parse.fail(fmt::format("found an element of more than {} attributes", most_attributes));
+            parse.declared_ = 0;
             parse.note_tag();
             parse.handlers_.start(split(name), XmlAttributes(attributes), parse.line());
         });
@@ -109,6 +110,9 @@ class Parse {
 
     static void on_namespace(void* data, const XML_Char* prefix, const XML_Char* space) {
         guarded(data, [&](Parse& parse) {
+            if (++parse.declared_ > most_attributes)
+                parse.fail(
+                    fmt::format("found an element that declares more than {} namespaces", most_attributes));
             parse.handlers_.declare(prefix == nullptr ? "" : prefix, space == nullptr ? "" : space);
         });
     }
@@ -255,6 +259,7 @@ class Parse {
     std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser_;
     std::exception_ptr error_ = nullptr;
     int depth_ = 0;
+    std::size_t declared_ = 0;    ///< namespaces, of the element that comes
     std::size_t at_ = 0;          ///< place in the document
     XML_Index fed_ = 0;           ///< bytes that the parser was given
     XML_Index parsed_ = 0;        ///< those of them that it is done with

@@ -62,6 +62,7 @@ struct PlainValue {
 /// Walks over a run of elements.
 class PlainElements : public PlainTags {
   public:
+    /// `prefixes`: those that attributes may have, ascending.
     PlainElements(std::string_view run, std::span<const std::string> prefixes)
         : PlainTags(run), prefixes_(prefixes) {}
 
@@ -119,7 +120,7 @@ class PlainElements : public PlainTags {
         if (const std::size_t colon = name.find(':'); colon != std::string_view::npos) {
             const std::string_view local = name.substr(colon + 1);
             if (local.empty() || !is_letter(local.front()) || local.find(':') != std::string_view::npos ||
-                std::find(prefixes_.begin(), prefixes_.end(), name.substr(0, colon)) == prefixes_.end())
+                !std::binary_search(prefixes_.begin(), prefixes_.end(), name.substr(0, colon)))
                 return false;
         }
         const auto last = others_.begin() + static_cast<std::ptrdiff_t>(others);
@@ -132,7 +133,7 @@ class PlainElements : public PlainTags {
     /// The quote that ends a value of printable ASCII without references.
     static const char* end_of_value(const char* at, char quote) {
         for (; *at != quote; ++at)
-            if (*at == '<' || *at == '&' || *at < ' ' || *at == '\x7f')
+            if (*at == '<' || *at == '&' || *at < ' ' || *at > '~') // char has a sign on some processors only
                 return nullptr;
         return at;
     }

@@ -34,7 +34,7 @@ struct ThreeMfModel {
     std::string title;
     std::vector<ThreeMfObject> objects;
     std::vector<ThreeMfUse> items;
-    std::vector<std::string> prefixes; ///< that the root element declares
+    std::vector<std::string> prefixes; ///< that the root element declares, ascending
     std::vector<std::string> remarks;  ///< what offends against the rules of the format, one line each
 };
 

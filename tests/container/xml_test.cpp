@@ -44,6 +44,22 @@ std::string error_of(std::string_view document, const XmlRules& rules = {}) {
     return {};
 }
 
+TEST(Xml, AnElementDeclaresNoMoreNamespacesThanItMayHaveAttributes) {
+    const auto declared = [](int count) {
+        std::string document = "<a><b";
+        for (int i = 0; i < count; ++i)
+            document += fmt::format(" xmlns:p{0}='u{0}'", i);
+        Told told;
+        told.handlers.declare = [](std::string_view, std::string_view) {
+        };
+        return [document = document + "/><c xmlns='d'/></a>", handlers = told.handlers] {
+            parse_xml(document, "x.xml", handlers, {.namespaces = true});
+        };
+    };
+    EXPECT_NO_THROW(declared(1000)());
+    EXPECT_THROW(declared(1001)(), Error);
+}
+
 TEST(Xml, NamesAreAsWrittenUnlessNamespacesAreResolved) {
     const std::string document = "<a xmlns='one' xmlns:p='two'><p:b p:x='1' x='2'/><c xmlns='two'/></a>";
     Told plain;
