@@ -97,7 +97,7 @@ class DirectoryFinder {
         if (end >= end64_place_size &&
             has_mark(bytes_, end - end64_place_size, zip_end64_place_mark, end64_place_size)) {
             directory_end = u64(bytes_, end - end64_place_size + 8);
-            read_end64(directory_end, directory);
+            read_end64(directory_end, end, directory);
         } else if (u16(bytes_, end + 4) != 0 || u16(bytes_, end + 6) != 0 ||
                    u16(bytes_, end + 8) != directory.entries) {
             fail("is one of several discs of a zip archive, expected a whole one");
@@ -139,15 +139,24 @@ class DirectoryFinder {
         return *before_others;
     }
 
-    void read_end64(std::uint64_t at, Directory& directory) const {
-        if (!has_mark(bytes_, at, zip_end64_mark, end64_head))
+    /// Of the archive whose classic record of the end stands at `end`. What that says must be true as well:
+    /// else two readers could find two directories.
+    void read_end64(std::uint64_t at, std::size_t end, Directory& directory) const {
+        constexpr std::size_t before_size_counts = 12;
+        const bool is_there = has_mark(bytes_, at, zip_end64_mark, end64_head);
+        const std::uint64_t size = is_there ? u64(bytes_, at + 4) : 0;
+        if (size < end64_head - before_size_counts || size > end ||
+            at + before_size_counts + size + end64_place_size != end)
             fail(fmt::format("the zip archive should have its (64-bit) end at byte {}, but has not", at));
-        directory.entries = u64(bytes_, at + 32);
-        directory.size = u64(bytes_, at + 40);
-        directory.place = u64(bytes_, at + 48);
+        const Directory classic = std::exchange(directory, {u64(bytes_, at + 48), u64(bytes_, at + 40),
+                                                            u64(bytes_, at + 32), directory.trailing});
         if (u32(bytes_, at + 16) != 0 || u32(bytes_, at + 20) != 0 ||
             u64(bytes_, at + 24) != directory.entries)
             fail("is one of several discs of a zip archive, expected a whole one");
+        if ((classic.place != full32 && classic.place != directory.place) ||
+            (classic.size != full32 && classic.size != directory.size) ||
+            (classic.entries != full16 && classic.entries != directory.entries))
+            fail("the two ends of the zip archive contradict each other, expected one directory");
     }
 
     std::string_view bytes_;

@@ -262,6 +262,27 @@ TEST(ZipReader, RefusesDirectoriesThatAreNotThere) {
                      "should take"));
 }
 
+TEST(ZipReader, RefusesTwoDirectories) {
+    const std::vector<ZipPart> parts = {{.name = "a", .content = "text"}};
+    const std::string whole = zip_bytes(parts, {.zip64 = true});
+    read_all(whole);
+    const std::size_t end = whole.size() - 22;
+    // The classic record of the end may have the true numbers as well, and no others.
+    for (const std::size_t field : {10U, 12U, 16U}) {
+        std::string other = whole;
+        other[end + field] = '\x07';
+        other[end + field + 1] = '\0';
+        EXPECT_TRUE(says(error_of(other), "the two ends of the zip archive contradict each other")) << field;
+    }
+    std::string both = whole;
+    both.replace(end + 10, 2, std::string("\1\0", 2));
+    read_all(both);
+    // Room for another directory.
+    std::string wide = whole;
+    wide.insert(end - 20, 10, 'x');
+    EXPECT_TRUE(says(error_of(wide), "should have its (64-bit) end at byte"));
+}
+
 // Entries that share packed bytes are how a small archive holds petabytes.
 TEST(ZipReader, RefusesEntriesThatShareBytes) {
     const std::string zeros(1'000'000, '\0');
