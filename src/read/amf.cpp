@@ -170,7 +170,7 @@ class AmfReader {
         for (std::size_t i = 0; i < document_.objects.size(); ++i) {
             AmfObject& object = document_.objects[i];
             if (object.mesh.triangles.empty()) {
-                ++empty;
+                empty += object.left_out ? 0 : 1; // which is told below
                 continue;
             }
             degenerate += degenerate_triangles(object.mesh);
@@ -180,19 +180,22 @@ class AmfReader {
             file_.objects.push_back({object.name, Mesh(std::move(object.mesh))});
         }
         if (empty != 0)
-            remarks_.add(fmt::format("{} objects have no triangle", empty));
+            remarks_.add(counted(empty, "object has no triangle", "objects have no triangle"));
         if (degenerate != 0)
-            remarks_.add(fmt::format("{} triangles use a vertex twice; they bound nothing", degenerate));
+            remarks_.add(counted(degenerate, "triangle uses a vertex twice; it bounds nothing",
+                                 "triangles use a vertex twice; they bound nothing"));
         if (document_.bent.count != 0)
             remarks_.note(fmt::format("line {}: edges and normals bend triangles; they were passed over, as "
                                       "all {} of them, and triangles are flat",
                                       document_.bent.first, document_.bent.count));
         if (document_.supports.count != 0)
-            remarks_.note(fmt::format("line {}: {} volumes are supports; they were left out",
-                                      document_.supports.first, document_.supports.count));
+            remarks_.note(
+                fmt::format("line {}: {}", document_.supports.first,
+                            counted(document_.supports.count, "volume is a support; it was left out",
+                                    "volumes are supports; they were left out")));
         if (not_printable_ != 0)
-            remarks_.note(fmt::format("{} instances are marked as not to be printed; they were left out",
-                                      not_printable_));
+            remarks_.note(counted(not_printable_, "instance is marked as not to be printed; it was left out",
+                                  "instances are marked as not to be printed; they were left out"));
         file_.instances = place_meshes(name_, nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
             fail("holds nothing to slice: no object with a triangle");

@@ -119,7 +119,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
     AmfDocument read(std::string_view text, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
         handlers.text = [this](std::string_view piece) {
-            if (wants_text_ && text_.size() < longest_text)
+            if ((in() == Where::number || in() == Where::metadata) && text_.size() < longest_text)
                 text_ += piece;
         };
         handlers.progress = progress;
@@ -164,6 +164,8 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
         if (in() == Where::instance &&
             std::find(instance_numbers.begin(), instance_numbers.end(), name.local) != instance_numbers.end())
             return start_number(element);
+        if (in() == Where::number)
+            fail(fmt::format("found <{}> in <{}>, expected a number", printable(name.local, 40), kind_));
         const Step step = step_for(rules(), in(), name.local);
         return step != nullptr ? (this->*step)(element) : Where::elsewhere;
     }
@@ -190,7 +192,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
 
     Where start_object(const AmfElement& element) {
         count(sizeof(AmfObject));
-        document().objects.push_back({required(element, "id"), {}, line(), false, false, {}, {}});
+        document().objects.push_back({required(element, "id"), {}, line(), false, false, false, {}, {}});
         return Where::object;
     }
 
@@ -206,6 +208,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
         if (supports_ || !support)
             return Where::triangles;
         document().supports.note(line());
+        object().left_out = true;
         return Where::elsewhere;
     }
 
@@ -241,18 +244,15 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
 
     void begin_text(std::string_view of) {
         kind_ = of;
-        wants_text_ = true;
         text_.clear();
     }
 
     void end(Where ended) override {
         switch (ended) {
         case Where::number:
-            wants_text_ = false;
             end_number(trimmed(text_));
             break;
         case Where::metadata:
-            wants_text_ = false;
             end_metadata(trimmed(text_));
             break;
         case Where::vertex:
@@ -345,7 +345,6 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
     bool supports_;
     std::string kind_; ///< element of a number, or type of metadata
     std::string text_;
-    bool wants_text_ = false;
     unsigned seen_ = 0; ///< which coordinates or corners
     std::array<double, 3> point_{};
     TriangleIndices corners_{};

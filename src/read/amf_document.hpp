@@ -25,6 +25,7 @@ struct AmfObject {
     std::size_t line = 0;
     bool has_mesh = false;
     bool has_part = false; ///< a volume that is no support
+    bool left_out = false; ///< supports of it were
     IndexedMesh mesh;
     MeshText text;
 };

@@ -15,6 +15,11 @@
 
 namespace lamella {
 
+/// "1 object has no triangle", "2 objects have no triangle".
+[[nodiscard]] inline std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
 /// How often something odd occurs in a file, and where first.
 struct Occurrences {
     std::uint64_t count = 0;

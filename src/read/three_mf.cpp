@@ -338,12 +338,11 @@ class ThreeMfReader {
             file_.objects.push_back({source.name, Mesh(std::move(source.mesh))});
         }
         if (empty != 0)
-            remarks_.add(fmt::format("{} a mesh without triangles",
-                                     empty == 1 ? "1 object has" : fmt::format("{} objects have", empty)));
+            remarks_.add(counted(empty, "object has a mesh without triangles",
+                                 "objects have a mesh without triangles"));
         if (degenerate != 0)
-            remarks_.add(degenerate == 1 ? "1 triangle uses a vertex twice; it bounds nothing"
-                                         : fmt::format("{} triangles use a vertex twice; they bound nothing",
-                                                       degenerate));
+            remarks_.add(counted(degenerate, "triangle uses a vertex twice; it bounds nothing",
+                                 "triangles use a vertex twice; they bound nothing"));
         // These break no rule, and stop no strict caller.
         const auto note_count = [&](std::size_t count, std::string_view thing, std::string_view what) {
             if (count == 1)

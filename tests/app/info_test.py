@@ -36,7 +36,7 @@ class Info(ProgramTest):
                                f"<volume type='support'>{support}</volume></mesh></object></amf>")
         include = ["--include", "support"]
         self.assertEqual(self.info("part.amf")["triangles"], 4)
-        self.assertIn("1 volumes are supports", self.succeed("info", "part.amf").err)
+        self.assertIn("1 volume is a support", self.succeed("info", "part.amf").err)
         self.assertEqual(self.info("part.amf", *include)["triangles"], 8)
         self.assertEqual(self.succeed("info", "part.amf", *include).err, "")
         for words, triangles in ([], 4), (include, 8):

@@ -407,7 +407,7 @@ def test_supports_are_read_where_they_are_asked_for(tmp_path):
         f"<amf><object id='0'><mesh><vertices>{vertices}</vertices><volume{volume}</volume>"
         f"<volume type='support'{volume}</volume></mesh></object></amf>"
     )
-    with pytest.warns(lamella.DefectWarning, match="1 volumes are supports"):
+    with pytest.warns(lamella.DefectWarning, match="1 volume is a support"):
         assert len(lamella.read(path)) == 4
     assert len(lamella.read(path, supports=True)) == 8
 

@@ -150,7 +150,7 @@ TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
     const MeshFile without =
         read(amf(replaced(two, "materialid=\"2\"", "type=\"support\"")), {.strict = true});
     EXPECT_EQ(without.stored_triangles, 4U);
-    EXPECT_TRUE(says(without.warnings.at(0), "1 volumes are supports"));
+    EXPECT_TRUE(says(without.warnings.at(0), "1 volume is a support; it was left out"));
     const MeshFile with =
         read(amf(replaced(two, "materialid=\"2\"", "type=\"support\"")), {.supports = true});
     EXPECT_EQ(with.stored_triangles, 5U);
@@ -160,6 +160,22 @@ TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
         read(amf(replaced(amf_object("0"), "<volume", "<volume type=\"support\"")), {.supports = true})
             .instances.at(0)
             .support);
+}
+
+TEST(Amf, AnObjectOfSupportsOnlyStopsNoStrictCaller) {
+    const std::string support = replaced(amf_object("1"), "<volume", "<volume type=\"support\"");
+    const MeshFile file = read(amf(amf_object("0") + support), {.strict = true});
+    EXPECT_EQ(file.objects.size(), 1U);
+    EXPECT_EQ(file.warnings.size(), 1U);
+    EXPECT_THROW(
+        static_cast<void>(read(amf(amf_object("0") + "<object id=\"1\"><mesh/></object>"), {.strict = true})),
+        Error);
+}
+
+TEST(Amf, ANumberHoldsNoElements) {
+    const std::string odd = replaced(amf_object("0"), "<x>1</x>", "<x>1<b>7</b>0</x>");
+    const std::string error = error_of(amf(odd));
+    EXPECT_TRUE(says(error, "found <b> in <x>, expected a number")) << error;
 }
 
 TEST(Amf, CurvesAreFlatAndSaidToBe) {
