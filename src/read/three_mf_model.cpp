@@ -151,7 +151,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
              {Where::object, "components", &Self::start_components},
              {Where::object, "metadatagroup", &Self::pass_over},
              {Where::mesh, "vertices", &Self::once<Where::vertices>},
-             {Where::mesh, "triangles", &Self::once<Where::triangles>},
+             {Where::mesh, "triangles", &Self::start_triangles},
              {Where::components, "component", &Self::add_component},
              {Where::build, "item", &Self::add_item}});
         return all;
@@ -261,6 +261,12 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         require_no_content(element);
         object().is_mesh = true;
         return Where::mesh;
+    }
+
+    Where start_triangles(const ThreeMfElement& element) {
+        if (!seen_.contains(Where::vertices))
+            element.fail("<triangles> before <vertices>", "vertices first");
+        return once<Where::triangles>(element);
     }
 
     Where start_components(const ThreeMfElement& element) {

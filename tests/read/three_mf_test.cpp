@@ -330,6 +330,24 @@ TEST(ThreeMf, ReferencesThatLeadNowhereAreCounted) {
     EXPECT_EQ(file.warnings[1], "the part '3D/other.model' is used without a relationship to it");
 }
 
+TEST(ThreeMf, VerticesComeBeforeTrianglesHoweverTheseAreWritten) {
+    std::string mesh = box_mesh();
+    const std::size_t vertices = mesh.find("<vertices>");
+    const std::size_t triangles = mesh.find("<triangles>");
+    const std::size_t end = mesh.find("</mesh>");
+    mesh = "<mesh>" + mesh.substr(triangles, end - triangles) + mesh.substr(vertices, triangles - vertices) +
+           "</mesh>";
+    for (const std::string& written : {mesh, replaced(mesh, "v1=", "v1 =")}) {
+        const std::string error = error_of(package(model(object(1, written), one_item)));
+        EXPECT_TRUE(says(error, "found <triangles> before <vertices>, expected vertices first")) << error;
+    }
+}
+
+TEST(ThreeMf, BytesThatAreNoTextAreRefusedAlsoInPlainElements) {
+    const std::string odd = replaced(box_mesh(), "<triangle ", "<triangle p:x=\"\xff\" ");
+    EXPECT_NE(error_of(package(model(object(1, odd), one_item))), "");
+}
+
 TEST(ThreeMf, NamesTheLineOfWhatIsWrong) {
     const std::string good = model(object(1, box_mesh()), one_item);
     const auto wrong = [&](std::string_view from, std::string_view to) {
