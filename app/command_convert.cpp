@@ -14,9 +14,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -45,24 +42,6 @@ OptionGroup output_options(ConvertArguments& target) {
     return group;
 }
 
-/// A layer counts once, however many parts change in it.
-LayerChanges take_steps(const LayerSteps& steps, LayerFile& file, const Execution& execution) {
-    std::vector<LayerChanges> planes;
-    for (LayerPart& part : file.parts) {
-        std::vector<LayerChanges> each;
-        part.layers = take_steps(steps, std::move(part.layers), each, execution);
-        planes.resize(each.size());
-        for (std::size_t i = 0; i < each.size(); ++i)
-            planes[i] += each[i];
-    }
-    LayerChanges changes;
-    for (LayerChanges& plane : planes) {
-        plane.changed_layers = std::min<std::uint64_t>(1, plane.changed_layers);
-        changes += plane;
-    }
-    return changes;
-}
-
 int run_convert(const ConvertArguments& arguments, const Context& context) {
     check_outputs(context.command);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
@@ -73,10 +52,10 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     options.page.title = title_of(arguments.input);
     context.messages.warn_of(file.path, file.warnings);
     check_no_vectors(file, arguments.making.steps());
-    const LayerChanges changes = take_steps(arguments.making.steps(), file, execution);
-    if (changes.hatches_dropped > 0) {
-        const std::string lost = fmt::format("{}: {} left out: the contours that they fill were changed",
-                                             file.path, counted(changes.hatches_dropped, "hatch line"));
+    LayerChanges changes;
+    for (const LayerChanges& plane : take_steps(arguments.making.steps(), file, execution))
+        changes += plane;
+    if (const std::string lost = lost_hatches(file, changes); !lost.empty()) {
         if (arguments.strict)
             throw Error(ErrorKind::defect, lost);
         context.messages.warn(lost);

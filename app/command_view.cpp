@@ -93,12 +93,12 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
                                 file.path));
     check_no_vectors(file, arguments.making.steps());
     PageNotes notes = file_notes(file);
-    for (LayerPart& part : file.parts) {
-        std::vector<LayerChanges> changes;
-        part.layers = take_steps(arguments.making.steps(), std::move(part.layers), changes, execution);
-        for (std::size_t i = 0; i < changes.size(); ++i)
-            if (changes[i].changed_layers > 0)
-                notes.changes.push_back({part.layers[i].index, changes[i]});
+    const std::vector<LayerChanges> planes = take_steps(arguments.making.steps(), file, execution);
+    LayerChanges all;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        all += planes[i];
+        if (planes[i].changed_layers > 0)
+            notes.changes.push_back({file.parts.front().layers[i].index, planes[i]});
     }
     const LayerFileInfo info = info_of(file);
     const auto page = open_layer_page(output, info, page_options(arguments.input));
@@ -111,7 +111,10 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
     write_planes(*page, info.layers, parts_of, execution);
     page->tell(std::move(notes));
     page->finish();
-    return {.layers = info.layers, .warnings = page->warnings()};
+    Written written{.layers = info.layers, .warnings = page->warnings()};
+    if (const std::string lost = lost_hatches(file, all); !lost.empty())
+        written.warnings.push_back(lost);
+    return written;
 }
 
 /// Beside the reader, not beside the file: "parts/rook.stl" makes rook.html here.

@@ -3,8 +3,11 @@
 #include "lamella/core/error.hpp"
 
 #include "messages.hpp"
+#include "numbers.hpp"
 
 #include <fmt/format.h>
+
+#include <utility>
 
 namespace lamella::app {
 namespace {
@@ -53,6 +56,24 @@ void check_no_vectors(const LayerFile& file, const LayerSteps& steps) {
                                     "--min-area and --simplify are for contours: take these steps before "
                                     "lamella scan",
                                     file.path, one_line(part.label)));
+}
+
+std::vector<LayerChanges> take_steps(const LayerSteps& steps, LayerFile& file, const Execution& execution) {
+    std::vector<LayerStack> parts;
+    for (LayerPart& part : file.parts)
+        parts.push_back(std::move(part.layers));
+    std::vector<LayerChanges> planes;
+    parts = take_steps(steps, std::move(parts), planes, execution);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        file.parts[i].layers = std::move(parts[i]);
+    return planes;
+}
+
+std::string lost_hatches(const LayerFile& file, const LayerChanges& changes) {
+    if (changes.hatches_dropped == 0)
+        return "";
+    return fmt::format("{}: {} left out: the contours that they fill were changed", file.path,
+                       counted(changes.hatches_dropped, "hatch line"));
 }
 
 } // namespace lamella::app

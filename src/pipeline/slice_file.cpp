@@ -313,12 +313,7 @@ class LayerWay {
         LayerChanges changes;
         if (job_.steps.any()) {
             const Stopwatch stepping;
-            for (const Layer& layer : parts) {
-                LayerChanges one;
-                made.push_back(take_steps(job_.steps, layer, one));
-                changes += one;
-            }
-            changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers); // of the plate
+            made = take_steps_on_plane(job_.steps, parts, changes);
             count(stepping, step_nanoseconds_);
             parts = made;
         }

@@ -4,6 +4,7 @@
 
 #include "core/executor.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -92,32 +93,52 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
     return layer;
 }
 
-LayerStack take_steps(const LayerSteps& steps, LayerStack layers, std::vector<LayerChanges>& each,
-                      const Execution& execution) {
+std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
+                                       LayerChanges& changes) {
+    changes = {};
+    std::vector<Layer> made;
+    for (const Layer& layer : parts) {
+        LayerChanges one;
+        made.push_back(take_steps(steps, layer, one));
+        changes += one;
+    }
+    changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
+    return made;
+}
+
+std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
+                                   std::vector<LayerChanges>& planes, const Execution& execution) {
     check_steps(steps);
-    each.assign(layers.size(), {});
+    planes.assign(parts.empty() ? 0 : parts.front().size(), {});
     if (!steps.any())
-        return layers;
+        return parts;
     Executor executor(execution);
-    ProgressMeter progress(execution, Stage::polygon, layers.size());
-    executor.for_chunks(layers.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+    ProgressMeter progress(execution, Stage::polygon, planes.size());
+    executor.for_chunks(planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            layers[i] = take_steps(steps, std::move(layers[i]), each[i]);
+            std::vector<Layer> plane;
+            for (LayerStack& part : parts)
+                plane.push_back(std::move(part[i]));
+            plane = take_steps_on_plane(steps, plane, planes[i]);
+            for (std::size_t part = 0; part < parts.size(); ++part)
+                parts[part][i] = std::move(plane[part]);
             progress.add(1);
         }
     });
     progress.finish();
-    return layers;
+    return parts;
 }
 
 LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
                       const Execution& execution) {
-    std::vector<LayerChanges> each;
-    layers = take_steps(steps, std::move(layers), each, execution);
+    std::vector<LayerStack> parts;
+    parts.push_back(std::move(layers));
+    std::vector<LayerChanges> planes;
+    parts = take_steps(steps, std::move(parts), planes, execution);
     changes = {};
-    for (const LayerChanges& one : each)
-        changes += one;
-    return layers;
+    for (const LayerChanges& plane : planes)
+        changes += plane;
+    return std::move(parts.front());
 }
 
 } // namespace lamella

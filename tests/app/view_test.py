@@ -66,6 +66,15 @@ class View(ProgramTest):
         for name in ("converted.html", "viewed.html", "reported.html"):
             self.assertEqual(data(name), expected, name)
 
+    def test_steps_that_change_contours_tell_of_their_hatches(self):
+        self.need_viewer()
+        part = '{"rings": [[0, 0, 9, 0, 9, 9, 0, 9]], "hatches": [0, 1, 9, 1]}'
+        self.write("hatched.json", f"""{{"format": "lamella layers", "version": 1, "units": "mm", "parts": [{{"label": "a"}}, {{"label": "b"}}],
+            "layers": [{{"index": 0, "z": 0.1, "bottom": 0, "top": 0.2, "parts": [{part}, {part}]}}]}}""")
+        told = self.succeed("view", "hatched.json", "-o", "page.html", "--offset", "0.1").err
+        self.assertRegex(told, r"warning: hatched\.json: 2 hatch lines left out: the contours that they fill were changed")
+        self.assertEqual(self.succeed("view", "hatched.json", "-o", "page.html").err, "")
+
     def test_threads_do_not_change_a_page(self):
         self.need_viewer()
         self.succeed("make", "rook", "-o", "rook.stl")

@@ -91,6 +91,31 @@ TEST(LayerSteps, ALayerThatIsChangedLosesItsHatchesAndSaysSo) {
     EXPECT_EQ(changes.hatches_dropped, 4U);
 }
 
+TEST(LayerSteps, APlaneCountsOnceHoweverManyPartsChangeOnIt) {
+    const Layer small = normal_form(layer_of({rectangle(0, 0, 1, 1), rectangle(5, 0, 9, 4)}));
+    const Layer large = normal_form(layer_of({rectangle(0, 0, 4, 4)}));
+    const LayerSteps steps{.min_area_mm2 = 2};
+    LayerChanges plane;
+    const std::vector<Layer> made = take_steps_on_plane(steps, std::vector{small, small, large}, plane);
+    ASSERT_EQ(made.size(), 3U);
+    EXPECT_EQ(made[1].rings, 1U);
+    EXPECT_EQ(plane.changed_layers, 1U);
+    EXPECT_EQ(plane.rings_dropped, 2U);
+
+    std::vector<LayerChanges> planes;
+    const std::vector<LayerStack> parts = take_steps(
+        steps, std::vector<LayerStack>{{small, large, small}, {small, large, large}}, planes, {.threads = 2});
+    ASSERT_EQ(planes.size(), 3U);
+    const std::uint64_t changed[] = {1, 0, 1};
+    const std::uint64_t dropped[] = {2, 0, 1};
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(planes[i].changed_layers, changed[i]);
+        EXPECT_EQ(planes[i].rings_dropped, dropped[i]);
+        EXPECT_EQ(parts[0][i].rings, 1U);
+        EXPECT_EQ(parts[1][i].rings, 1U);
+    }
+}
+
 TEST(LayerSteps, SmallRingsAreDroppedWhenAskedFor) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), reversed(rectangle(1, 1, 2, 2))}));
     LayerSteps steps;

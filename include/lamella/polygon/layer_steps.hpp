@@ -10,6 +10,7 @@
 #include "lamella/polygon/simplify.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace LAMELLA_API lamella {
@@ -54,11 +55,16 @@ void check_steps(const LayerSteps& steps);
 /// Throws what the steps throw.
 [[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes);
 
-/// The same for all layers of a stack, in parallel; `each` are the changes of every layer.
-[[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers,
-                                    std::vector<LayerChanges>& each, const Execution& execution = {});
+/// The same for the layers of all parts on one plane. However many of them change, they count as one layer.
+[[nodiscard]] std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
+                                                     LayerChanges& changes);
 
-/// The same; `changes` are those of all layers together.
+/// The same for parts on the same planes, in parallel; `planes` are the changes of every plane.
+[[nodiscard]] std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
+                                                 std::vector<LayerChanges>& planes,
+                                                 const Execution& execution = {});
+
+/// The same for one part; `changes` are those of all layers together.
 [[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
                                     const Execution& execution = {});
 
