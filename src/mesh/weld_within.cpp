@@ -3,7 +3,7 @@
 //     points   equal vertices are one point; points are numbered in lexicographic order, so that nothing
 //     below
 //              depends on the order of the mesh
-//     pairs    points no further apart than the tolerance, found by a grid whose cells are that wide
+//     pairs    points no further apart than the tolerance, found by a grid of cells that wide
 //     join     the closest pair first, as long as a group fits a box of that diagonal
 //     rewrite  triangles, from vertices to the first point of their groups
 
@@ -48,55 +48,69 @@ struct PointPair {
     }
 };
 
-/// Points by cells of a cubic grid, which are at least as wide as the tolerance.
+/// Points by cells about as wide as the tolerance. Each axis is divided from point to point, not evenly:
+/// numbers of even cells have no end where one vertex is far away.
 class CellGrid {
   public:
-    CellGrid(std::span<const Point3> points, double tolerance) {
-        Box3 box;
-        for (const Point3& p : points)
-            box.add(p);
-        low_ = box.min;
-        const double extent = std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
-        size_ = std::max(tolerance * (1 + 1e-9), extent / (1 << 20));
-        cells_.reserve(points.size());
-        for (std::uint32_t i = 0; i < points.size(); ++i)
-            cells_.emplace_back(cell(points[i]), i);
-        std::sort(cells_.begin(), cells_.end());
+    CellGrid(std::span<const Point3> points, double tolerance) : places_(points.size()) {
+        std::vector<std::pair<double, std::uint32_t>> along(points.size());
+        for (double Point3::*const axis : {&Point3::x, &Point3::y, &Point3::z}) {
+            for (std::uint32_t i = 0; i < points.size(); ++i)
+                along[i] = {points[i].*axis, i};
+            std::sort(along.begin(), along.end());
+            // What is within the tolerance of a point is in its own stretch or in one next to it.
+            std::uint64_t stretch = 1;
+            double start = along.empty() ? 0 : along.front().first;
+            for (const auto& [x, i] : along) {
+                if (x - start > tolerance * (1 + 1e-9)) {
+                    ++stretch;
+                    start = x;
+                }
+                Place& place = places_[i];
+                place = {place.first << 32 | place.second >> 32, stretch << 32 | i};
+            }
+        }
+        std::sort(places_.begin(), places_.end());
     }
 
-    [[nodiscard]] std::size_t size() const noexcept { return cells_.size(); }
+    [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
+
+    /// How many pairs within the tolerance there are at least: an eighth of a cell is smaller than that
+    /// across, so c points in a cell make (c^2 - 8 c) / 16. Those that `after` visits are no more than 14
+    /// times c^2.
+    [[nodiscard]] std::size_t least_pairs() const noexcept {
+        std::size_t squares = 0;
+        for (std::size_t i = 0, begin = 0; i < places_.size(); ++i) {
+            const auto [row, at] = places_[begin];
+            if (row != places_[i].first || at >> 32 != places_[i].second >> 32)
+                begin = i;
+            squares += 2 * (i - begin) + 1;
+        }
+        return squares / 16 - std::min(squares / 16, places_.size() / 2);
+    }
 
     /// visit(point, other) for the i-th point in the order of the grid and all that come after it in its own
     /// cell and in the half of the neighbours that come after it.
     template <class Visit>
     void after(std::size_t i, const Visit& visit) const {
-        const auto [at, point] = cells_[i];
-        for (std::size_t k = i + 1; k < cells_.size() && cells_[k].first <= at + 1; ++k)
-            visit(point, cells_[k].second);
+        constexpr std::uint64_t next = std::uint64_t{1} << 32;
+        const auto from = places_.begin() + static_cast<std::ptrdiff_t>(i);
+        const std::uint64_t cell = from->second & ~(next - 1);
         // The three cells of a row are neighbours in the order.
-        for (const std::uint64_t row : {at + stride - 1, at + stride * stride - stride - 1,
-                                        at + stride * stride - 1, at + stride * stride + stride - 1}) {
-            auto k = std::lower_bound(cells_.begin() + static_cast<std::ptrdiff_t>(i), cells_.end(),
-                                      std::pair(row, std::uint32_t{0}));
-            for (; k != cells_.end() && k->first <= row + 2; ++k)
-                visit(point, k->second);
-        }
+        const auto visit_row = [&](auto k, std::uint64_t row) {
+            for (; k != places_.end() && k->first == row && k->second < cell + 2 * next; ++k)
+                visit(static_cast<std::uint32_t>(from->second), static_cast<std::uint32_t>(k->second));
+        };
+        visit_row(from + 1, from->first);
+        for (const std::uint64_t row :
+             {from->first + 1, from->first + next - 1, from->first + next, from->first + next + 1})
+            visit_row(std::lower_bound(from, places_.end(), Place{row, cell - next}), row);
     }
 
   private:
-    // 2^20 cells at most, and one beside them on either side, so that rows do not run into one another.
-    static constexpr std::uint64_t stride = (std::uint64_t{1} << 20) + 4;
+    using Place = std::pair<std::uint64_t, std::uint64_t>; ///< cells along x and y; along z, and the point
 
-    [[nodiscard]] std::uint64_t cell(const Point3& p) const noexcept {
-        const auto along = [this](double x, double low) {
-            return static_cast<std::uint64_t>((x - low) / size_) + 1;
-        };
-        return (along(p.z, low_.z) * stride + along(p.y, low_.y)) * stride + along(p.x, low_.x);
-    }
-
-    Point3 low_;
-    double size_ = 0;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> cells_;
+    std::vector<Place> places_;
 };
 
 Error too_coarse(double tolerance) {
@@ -109,25 +123,22 @@ Error too_coarse(double tolerance) {
 std::vector<PointPair> close_pairs(Executor& executor, std::span<const Point3> points, double tolerance) {
     const CellGrid grid(points, tolerance);
     const std::size_t most = 64 * points.size() + (std::size_t{1} << 16);
+    if (grid.least_pairs() > most) // else few are looked at, too
+        throw too_coarse(tolerance);
     std::vector<std::vector<PointPair>> found(executor.workers());
     std::atomic<std::size_t> count{0};
-    std::atomic<std::size_t> looked_at{0};
     constexpr std::size_t chunk = 256;
     const double square_of_tolerance = tolerance * tolerance;
     executor.for_chunks(grid.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
         std::vector<PointPair>& pairs = found[worker];
         const std::size_t before = pairs.size();
-        std::size_t looks = 0;
-        for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t i = begin; i < end && pairs.size() - before <= most; ++i)
             grid.after(i, [&](std::uint32_t a, std::uint32_t b) {
-                ++looks;
                 const double square = square_of_gap(points[a], points[b]);
                 if (square <= square_of_tolerance)
                     pairs.push_back({square, std::min(a, b), std::max(a, b)});
-                if (pairs.size() - before > most || looks > 64 * most)
-                    throw too_coarse(tolerance);
             });
-        if ((count += pairs.size() - before) > most || (looked_at += looks) > 64 * most)
+        if ((count += pairs.size() - before) > most)
             throw too_coarse(tolerance);
     });
     std::vector<PointPair> pairs;

@@ -16,6 +16,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -144,6 +147,86 @@ TEST(WeldWithin, RefusesTolerancesThatAreNone) {
     for (const double tolerance : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity(), 10.0})
         test::expect_error(ErrorKind::usage, {"weld tolerance"}, [&] { (void)weld_within(mesh, tolerance); });
     EXPECT_EQ(weld_within({}, 1).mesh.vertices.size(), 0U);
+}
+
+/// The corners of `cubes` cubes apart, each corner three times within 2e-5.
+IndexedMesh crumbs(int cubes) {
+    IndexedMesh mesh;
+    for (int c = 0; c < cubes; ++c)
+        for (const double jolt : {0.0, 1e-5, 2e-5})
+            for (const Triangle3& t : coordinates(weld(make_box(1, 1, 1)))) {
+                const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+                for (const Point3& p : t)
+                    mesh.vertices.push_back({p.x + jolt, p.y + 3.0 * (c % 30), p.z + 3.0 * (c / 30)});
+                mesh.triangles.push_back({first, first + 1, first + 2});
+            }
+    return mesh;
+}
+
+TEST(WeldWithin, OneVertexFarAwayChangesNothing) {
+    const IndexedMesh mesh = crumbs(900);
+    const ToleranceWeld alone = weld_within(mesh, 1e-4);
+    for (const double far : {1e6, -1e9, 1e30, 1e300}) {
+        IndexedMesh stray = mesh;
+        stray.vertices.push_back({far, far, far});
+        const ToleranceWeld welded = weld_within(stray, 1e-4);
+        EXPECT_EQ(welded.mesh.triangles, alone.mesh.triangles);
+        EXPECT_EQ(welded.joined_vertices, alone.joined_vertices);
+        EXPECT_EQ(welded.mesh.vertices.size(), alone.mesh.vertices.size() + 1);
+    }
+    EXPECT_EQ(alone.mesh.vertices.size(), 7200U);
+}
+
+/// Joined vertices and pairs left apart, by all pairs.
+std::pair<std::uint64_t, std::uint64_t> naive_weld(std::vector<Point3> points, double tolerance) {
+    const std::size_t vertices = points.size();
+    const auto square = [](const Point3& a, const Point3& b) {
+        return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z);
+    };
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+    for (std::size_t b = 0; b < points.size(); ++b)
+        for (std::size_t a = 0; a < b; ++a)
+            if (square(points[a], points[b]) <= tolerance * tolerance)
+                pairs.emplace_back(square(points[a], points[b]), a, b);
+    std::sort(pairs.begin(), pairs.end());
+    std::vector<std::size_t> group(points.size());
+    std::iota(group.begin(), group.end(), std::size_t{0});
+    std::size_t groups = points.size();
+    for (const auto& pair : pairs) {
+        const std::size_t a = group[std::get<1>(pair)];
+        const std::size_t b = group[std::get<2>(pair)];
+        Box3 box;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (group[i] == a || group[i] == b)
+                box.add(points[i]);
+        if (a == b || square(box.max, box.min) > tolerance * tolerance)
+            continue;
+        std::replace(group.begin(), group.end(), b, a);
+        --groups;
+    }
+    std::uint64_t apart = 0;
+    for (const auto& pair : pairs)
+        apart += group[std::get<1>(pair)] != group[std::get<2>(pair)] ? 1 : 0;
+    return {vertices - groups, apart};
+}
+
+TEST(WeldWithin, FindsThePairsThatComparingAllFinds) {
+    Random random(3);
+    for (int round = 0; round < 400; ++round) {
+        const double tolerance = round % 2 == 0 ? 0.125 : 0.1;
+        const double unit = round % 4 < 2 ? tolerance : tolerance / 3; // many are just so far apart
+        const double offset = round % 8 < 4 ? 0 : 1e9;
+        IndexedMesh mesh;
+        for (int v = 0; v < 60; ++v)
+            mesh.vertices.push_back({offset + unit * static_cast<double>(random.integer(0, 9)),
+                                     unit * static_cast<double>(random.integer(0, 9)),
+                                     unit * static_cast<double>(random.integer(-9, 0))});
+        const ToleranceWeld welded = weld_within(mesh, tolerance);
+        EXPECT_EQ(std::pair(welded.joined_vertices, welded.pairs_apart),
+                  naive_weld(mesh.vertices, tolerance));
+    }
 }
 
 TEST(DropDuplicates, LeavesASoundMeshAsItIs) {
