@@ -177,6 +177,14 @@ Layer nest(int n) {
     return layer_of(rings);
 }
 
+/// Hooks above one another: all chains begin and end at the same x.
+Layer column_of_hooks(int n) {
+    std::vector<Contour> chains;
+    for (int i = 0; i < n / 3; ++i)
+        chains.push_back({{0, 1.0 * i}, {-1, i + 0.2}, {0, i + 0.4}});
+    return layer_of({}, chains);
+}
+
 /// Seconds, and whether the result is right.
 struct Timed {
     double seconds = 0;
@@ -227,6 +235,14 @@ Timed compare_fins(int n) {
     const auto start = Clock::now();
     const double distance = compare(layer, moved).distance_mm;
     return {seconds_since(start), layer.points.size(), distance > 0.99e-5 && distance < 1.01e-5};
+}
+
+Timed join_hooks(int n) {
+    const Layer layer = column_of_hooks(n);
+    const auto start = Clock::now();
+    const ClosedGaps closed = close_gaps(layer, 0.7);
+    return {seconds_since(start), layer.points.size(),
+            closed.layer.open_chains() == 1 && closed.refused == 0};
 }
 
 class Report {
@@ -307,6 +323,7 @@ int report(int argc, char** argv) {
     report.add("offset: slivers, crossings of all pairs", n / 100,
                [](int i) { return shrink_away(slivers(i), 200 * turn / i, OffsetCorner::bevel); });
     report.add("compare: fins side by side", n, compare_fins);
+    report.add("gaps: chains in a column", n, join_hooks);
     std::cout << report.text();
     return report.right() ? 0 : 1;
 }

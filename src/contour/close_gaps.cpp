@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "contour/distance.hpp"
+#include "contour/nearest_points.hpp"
 #include "core/orientation.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 #include <cmath>
 #include <span>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace lamella {
 
@@ -34,30 +37,32 @@ struct Candidate {
 constexpr std::size_t most_candidates_of_an_end = 64;
 
 std::vector<Candidate> find_candidates(const Layer& layer, double within) {
-    struct Start {
-        Point2 point;
-        std::size_t chain;
-    };
-    std::vector<Start> starts;
+    std::vector<Point2> first_points;
     for (std::size_t c = layer.rings; c < layer.contours(); ++c)
-        starts.push_back({layer.contour(c).front(), c});
-    std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) {
-        return std::tuple(a.point, a.chain) < std::tuple(b.point, b.chain);
-    });
+        first_points.push_back(layer.contour(c).front());
+    const NearestPoints starts(std::move(first_points));
+    // All that are no longer than this: rounding may put a box of the tree beyond its points.
+    const auto reach = [](double length) {
+        return std::nextafter(length * (1 + 1e-15), Box3::infinity);
+    };
     std::vector<Candidate> all;
-    std::vector<Candidate> of_end;
+    std::vector<Candidate> of_end; // a heap, the worst on top
     for (std::size_t c = layer.rings; c < layer.contours(); ++c) {
         const Point2& end = layer.contour(c).back();
         of_end.clear();
-        auto start = std::lower_bound(starts.begin(), starts.end(), end.x - within,
-                                      [](const Start& s, double x) { return s.point.x < x; });
-        for (; start != starts.end() && start->point.x <= end.x + within; ++start)
-            if (std::abs(start->point.y - end.y) <= within)
-                if (const double length = distance(end, start->point); length <= within)
-                    of_end.push_back({length, end, start->point, c, start->chain});
-        const std::size_t kept = std::min(of_end.size(), most_candidates_of_an_end);
-        std::partial_sort(of_end.begin(), of_end.begin() + static_cast<std::ptrdiff_t>(kept), of_end.end());
-        all.insert(all.end(), of_end.begin(), of_end.begin() + static_cast<std::ptrdiff_t>(kept));
+        starts.for_each_closer(end, reach(within), [&](std::size_t start, double length, double& below) {
+            if (length > within)
+                return;
+            const std::size_t next = layer.rings + start;
+            of_end.push_back({length, end, layer.contour(next).front(), c, next});
+            std::push_heap(of_end.begin(), of_end.end());
+            if (of_end.size() > most_candidates_of_an_end) {
+                std::pop_heap(of_end.begin(), of_end.end());
+                of_end.pop_back();
+                below = reach(of_end.front().length);
+            }
+        });
+        all.insert(all.end(), of_end.begin(), of_end.end());
     }
     std::sort(all.begin(), all.end());
     return all;

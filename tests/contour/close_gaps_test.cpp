@@ -55,6 +55,12 @@ TEST(CloseGaps, ClosesAChainWhoseEndsMeet) {
     EXPECT_TRUE(close_gaps(layer, 0.499).joins.empty());
 }
 
+TEST(CloseGaps, ClosesAGapThatIsJustAsLongWhateverItsDirection) {
+    // 0.8 - 0.3 is 0.5, but 0.8 - 0.5 is more than 0.3.
+    EXPECT_EQ(close_gaps(normal_layer({}, {{{5, 0}, {0.8, 0}}, {{0.3, 0}, {-5, 0}}}), 0.5).joins.size(), 1U);
+    EXPECT_EQ(close_gaps(normal_layer({}, {{{0, 5}, {0, 0.8}}, {{0, 0.3}, {0, -5}}}), 0.5).joins.size(), 1U);
+}
+
 TEST(CloseGaps, LeavesOutARepeatedPoint) {
     const ClosedGaps closed =
         close_gaps(normal_layer({}, {{{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}}), 0.1);
