@@ -74,21 +74,27 @@ IndexedMesh weld(const Mesh& mesh, const Execution& execution) {
 Mesh joined(std::span<const Mesh> meshes, const Execution& execution) {
     if (meshes.size() == 1)
         return meshes.front();
+    const auto require_indices = [&](std::uint64_t vertices_or_triangles) {
+        constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+        if (vertices_or_triangles > most)
+            throw Error(ErrorKind::limit, fmt::format("{} meshes together have more than {} vertices or "
+                                                      "triangles: more than can be indexed",
+                                                      meshes.size(), most));
+    };
+    std::uint64_t triangles = 0;
+    for (const Mesh& mesh : meshes)
+        triangles += mesh.size();
+    require_indices(triangles);
     IndexedMesh all;
+    all.triangles.reserve(triangles);
     for (const Mesh& mesh : meshes) {
         IndexedMesh welded;
         if (mesh.indexed() == nullptr)
             welded = weld(*mesh.soup(), execution);
         const IndexedMesh& part = mesh.indexed() != nullptr ? *mesh.indexed() : welded;
-        constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-        if (part.vertices.size() > most - all.vertices.size() ||
-            part.triangles.size() > most - all.triangles.size())
-            throw Error(ErrorKind::limit, fmt::format("{} meshes together have more than {} vertices or "
-                                                      "triangles: more than can be indexed",
-                                                      meshes.size(), most));
+        require_indices(all.vertices.size() + part.vertices.size());
         const auto first = static_cast<std::uint32_t>(all.vertices.size());
         all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
-        all.triangles.reserve(all.triangles.size() + part.triangles.size());
         for (const auto& t : part.triangles)
             all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }

@@ -120,5 +120,13 @@ TEST(Mesh, JoinsMeshesOfBothKinds) {
     EXPECT_TRUE(joined({}).empty());
 }
 
+TEST(Mesh, MoreMeshesThanIndicesReachAreRefusedBeforeAnyIsCopied) {
+    // 2^32 triangles, which would take 48 GB.
+    const IndexedMesh part{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                           std::vector<std::array<std::uint32_t, 3>>(std::size_t{1} << 20, {0, 1, 2})};
+    const std::vector<Mesh> meshes(std::size_t{1} << 12, Mesh(part));
+    test::expect_error(ErrorKind::limit, {"4096 meshes", "4294967295"}, [&] { (void)joined(meshes); });
+}
+
 } // namespace
 } // namespace lamella
