@@ -154,9 +154,9 @@ std::vector<Shell> tell_shells(const Survey& all, const IndexedMesh& mesh) {
         Shell& shell = shells[s];
         shell.first_triangle = all.shells.first[s];
         shell.box = all.boxes[s];
-        shell.volume_mm3 = all.volumes[s];
+        shell.volume_mm3 = all.contents[s].volume();
         shell.kind = !all.shells.closed[s] ? ShellKind::open
-                     : all.volumes[s] >= 0 ? ShellKind::body
+                     : !all.inward[s]      ? ShellKind::body
                      : all.cavity[s]       ? ShellKind::cavity
                                            : ShellKind::inverted;
         shell.depth = all.depth[s];

@@ -50,10 +50,13 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
 
     const Shells& shells = all.shells;
     found.shells = shells.size();
-    all.volumes = shell_volumes(executor, mesh, shells);
-    std::vector<bool> inward(shells.size());
+    std::vector<Point3> origins;
+    for (const std::uint32_t first : shells.first)
+        origins.push_back(corners(mesh, first)[0]);
+    all.contents = shell_contents(executor, mesh, shells, origins);
+    std::vector<bool>& inward = all.inward;
     for (std::size_t s = 0; s < shells.size(); ++s)
-        inward[s] = shells.closed[s] && all.volumes[s] < 0;
+        inward.push_back(shells.closed[s] && all.contents[s].certain() && all.contents[s].six_volumes < 0);
     all.boxes = shell_boxes(mesh, shells);
     all.depth.assign(shells.size(), 0);
     all.inside.assign(shells.size(), no_shell);
@@ -63,7 +66,10 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
         around[enclosure.shell] += enclosure.winding;
         ++all.depth[enclosure.shell];
         std::uint32_t& inside = all.inside[enclosure.shell];
-        if (inside == no_shell || std::abs(all.volumes[enclosure.encloser]) < std::abs(all.volumes[inside]))
+        const auto size = [&](std::uint32_t shell) {
+            return std::abs(all.contents[shell].six_volumes);
+        };
+        if (inside == no_shell || size(enclosure.encloser) < size(inside))
             inside = enclosure.encloser;
     };
     if (with_places ? shells.size() > 1 : std::find(inward.begin(), inward.end(), true) != inward.end())

@@ -26,11 +26,20 @@ namespace lamella {
     return {(t[0].x + t[1].x + t[2].x) / 3, (t[0].y + t[1].y + t[2].y) / 3, (t[0].z + t[1].z + t[2].z) / 3};
 }
 
+[[nodiscard]] inline Point3 middle(const Box3& box) noexcept {
+    return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
+}
+
 /// The same corners, the lexicographically smallest one first: what is computed from these depends neither on
 /// which corner came first nor on the way round.
 [[nodiscard]] inline Triangle3 in_order(Triangle3 t) noexcept {
     std::sort(t.begin(), t.end());
     return t;
+}
+
+/// Whether it runs through its corners as `in_order` gives them, or the other way round.
+[[nodiscard]] inline bool runs_in_order(const Triangle3& t) noexcept {
+    return (t[1] < t[0]) == ((t[2] < t[0]) != (t[2] < t[1]));
 }
 
 /// The same bits on every processor, as by `hypotenuse` of contour/distance: the way round of shells depends

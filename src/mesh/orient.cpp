@@ -27,7 +27,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -130,8 +129,7 @@ void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vecto
         if (s == no_shell || lead[s] != 0)
             continue;
         const Triangle3 t = corners(mesh, i);
-        const bool odd = (t[1] < t[0]) != ((t[2] < t[0]) != (t[2] < t[1]));
-        tied.push_back({s, in_order(t), odd == turned[i] ? 1 : -1});
+        tied.push_back({s, in_order(t), runs_in_order(t) != turned[i] ? 1 : -1});
     }
     std::sort(tied.begin(), tied.end(), [](const TiedTriangle& a, const TiedTriangle& b) {
         return std::tie(a.shell, a.corners) < std::tie(b.shell, b.corners);
@@ -309,29 +307,23 @@ Shells tied_shells(const Shells& patches, const Ties& ties) {
     return shells;
 }
 
-Point3 middle(const Box3& box) noexcept {
-    return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
-}
-
-/// How much a shell holds; an open one as if fans from the middle of the box around its open edges closed it.
+/// Of a shell; an open one is measured as if fans from the middle of the box around its open edges closed it.
 struct Content {
-    double six_volumes = 0;
-    double rounding = 0; ///< of that: times the machine's epsilon, no more
-    double area = 0;
-    double fans = 0; ///< their area
+    ShellContent shell;
+    double area = 0; ///< of an open one
+    double fans = 0; ///< likewise, theirs
 
     /// Which sign the volume has is certain, and mostly by what is there. (Not by more than half of it: a box
     /// four times as wide as high, without a lid, would have just that, and rounding the last word.)
     [[nodiscard]] bool certain() const noexcept {
-        return std::abs(six_volumes) > std::numeric_limits<double>::epsilon() * rounding &&
-               fans < 0.45 * area;
+        return shell.certain() && (fans == 0 || fans < 0.45 * area);
     }
 };
 
 /// Marks shells that are not closed.
-std::vector<Content> measure_shells(const IndexedMesh& mesh, const std::vector<Box3>& boxes,
-                                    const std::vector<UnevenUse>& uneven, const Shells& patches,
-                                    const Ties& ties, Shells& shells) {
+std::vector<Content> measure_shells(Executor& executor, const IndexedMesh& mesh,
+                                    const std::vector<Box3>& boxes, const std::vector<UnevenUse>& uneven,
+                                    const Shells& patches, const Ties& ties, Shells& shells) {
     std::vector<UnevenUse> open; // of shells
     for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {
         for (const Balance& balance : tied_balances(uses, ties))
@@ -347,26 +339,15 @@ std::vector<Content> measure_shells(const IndexedMesh& mesh, const std::vector<B
     for (std::size_t s = 0; s < shells.size(); ++s)
         origins.push_back(middle(shells.closed[s] ? boxes[s] : around[s]));
 
-    std::vector<Content> contents(shells.size());
-    // A sum of k terms is off by no more than k epsilons of their sizes; 32 more are what one term rounds.
-    std::vector<double> additions(shells.size(), 32);
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const std::uint32_t s = shells.of_triangle[i];
-        if (s == no_shell)
-            continue;
-        const Triangle3 t = corners(mesh, i);
-        const Point3 n = normal(t);
-        const Point3 w{t[0].x - origins[s].x, t[0].y - origins[s].y, t[0].z - origins[s].z};
-        contents[s].six_volumes += w.x * n.x + w.y * n.y + w.z * n.z;
-        contents[s].rounding += distance(t[0], origins[s]) * distance(t[0], t[1]) * distance(t[0], t[2]);
-        contents[s].area += area(t);
-        ++additions[s];
-    }
+    std::vector<Content> contents;
+    for (const ShellContent& content : shell_contents(executor, mesh, shells, origins))
+        contents.push_back({content});
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && !shells.closed[s])
+            contents[s].area += area(in_order(corners(mesh, i)));
     for (const auto& [edge, shell, balance] : open)
         contents[shell].fans +=
             std::abs(balance) * area({mesh.vertices[edge.first], mesh.vertices[edge.second], origins[shell]});
-    for (std::size_t s = 0; s < shells.size(); ++s)
-        contents[s].rounding *= additions[s];
     return contents;
 }
 
@@ -484,7 +465,8 @@ void turn_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patche
                     OrientedMesh& result) {
     const IndexedMesh now = turned_where(mesh, patches.turned);
     const std::vector<Box3> boxes = shell_boxes(now, shells);
-    const std::vector<Content> contents = measure_shells(now, boxes, uneven, patches.shells, ties, shells);
+    const std::vector<Content> contents =
+        measure_shells(executor, now, boxes, uneven, patches.shells, ties, shells);
     std::vector<bool> asked;
     for (const Content& content : contents)
         asked.push_back(content.certain());
@@ -493,7 +475,7 @@ void turn_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patche
             asked[s] = shells.closed[s] = false;
     const std::vector<Sense> senses = find_senses(executor, now, shells, boxes, asked);
     const auto turns = [&](std::uint32_t s) {
-        return senses[s] == (contents[s].six_volumes < 0 ? Sense::outward : Sense::inward);
+        return senses[s] == (contents[s].shell.six_volumes < 0 ? Sense::outward : Sense::inward);
     };
     for (std::size_t i = 0; i < now.triangles.size(); ++i)
         if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && turns(s))

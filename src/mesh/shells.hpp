@@ -8,9 +8,13 @@
 #include "core/pages.hpp"
 #include "mesh/edge_survey.hpp"
 
+#include <cmath>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <span>
 #include <vector>
 
 namespace lamella {
@@ -28,10 +32,29 @@ struct Shells {
 
 [[nodiscard]] Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey& survey);
 
-/// The signed volume of every shell, measured from its own first corner: a small shell far away keeps its
-/// sign.
-[[nodiscard]] std::vector<double> shell_volumes(Executor& executor, const IndexedMesh& mesh,
-                                                const Shells& shells);
+/// What the triangles of a shell bound together with an origin.
+struct ShellContent {
+    double six_volumes = 0; ///< signed
+    double sizes = 0;       ///< of the summands of that, as far as rounding goes
+    double triangles = 0;
+
+    [[nodiscard]] double volume() const noexcept { return six_volumes / 6; }
+    /// The volume has a sign that rounding did not give it.
+    [[nodiscard]] bool certain() const noexcept { return std::abs(six_volumes) > rounding(); }
+    /// A sum of k terms is off by no more than k epsilons of their sizes; 32 more are what one term rounds.
+    [[nodiscard]] double rounding() const noexcept {
+        return std::numeric_limits<double>::epsilon() * (triangles + 32) * sizes;
+    }
+    void add(const ShellContent& other) noexcept;
+
+    friend auto operator<=>(const ShellContent&, const ShellContent&) = default;
+};
+
+/// Of every shell, measured from its own origin: near the shell, so that a small one far away keeps its sign.
+/// Whether it is certain, and then which sign it has, depends neither on the order of triangles nor on which
+/// corner of one comes first.
+[[nodiscard]] std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& mesh,
+                                                       const Shells& shells, std::span<const Point3> origins);
 
 [[nodiscard]] std::vector<Box3> shell_boxes(const IndexedMesh& mesh, const Shells& shells);
 

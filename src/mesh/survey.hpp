@@ -19,9 +19,10 @@ struct Survey {
     std::uint64_t opposite_pairs = 0;
     EdgePlaces places = {};
     Shells shells;
-    std::vector<double> volumes = {}; ///< of the shells
+    std::vector<ShellContent> contents = {}; ///< of the shells, from a corner of each
     std::vector<Box3> boxes = {};
-    std::vector<bool> cavity = {};
+    std::vector<bool> inward = {}; ///< closed, and certainly of negative volume
+    std::vector<bool> cavity = {}; ///< and in the material of others
     /// Of each shell, in how many others it lies, and the smallest of them, or no_shell. With places of all
     /// shells, without of those that may be cavities.
     std::vector<std::uint32_t> depth = {};

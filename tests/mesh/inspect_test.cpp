@@ -1,3 +1,4 @@
+#include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
 
 #include "fixtures/expect_error.hpp"
@@ -231,6 +232,17 @@ TEST(Inspect, AShellFarAwayKeepsItsSign) {
     for (auto& t : far.triangles)
         std::swap(t[0], t[1]);
     EXPECT_EQ(inspect(far).inverted_shells, 1U);
+}
+
+TEST(Inspect, AFlatSheetIsNotInsideOutHoweverItLies) {
+    // Front and back are divided along different diagonals, so rounding gives them a volume.
+    const IndexedMesh sheet{{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}},
+                            {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+    for (int angle = 1; angle < 360; ++angle) {
+        const IndexedMesh turned = transformed(sheet, compose(rotation('x', angle), rotation('y', 11)));
+        EXPECT_TRUE(inspect(turned).sound()) << angle;
+        EXPECT_EQ(diagnose(turned).shells[0].kind, ShellKind::body) << angle;
+    }
 }
 
 TEST(Inspect, DegenerateTrianglesAreCountedAndOtherwiseIgnored) {

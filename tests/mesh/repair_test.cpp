@@ -462,6 +462,35 @@ TEST(Orient, DoesNotDependOnTheOrderOfTrianglesAndCorners) {
     }
 }
 
+TEST(Orient, OfNeedlesNearlyTooThinToTellDoesNotDependOnTheOrderEither) {
+    Random random(9);
+    int turned = 0;
+    int rounds = 0;
+    for (double thickness = 1e-16; thickness < 1e-13; thickness *= 1.1, ++rounds) {
+        SCOPED_TRACE(thickness);
+        IndexedMesh needle;
+        needle.vertices = {{0, 0, 0},
+                           {1, 0, 0},
+                           {random.real(-1, 1), random.real(-1, 1), 0},
+                           {random.real(-0.3, 0.3), random.real(-0.3, 0.3), thickness}};
+        needle.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}; // inside out or outward
+        const OrientedMesh one = orient(needle, {.threads = 1});
+        for (int corners = 0; corners < 81; ++corners) {
+            IndexedMesh other = needle;
+            for (int k = 0, rest = corners; k < 4; ++k, rest /= 3) {
+                auto& t = other.triangles[static_cast<std::size_t>(k)];
+                std::rotate(t.begin(), t.begin() + rest % 3, t.end());
+            }
+            std::rotate(other.triangles.begin(), other.triangles.begin() + corners % 4,
+                        other.triangles.end());
+            ASSERT_EQ(as_a_set(orient(other, {.threads = 1}).mesh), as_a_set(one.mesh));
+        }
+        turned += one.turned_triangles != 0 ? 1 : 0;
+    }
+    EXPECT_GT(turned, 0);          // some have a volume,
+    EXPECT_LT(turned, rounds / 2); // and others have none, or were outward
+}
+
 TEST(Orient, WhatLiesInABodyOnlyInPartIsNoVoid) {
     // An angle of 20 by 20 by 20, and a bar that pokes out of it into its notch: the box of the bar lies in
     // that of the angle, and the middle of its largest triangles in the material.

@@ -31,7 +31,7 @@ struct BoundaryLoop {
 
 /// What a shell is by its orientation and its place.
 enum class ShellKind {
-    body,     ///< closed, of positive volume
+    body,     ///< closed, of positive volume, or of none but for rounding
     cavity,   ///< closed, of negative volume, in the material of others
     inverted, ///< closed, of negative volume, but not in material: inside out
     open,     ///< not closed
