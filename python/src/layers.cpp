@@ -390,7 +390,8 @@ void bind_layer(py::module_& module) {
         "(n, 2) in millimetres, in any order. Points equal to the one before them are left out, and so are "
         "rings "
         "of\n"
-        "less than three points and chains of less than two.");
+        "less than three points and chains of less than two.",
+        own_new());
     cls.def(py::init(&layer_of_contours))
         .def_property_readonly(
             "index", [](const SharedLayer& self) { return self.get().index; },
@@ -491,7 +492,8 @@ void bind_stack(py::module_& module) {
     py::class_<Stack, StackPointer> cls(
         module, "Stack",
         "Layers in ascending z, as lamella.slice and lamella.read give them. A sequence of Layer: stack[i],\n"
-        "stack[a:b], len(stack), and for layer in stack. It never changes.");
+        "stack[a:b], len(stack), and for layer in stack. It never changes.",
+        own_new());
     cls.def(py::init(&stack_of_layers))
         .def_property_readonly("z", numbers_of<double>([](const SharedLayer& l) { return l.get().z; }),
                                "Where the layers were cut, in millimetres: (layers,) float64.")

@@ -12,6 +12,16 @@
 
 namespace lamella::python {
 
+/// For classes of users: without a `__new__` of their own, pickle protocols before 2 and `__reduce__` make an
+/// object of pybind11's base class, which ends the process. With one they raise a TypeError.
+inline pybind11::custom_type_setup own_new() {
+    return pybind11::custom_type_setup([](PyHeapTypeObject* heap_type) {
+        heap_type->ht_type.tp_new = [](PyTypeObject* type, PyObject* /*arguments*/, PyObject* /*named*/) {
+            return pybind11::detail::make_new_instance(type);
+        };
+    });
+}
+
 /// Has objects pickled and copied as a tuple of `size` things: `get(object)` gives it, `set(tuple)` makes an
 /// object of it and looks at what it finds there, since it may come from anywhere.
 template <class Class, class Get, class Set>
@@ -28,7 +38,7 @@ void bind_pickle(Class& cls, const char* what, std::size_t size, const Get& get,
         throw Error(ErrorKind::input, std::string("this is no pickled ") + what);
     };
     cls.def(pybind11::pickle(get, checked));
-    // Older protocols would make an object of pybind11's base class, which ends the process.
+    // Older protocols do not ask for the state.
     cls.def("__reduce_ex__", [](const pybind11::object& self, int protocol) {
         const pybind11::object plain = pybind11::module_::import("builtins").attr("object");
         return pybind11::object(plain.attr("__reduce_ex__")(self, std::max(protocol, 2)));

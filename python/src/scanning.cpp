@@ -88,7 +88,7 @@ void bind_part(py::class_<Rule>& cls, const char* name, Part Rule::*part, const 
 template <class Rule>
 py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* about,
                            std::span<const StrategyField<Rule>> fields) {
-    py::class_<Rule> cls(module, name, about);
+    py::class_<Rule> cls(module, name, about, own_new());
     cls.def(py::init());
     for (const StrategyField<Rule>& field : fields)
         std::visit(
@@ -167,7 +167,8 @@ void bind_rules(py::module_& module) {
     auto skin =
         bind_rule(module, "SkinRule", "Where a layer has little material above it, or below.", skin_fields());
     bind_part(skin, "hatch", &SkinRule::hatch, "Its lines: a HatchRule.");
-    py::class_<SupportRule> support(module, "SupportRule", "All of what is a support, which has no skins.");
+    py::class_<SupportRule> support(module, "SupportRule", "All of what is a support, which has no skins.",
+                                    own_new());
     support.def(py::init());
     bind_part(support, "contours", &SupportRule::contours, "Lines along its outline: a ContourRule.");
     bind_part(support, "hatch", &SupportRule::hatch, "Lines that fill it: a HatchRule.");
@@ -209,7 +210,8 @@ void bind_exposure(py::module_& module) {
     py::class_<Exposure> cls(
         module, "Exposure",
         "What the vectors of a part on a layer have in common that a machine executes in one go. It never "
-        "changes.");
+        "changes.",
+        own_new());
     cls.def_property_readonly(
            "part", [](const Exposure& self) { return path_text(self.part); }, "What the part is called.")
         .def_property_readonly(
@@ -238,7 +240,7 @@ auto figures_of(const ScanFigures& figures) {
 }
 
 void bind_figures(py::module_& module) {
-    py::class_<ScanFigures> cls(module, "ScanFigures", "What a machine does for vectors.");
+    py::class_<ScanFigures> cls(module, "ScanFigures", "What a machine does for vectors.", own_new());
     cls.def_readonly("vectors", &ScanFigures::vectors, "How many lines.")
         .def_readonly("marked_mm", &ScanFigures::marked_mm, "Their length in millimetres.")
         .def_readonly("jumped_mm", &ScanFigures::jumped_mm, "The ways between them in millimetres.")

@@ -8,10 +8,12 @@
 #include "arrays.hpp"
 #include "layer_stream.hpp"
 #include "layers.hpp"
+#include "pickled.hpp"
 #include "placing.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"
+#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
@@ -114,7 +116,10 @@ void bind_stream(py::module_& module) {
         module, "LayerStream",
         "Layers while they are being made, in ascending z: an iterator. Few of them are in memory at\n"
         "a time. It may be closed before its end, and closes itself when nobody holds it any more.",
-        py::custom_type_setup(collect_streams))
+        py::custom_type_setup([](PyHeapTypeObject* heap_type) {
+            own_new().value(heap_type);
+            collect_streams(heap_type);
+        }))
         .def_property_readonly(
             "z",
             [](const LayerStream& self) {

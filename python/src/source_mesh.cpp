@@ -210,7 +210,8 @@ void bind_meshes(py::module_& module) {
         "millimetres, and faces (m, 3), three numbers of vertices each, counter-clockwise seen from "
         "outside.\n"
         "Vertices that no face has are left out. Wherever a function takes a mesh, arrays and paths will do, "
-        "too.");
+        "too.",
+        own_new());
     cls.def(py::init(&mesh_of_arrays))
         .def_property_readonly(
             "vertices",

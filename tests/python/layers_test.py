@@ -1,6 +1,7 @@
 """Layers and stacks: their arrays, how long these live, and how they travel."""
 
 import copy
+import copyreg
 import gc
 import multiprocessing
 import pickle
@@ -220,6 +221,22 @@ def test_pickled_layers_are_the_same(layer, protocol):
     assert travelled.label == stack.label
     mesh = lamella.Mesh(*nested_boxes())
     assert lamella.slice(pickle.loads(pickle.dumps(mesh, protocol)), 1) == lamella.slice(mesh, 1)
+
+
+def test_what_cannot_be_pickled_so_is_a_type_error(layer):
+    """pybind11's own way of doing it ends the process."""
+    strategy = lamella.ScanStrategy()
+    (scanned,) = lamella.scan([layer], strategy)
+    things = [layer, lamella.Stack([layer]), lamella.Mesh(*nested_boxes()), strategy, strategy.hatch, strategy.support,
+              strategy.hatch.parameters, scanned.exposures[0], scanned.figures[0]]  # fmt: skip
+    with lamella.iter_layers(nested_boxes(), 1) as stream:
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            with pytest.raises(TypeError):
+                pickle.dumps(stream, protocol)
+        for thing in (*things, stream):
+            for reduce in (thing.__reduce__, lambda thing=thing: copyreg._reduce_ex(thing, 0)):
+                with pytest.raises(TypeError):
+                    reduce()
 
 
 def test_copies_are_the_same(layer):
