@@ -2,6 +2,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/version.hpp"
 #include "lamella/core/whole_file.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -68,35 +69,15 @@ void check_layers(const LayerFile& file) {
 
 /// What layers have that no vectors are made of.
 std::vector<std::string> losses(const LayerFile& file) {
-    std::uint64_t hatches = 0;
-    std::uint64_t chains = 0;
-    const LayerStack& planes = file.parts.front().layers;
-    std::uint64_t inside_out = 0;
-    double first_z = 0;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-        bool any = false;
-        for (const LayerPart& part : file.parts) {
-            const Layer& layer = part.layers[i];
-            hatches += layer.hatches.size() / 2;
-            chains += layer.open_chains();
-            any = any || (layer.open_chains() == 0 && begins_clockwise(layer));
-        }
-        if (any && inside_out++ == 0)
-            first_z = planes[i].z;
+    ScanLosses lost;
+    std::vector<Layer> plane;
+    for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
+        plane.clear();
+        for (const LayerPart& part : file.parts)
+            plane.push_back(part.layers[i]);
+        lost.add(plane);
     }
-    std::vector<std::string> lost;
-    if (hatches > 0)
-        lost.push_back(fmt::format("{}: {} left out: layers are hatched anew", file.path,
-                                   counted(hatches, "hatch line")));
-    if (chains > 0)
-        lost.push_back(fmt::format("{}: {} left out: only closed contours bound material", file.path,
-                                   counted(chains, "open contour")));
-    if (inside_out > 0)
-        lost.push_back(fmt::format(
-            "{}: inside out in {} of {}, first at z = {} mm: outer contours run clockwise, as around holes, "
-            "and bound no material; lamella convert --fill nonzero turns them round",
-            file.path, grouped(inside_out), counted(planes.size(), "layer"), height(first_z)));
-    return lost;
+    return lost.texts();
 }
 
 Json stats_of(const Command& command, const std::string& path, const LayerFile& file,
@@ -143,7 +124,8 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
     context.messages.warn_of(file.path, file.warnings);
-    for (const std::string& lost : losses(file)) {
+    for (const std::string& loss : losses(file)) {
+        const std::string lost = fmt::format("{}: {}", file.path, loss);
         if (arguments.strict)
             throw Error(ErrorKind::defect, lost);
         context.messages.warn(lost);

@@ -319,30 +319,11 @@ std::string summary(const FileJob& job, const FileResult& result) {
 
 /// What the layers say about the mesh, and what of them the format has no place for.
 std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& result) {
-    const auto where = [&](const FileResult::Affected& affected) {
-        return fmt::format("in {} of {}, first at z = {} mm", grouped(affected.layers),
-                           counted(result.report.layers, "layer"), height(affected.first_z));
-    };
     const std::string name = input_name(job.inputs.front().path);
     const std::string hint = ask_info(job.inputs.front().path);
     std::vector<std::string> warnings;
-    if (result.report.open_chains > 0)
-        warnings.push_back(fmt::format("{}: {} {}: contours do not close where the mesh has holes or flipped "
-                                       "triangles, the longest gap is {} mm{}",
-                                       name, counted(result.report.open_chains, "open chain"),
-                                       where(result.open), brief(result.open_gaps.longest_mm), hint));
-    // A ring that goes first is an outer one only where all contours are closed: of a mesh with holes it may
-    // be that of a hollow, and what lies around it an open chain.
-    if (result.inside_out.layers > 0 && result.report.open_chains > 0)
-        warnings.push_back(
-            fmt::format("{}: closed contours with none around them run clockwise {}, as around "
-                        "holes: those around them stay open, or triangles face inwards{}",
-                        name, where(result.inside_out), hint));
-    else if (result.inside_out.layers > 0)
-        warnings.push_back(
-            fmt::format("{}: inside out {}: outer contours run clockwise, as around holes, because "
-                        "triangles face inwards{}",
-                        name, where(result.inside_out), hint));
+    for (const std::string& doubt : result.doubts.texts())
+        warnings.push_back(fmt::format("{}: {}{}", name, doubt, hint));
     if (!job.shard && result.changes && result.changes->changed_layers > 0 && result.report.contours == 0)
         warnings.push_back(fmt::format("{}: no contour is left in any of {}: --offset, --min-area and other "
                                        "options of what is made of the layers took those of {}",

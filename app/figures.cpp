@@ -361,8 +361,8 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
             repairs.back()["path"] = result.files[repair.file].path;
         }
     }
-    if (result.open_gaps.count > 0)
-        stats.update(open_gaps_json(result.open_gaps));
+    if (result.doubts.open_gaps.count > 0)
+        stats.update(open_gaps_json(result.doubts.open_gaps));
     if (job.repair.close_gaps_mm)
         stats["gaps"] = gaps_json(result.gaps);
     stats["layers"] = layers_json(result);

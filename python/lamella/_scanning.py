@@ -21,6 +21,7 @@ from ._lamella import (
     ContourRule, Exposure, HatchRule, Layer, LayerStream, ParameterSet, ScanFigures, ScanStrategy, SkinRule, Stack,
     SupportRule,
 )  # fmt: skip
+from ._warning import warn
 
 StrategyLike = Union[ScanStrategy, Mapping[str, Any], "os.PathLike[str]", str, None]
 
@@ -112,7 +113,9 @@ def scan(
     `write` takes what this gives.
 
     Raises UsageError for a strategy that is not right and for layers that do not ascend, LimitError for layers that
-    would have too many vectors.
+    would have too many vectors. Issues a DefectWarning where layers have what no vectors are made of: hatch lines, open
+    chains, contours that run the wrong way because the mesh is inside out; of a Stack at once, of other layers when the
+    last one has been taken.
     """
     try:
         each = _ascending(iter(layers))
@@ -121,6 +124,9 @@ def scan(
     known = as_strategy("strategy", strategy)
     label = check.label("part", part)
     stack = layers if isinstance(layers, Stack) else None
+    told = _told((stack and stack.path) or "layers", each)
+    # All layers of a stack are there to be looked at before any is scanned.
+    each = iter(list(told)) if stack else told
     make = _scan_support if check.flag("support", support) else _scan
     scanned = make(each, known, label, stack)
     return ScanStream(scanned, layers) if isinstance(layers, (Stack, LayerStream)) else scanned
@@ -135,6 +141,15 @@ def _ascending(layers: Iterator[Any]) -> Iterator[Layer]:
             raise UsageError(f"layers: must ascend in z: {layer.z:g} mm comes after {below.z:g} mm")
         below = layer
         yield layer
+
+
+def _told(name: str, layers: Iterable[Layer]) -> Iterator[Layer]:
+    """Warns at the end of what they have that no vectors are made of."""
+    losses = _lamella.ScanLosses()
+    for layer in layers:
+        losses.add(layer)
+        yield layer
+    warn(f"{name}: {loss}" for loss in losses.texts())
 
 
 def _scan_support(

@@ -88,24 +88,20 @@ def slice(
 
     Other Python threads run meanwhile. Ctrl-C stops within a second.
 
-    Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning where the file is odd, and where
-    contours do not close because the mesh has holes.
+    Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning where the file is odd, where
+    contours do not close because the mesh has holes, and where they run the wrong way because it is inside out.
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,
         transform, unit_mm, engine, strict, threads, progress,
     )  # fmt: skip
     stack = _lamella.slice_stack(mesh, plan, engine, threads, progress)
+    name = mesh.path or "the mesh"
     chains = stack.open_chains
-    if chains.any():
-        name = mesh.path or "the mesh"
-        lowest = f"{stack.z[np.flatnonzero(chains)[0]]:.6g}"
-        if strict:
-            raise DefectError(f"{name}: {chains.sum()} contours do not close, the lowest at z = {lowest} mm")
-        warn([
-            f"{name}: {chains.sum()} open chains in {np.count_nonzero(chains)} of {len(stack)} layers, first at "
-            f"z = {lowest} mm: contours do not close where the mesh has holes or flipped triangles"
-        ])  # fmt: skip
+    if strict and chains.any():
+        lowest = stack.z[np.flatnonzero(chains)[0]]
+        raise DefectError(f"{name}: {chains.sum()} contours do not close, the lowest at z = {lowest:.6g} mm")
+    warn(f"{name}: {doubt}" for doubt in _lamella.mesh_doubts(stack))
     return stack
 
 
@@ -136,7 +132,8 @@ def iter_layers(
     Takes what `slice` takes and gives the same layers. The mesh is read before this returns; what goes wrong later
     is raised by the iterator. Leaving the loop early, close(), or `with` stops the work.
 
-    strict: looks at the mesh first; without it open chains pass without a warning, see Layer.open_chains.
+    strict: looks at the mesh first; without it open chains (see Layer.open_chains) and layers inside out pass without a
+        warning.
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,

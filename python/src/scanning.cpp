@@ -2,6 +2,7 @@
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/scan/strategy_fields.hpp"
@@ -150,6 +151,16 @@ std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
     return figures;
 }
 
+void bind_losses(py::module_& module) {
+    py::class_<ScanLosses>(module, "ScanLosses")
+        .def(py::init())
+        .def("add",
+             [](ScanLosses& self, const SharedLayer& layer) {
+                 self.add({&layer.get(), 1});
+             })
+        .def("texts", &ScanLosses::texts);
+}
+
 void bind_rules(py::module_& module) {
     constexpr const char* parameters = "What the beam does along these lines: a ParameterSet.";
     bind_rule(module, "ParameterSet", "What a beam does along vectors and between them.", parameter_fields())
@@ -264,6 +275,7 @@ void bind_scanning(py::module_& module) {
     bind_rules(module);
     bind_exposure(module);
     bind_figures(module);
+    bind_losses(module);
     module.def("check_strategy", &check_strategy);
     module.def("exposures", &exposures);
     module.def("support_exposures", &support_exposures);

@@ -1,5 +1,8 @@
 #include "slicing.hpp"
 
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/open_gaps.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -56,6 +59,17 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const Plan& plan, co
     stack->box = mesh->box();
     stack->matrix = mesh->origin().matrix;
     return stack;
+}
+
+/// What the layers tell about the mesh.
+std::vector<std::string> doubts_of(const Stack& stack) {
+    const Unlocked released;
+    MeshDoubts doubts;
+    for (const LayerPointer& shared : stack.layers) {
+        const Layer& layer = shared->get();
+        doubts.add(layer.z, open_gaps(layer), begins_clockwise(layer));
+    }
+    return doubts.texts();
 }
 
 /// The ways to cut.
@@ -160,6 +174,7 @@ void bind_slicing(py::module_& module) {
     bind_cuts(module);
     module.def("plan", &plan_for);
     module.def("slice_stack", &slice_stack);
+    module.def("mesh_doubts", &doubts_of);
     bind_stream(module);
     module.def("engines", [] {
         std::vector<std::tuple<std::string, std::string, std::string>> found;

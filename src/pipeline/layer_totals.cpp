@@ -140,9 +140,7 @@ void LayerTotals::tell(FileResult& result) const {
             into.first_z = z;
     };
     for (const Row& row : rows_) {
-        count(row.open_gaps.count > 0, row.z, result.open);
-        result.open_gaps += row.open_gaps;
-        count(row.inside_out, row.z, result.inside_out);
+        result.doubts.add(row.z, row.open_gaps, row.inside_out);
         result.thin.add(row.thin_rings, row.z);
     }
     for (std::size_t i = 0; i < closed_.size(); ++i) {

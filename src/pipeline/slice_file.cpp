@@ -519,7 +519,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     if (job.strict && result.report.open_chains > 0)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
-                                job.inputs.front().path, result.report.open_chains, result.open.first_z));
+                                job.inputs.front().path, result.report.open_chains,
+                                result.doubts.open.first_z));
     // Of a shard the others may have some.
     if (job.strict && !job.shard && result.changes && result.changes->changed_layers > 0 &&
         result.report.contours == 0)

@@ -72,14 +72,15 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
     for (std::uint64_t SliceReport::*count :
          {&SliceReport::layers, &SliceReport::contours, &SliceReport::open_chains, &SliceReport::points})
         EXPECT_EQ(one.report.*count, other.report.*count);
-    for (FileResult::Affected FileResult::*kind : {&FileResult::open, &FileResult::inside_out}) {
-        EXPECT_EQ((one.*kind).layers, (other.*kind).layers);
-        EXPECT_EQ((one.*kind).first_z, (other.*kind).first_z);
+    for (AffectedLayers MeshDoubts::*kind : {&MeshDoubts::open, &MeshDoubts::inside_out}) {
+        EXPECT_EQ((one.doubts.*kind).layers, (other.doubts.*kind).layers);
+        EXPECT_EQ((one.doubts.*kind).first_z, (other.doubts.*kind).first_z);
     }
+    EXPECT_EQ(one.doubts.layers, other.doubts.layers);
     EXPECT_EQ(one.thin.rings, other.thin.rings);
     EXPECT_EQ(one.thin.layers, other.thin.layers);
     EXPECT_EQ(one.thin.first_z, other.thin.first_z);
-    expect_same(one.open_gaps, other.open_gaps);
+    expect_same(one.doubts.open_gaps, other.doubts.open_gaps);
     EXPECT_EQ(one.gaps.closed, other.gaps.closed);
     EXPECT_EQ(one.gaps.longest_mm, other.gaps.longest_mm);
     EXPECT_EQ(one.gaps.total_mm, other.gaps.total_mm);

@@ -87,9 +87,9 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     totals.add(std::span(&empty, 1), {GapJoin{{}, {}, 0.5}, GapJoin{{}, {}, 0.25}}, {});
     totals.add(std::span(&open, 1), {}, {});
     const FileResult result = told(totals, 1);
-    EXPECT_EQ(result.open.layers, 1U);
-    EXPECT_EQ(result.open.first_z, above.z);
-    EXPECT_EQ(result.open_gaps.longest_mm, 5);
+    EXPECT_EQ(result.doubts.open.layers, 1U);
+    EXPECT_EQ(result.doubts.open.first_z, above.z);
+    EXPECT_EQ(result.doubts.open_gaps.longest_mm, 5);
     EXPECT_EQ(result.report.open_chains, 1U);
     EXPECT_EQ(result.gaps.closed, 2U);
     EXPECT_EQ(result.gaps.layers, 1U);
@@ -210,8 +210,8 @@ TEST(LayerTotals, TellHowManyLayersBeginWithARingThatRunsTheWrongWay) {
         totals.add(std::span(&layer, 1), {}, {});
     }
     const FileResult result = told(totals, 1);
-    EXPECT_EQ(result.inside_out.layers, 2U);
-    EXPECT_EQ(result.inside_out.first_z, plan.layers[1].z);
+    EXPECT_EQ(result.doubts.inside_out.layers, 2U);
+    EXPECT_EQ(result.doubts.inside_out.first_z, plan.layers[1].z);
 }
 
 } // namespace

@@ -5,6 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
+from conftest import box_arrays
 
 import lamella
 
@@ -33,6 +34,30 @@ def test_rings_that_are_too_thin_for_vectors_are_counted():
     for support in [False, True]:
         assert [layer.thin_rings for layer in lamella.scan([square(10)], support=support)] == [0]
         assert [layer.thin_rings for layer in lamella.scan([thin], support=support)] == [1]
+
+
+def test_what_no_vectors_are_made_of_is_told(tmp_path):
+    """At once of a stack, and of other layers at their end; in the words of the program."""
+    inward = lamella.Mesh(*box_arrays(inward=True))
+    with pytest.warns(lamella.DefectWarning, match="^the mesh: inside out in 10 of 10 layers, first at z = 0.5 mm") as told:
+        stack = lamella.slice(inward, 1)
+    assert len(told) == 1
+    inside_out = "^layers: inside out in 10 of 10 layers, first at z = 0.5 mm: .* bound no material"
+    with pytest.warns(lamella.DefectWarning, match=inside_out):
+        lamella.scan(stack)
+    for layers in [lamella.iter_layers(inward, 1), iter(stack)]:
+        with pytest.warns(lamella.DefectWarning, match=inside_out):
+            assert sum(len(layer.vectors) for layer in lamella.scan(layers)) == 0
+    square = '{"index":0,"z":1,"bottom":0,"top":2,"parts":[{"rings":[[0,0,9,0,9,9,0,9]],"chains":[[1,1,2,2]],"hatches":[1,1,2,1]}]}'
+    head = '{"format":"lamella layers","version":1,"units":"mm","parts":[{"label":"part"}],"layers":['
+    (tmp_path / "a.json").write_text(head + square + "]}")
+    read = lamella.read(tmp_path / "a.json")
+    with pytest.warns(lamella.DefectWarning) as told:
+        lamella.scan(read)
+    assert [str(warning.message) for warning in told] == [
+        f"{tmp_path}/a.json: 1 hatch line left out: layers are hatched anew",
+        f"{tmp_path}/a.json: 1 open contour left out: only closed contours bound material",
+    ]
 
 
 def test_hatch_lines_are_those_that_shapely_cuts():

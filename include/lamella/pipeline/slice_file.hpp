@@ -7,6 +7,7 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/inspect.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
@@ -147,19 +148,12 @@ struct FileResult {
                              ///< they were sliced, by all processes
     /// What each process did, in their order.
     std::vector<ProcessFigures> processes;
-    SliceReport report; ///< contours and chains as they are after contour gaps were closed
-    /// Layers of one kind, and where the lowest of them was cut.
-    struct Affected {
-        std::uint64_t layers = 0;
-        double first_z = 0;
-    };
+    SliceReport report;                  ///< contours and chains as they are after contour gaps were closed
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
     /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
     std::vector<ExposureResult> exposures;
-    ThinRings thin;      ///< with FileJob::scan
-    Affected open;       ///< with open chains
-    OpenGaps open_gaps;  ///< of these, in all
-    Affected inside_out; ///< whose first ring runs clockwise: an outer one unless open chains lie around it
+    ThinRings thin;                   ///< with FileJob::scan
+    MeshDoubts doubts;                ///< what the layers tell
     std::uint64_t planned_layers = 0; ///< by all shards
     PlaneRange shard;                 ///< which of them by this one: all, where there are no shards
     double bottom = 0;                ///< of the first layer
