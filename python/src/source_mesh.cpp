@@ -54,6 +54,18 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const Numbers& rows, std:
     return triangles;
 }
 
+/// Vertices that no face has count as none, whatever they are; until they are dropped, the others keep their
+/// numbers.
+void forget_unused(IndexedMesh& mesh) {
+    std::vector<bool> used(mesh.vertices.size());
+    for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t corner : triangle)
+            used[corner] = true;
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (!used[i])
+            mesh.vertices[i] = {};
+}
+
 /// `vertices` (n, 3) and `faces` (m, 3).
 MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     if (vertices.ndim() != 2 || vertices.shape(1) != 3 || faces.ndim() != 2 || faces.shape(1) != 3)
@@ -64,13 +76,20 @@ MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     IndexedMesh mesh;
     mesh.vertices = vertices_of(vertices);
     mesh.triangles = triangles_of(faces, mesh.vertices.size());
+    forget_unused(mesh);
     check(mesh);
     if (mesh.triangles.empty())
         throw Error(ErrorKind::input, "faces: holds no triangle");
     drop_unused_vertices(mesh); // as files do: bounds are those of the faces
     MeshOrigin origin;
     origin.stored_triangles = mesh.triangles.size();
-    return std::make_shared<SourceMesh>(Mesh(std::move(mesh)), std::move(origin), Execution{});
+    MeshFile file;
+    file.path = "the mesh";
+    file.objects.push_back({{}, Mesh(std::move(mesh))});
+    file.instances.emplace_back();
+    MeshSource source{.file = std::make_shared<const MeshFile>(std::move(file))};
+    Mesh placed = joined(source.plate({}));
+    return std::make_shared<SourceMesh>(std::move(source), std::move(placed), std::move(origin), Execution{});
 }
 
 MeshPointer read_source_mesh(const std::string& path, std::optional<double> unit_mm,
@@ -100,11 +119,13 @@ MeshPointer transformed(const SourceMesh& source, const Transform& map, const ch
                         unsigned threads) {
     MeshOrigin origin = source.origin();
     origin.matrix = compose(map, origin.matrix);
+    MeshSource moved = source.source();
+    moved.placement = compose(map, moved.placement);
     return result_of(threads, py::none(), [&](const Execution& execution) {
         if (finite(map) && finite(origin.matrix) && stays_finite(map, source.box())) {
-            auto made = std::make_shared<SourceMesh>(source.mesh().transformed(map), origin, execution);
-            if (finite(made->box()))
-                return made;
+            Mesh mesh = joined(moved.plate(execution), execution);
+            return std::make_shared<SourceMesh>(std::move(moved), std::move(mesh), std::move(origin),
+                                                execution);
         }
         throw Error(ErrorKind::usage,
                     std::string(argument) + ": puts the mesh where its coordinates are no finite numbers");
@@ -162,13 +183,18 @@ MeshPointer mesh_of_state(const py::tuple& state) {
                       .matrix = transform_of(state[9].cast<Matrix>())};
     if (!finite(origin.matrix) || !std::isfinite(origin.unit_mm))
         throw Error(ErrorKind::input, "the matrix and the unit of a pickled mesh must be finite");
-    return std::make_shared<SourceMesh>(mesh->mesh(), std::move(origin), Execution{});
+    return std::make_shared<SourceMesh>(mesh->source(), mesh->mesh(), std::move(origin), Execution{});
 }
 
 } // namespace
 
-SourceMesh::SourceMesh(Mesh mesh, MeshOrigin origin, const Execution& execution)
-    : mesh_(std::move(mesh)), origin_(std::move(origin)), box_(bounding_box(mesh_, execution)) {}
+Plate MeshSource::plate(const Execution& execution) const {
+    return load_plate({.path = file->path, .unit_mm = unit_mm, .placement = placement}, *file, execution);
+}
+
+SourceMesh::SourceMesh(MeshSource source, Mesh mesh, MeshOrigin origin, const Execution& execution)
+    : source_(std::move(source)), mesh_(std::move(mesh)), origin_(std::move(origin)),
+      box_(bounding_box(mesh_, execution)) {}
 
 const IndexedMesh& SourceMesh::welded(const Execution& execution) const {
     std::call_once(welded_once_, [&] {
@@ -194,12 +220,14 @@ MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm, const Exec
     origin.format = file.format;
     origin.name = file.name;
     origin.stored_triangles = file.stored_triangles;
-    const Plate plate = load_plate({.path = file.path, .unit_mm = unit_mm}, std::move(file), execution);
+    MeshSource source{.file = std::make_shared<const MeshFile>(std::move(file)), .unit_mm = unit_mm};
+    const Plate plate = source.plate(execution);
     origin.warnings = plate.files.front().warnings;
     origin.unit_mm = plate.files.front().unit_mm;
     if (plate.parts.size() == 1)
         origin.label = plate.parts.front().label;
-    return std::make_shared<SourceMesh>(joined(plate, execution), std::move(origin), execution);
+    return std::make_shared<SourceMesh>(std::move(source), joined(plate, execution), std::move(origin),
+                                        execution);
 }
 
 void bind_meshes(py::module_& module) {

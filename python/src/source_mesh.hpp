@@ -31,10 +31,24 @@ struct MeshOrigin {
     Transform matrix = {}; ///< from the coordinates it came with to those it has
 };
 
+/// What a mesh is before it is placed. All that moves and turns it is put together before it is applied, as
+/// the program does: coordinates are rounded once.
+struct MeshSource {
+    std::shared_ptr<const MeshFile> file;
+    std::optional<double> unit_mm = {}; ///< where the file states none
+    Transform placement = {};
+
+    /// Throws what load_plate throws.
+    [[nodiscard]] Plate plate(const Execution& execution) const;
+};
+
 /// A mesh in millimetres that never changes, and where it came from.
 class SourceMesh {
   public:
-    SourceMesh(Mesh mesh, MeshOrigin origin, const Execution& execution);
+    /// `mesh`: all that is on the plate of the source, as one.
+    SourceMesh(MeshSource source, Mesh mesh, MeshOrigin origin, const Execution& execution);
+
+    [[nodiscard]] const MeshSource& source() const noexcept { return source_; }
 
     [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
     [[nodiscard]] const MeshOrigin& origin() const noexcept { return origin_; }
@@ -47,6 +61,7 @@ class SourceMesh {
     [[nodiscard]] Plate plate() const;
 
   private:
+    MeshSource source_;
     Mesh mesh_;
     MeshOrigin origin_;
     Box3 box_;

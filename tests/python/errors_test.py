@@ -65,6 +65,22 @@ def test_bad_meshes_end_in_the_text_of_the_program(program, tmp_path, monkeypatc
         assert str(caught.value) == expected
 
 
+def test_a_unit_for_a_file_that_says_its_own_is_told_with_the_file(program, tmp_path):
+    path = tmp_path / "a.amf"
+    path.write_text(
+        '<amf unit="millimeter"><object id="0"><mesh><vertices>'
+        + "".join(f"<vertex><coordinates><x>{x}</x><y>{y}</y><z>{z}</z></coordinates></vertex>" for x, y, z in box_arrays()[0])
+        + "</vertices><volume>"
+        + "".join(f"<triangle><v1>{a}</v1><v2>{b}</v2><v3>{c}</v3></triangle>" for a, b, c in box_arrays()[1])
+        + "</volume></mesh></object></amf>"
+    )
+    expected = program.error("slice", path, "-o", "-", "--format", "cli", "--unit", "inch")
+    for ask in [lamella.read, lamella.slice]:
+        with pytest.raises(lamella.UsageError) as caught:
+            ask(path, unit_mm=25.4)
+        assert str(caught.value) == expected and expected.startswith(str(path))
+
+
 @pytest.mark.parametrize(
     "keywords, options",
     [
@@ -109,7 +125,9 @@ def test_impossible_plans_are_errors_of_usage(program, rook, keywords, options):
         ({"transform": np.ones((4, 4))}, "the last row of a transform"),
         ({"transform": np.full((4, 4), np.nan)}, "transform"),
         ({"transform": np.diag([1, 1, 1e308, 1]), "z": [1]}, "transform: .* no finite numbers"),
-        ({"transform": np.diag([7e306, 5e306, 1.5e307, 1]), "direction": (1, 1, 1), "z": [1]}, "direction: .* no finite numbers"),
+        ({"transform": np.diag([1, 1, 1e101, 1]), "z": [1]}, "^the mesh: the mesh reaches beyond 1e.100 mm"),
+        ({"transform": np.eye(4) + [[0, 0, 0, 1e17], *[[0] * 4] * 3]}, "^the mesh: .* away, where numbers are 22 mm apart"),
+        ({"transform": np.diag([7e306, 5e306, 1.5e307, 1]), "direction": (1, 1, 1), "z": [1]}, "reaches beyond 1e.100 mm"),
     ],
 )
 def test_contradictions_are_named(keywords, text):

@@ -29,6 +29,7 @@ def statistics(program, *arguments):
         (["--direction", "1,0,0"], {"direction": (1, 0, 0)}),
         (["--scale", "2"], {"transform": np.diag([2, 2, 2, 1])}),
         (["--unit", "inch"], {"unit_mm": 25.4, "layer_height": None}),
+        (["--unit", "inch", "--direction", "1,2,3", "--layer-height", "5"], {"unit_mm": 25.4, "direction": (1, 2, 3), "layer_height": 5}),
         (["--engine", "eecc", "--layer-height", "2"], {"engine": "eecc", "layer_height": 2}),
     ],
 )
@@ -83,6 +84,9 @@ def test_vertices_without_faces_do_not_count():
     more = np.concatenate([[(-100.0, 0, -7)], vertices, [(0, 0, 99)]])
     mesh = lamella.Mesh(more, faces + 1)
     assert mesh.bounds.tolist() == [[0, 0, 0], [20, 30, 10]] and len(mesh.vertices) == 8
+    assert len(lamella.Mesh(np.concatenate([[(np.nan, np.inf, 1e300)], vertices]), faces + 1).vertices) == 8
+    with pytest.raises(lamella.InputError, match="^vertex 1 is "):
+        lamella.Mesh(np.concatenate([[(np.nan, 0, 0)], vertices * np.inf]), faces + 1)
     assert lamella.slice((more, faces + 1), 1) == lamella.slice((vertices, faces), 1)
 
 
@@ -117,6 +121,13 @@ def test_directions_and_transforms_keep_their_matrix():
     assert np.allclose(corners.max(axis=0)[:3], stack.bounds[1])
     assert np.isclose(stack.bounds[1][2] - stack.bounds[0][2], 20)
     assert np.isclose(stack.volume, 6 * (1000 - 512 + 64))
+
+
+def test_what_moves_and_turns_is_put_together_before_it_is_applied():
+    part = nested_boxes()
+    third = np.diag([1 / 3, 1 / 3, 1 / 3, 1])
+    whole = lamella.slice(part, 0.5, transform=third, direction=(1, 2, 3))
+    assert lamella.slice(part, 0.5, transform=whole.matrix) == whole
 
 
 @pytest.mark.parametrize("engine", [engine.name for engine in lamella.engines()])
