@@ -38,7 +38,8 @@ OptionGroup output_options(ConvertArguments& target) {
     group.options.push_back(
         text("label", "TEXT", "name of the only part inside the slice file", target.label));
     group.options.push_back(
-        flag("strict", "make an error of whatever would be lost, and write nothing", target.strict));
+        flag("strict", "make an error of whatever is odd about the file or would be lost, and write nothing",
+             target.strict));
     return group;
 }
 
@@ -50,6 +51,8 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
+    if (arguments.strict)
+        check_warnings(file);
     context.messages.warn_of(file.path, file.warnings);
     check_no_vectors(file, arguments.making.steps());
     LayerChanges changes;

@@ -53,7 +53,8 @@ OptionGroup output_options(ScanCommandArguments& target) {
     group.options.push_back(output_file(
         "stats", "write figures of the vectors of every layer as JSON; - is standard output", target.stats));
     group.options.push_back(
-        flag("strict", "make an error of whatever would be lost, and write nothing", target.strict));
+        flag("strict", "make an error of whatever is odd about the file or would be lost, and write nothing",
+             target.strict));
     return group;
 }
 
@@ -123,6 +124,8 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         check_writable(arguments.stats);
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
+    if (arguments.strict)
+        check_warnings(file);
     context.messages.warn_of(file.path, file.warnings);
     for (const std::string& loss : losses(file)) {
         const std::string lost = fmt::format("{}: {}", file.path, loss);

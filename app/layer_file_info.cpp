@@ -48,6 +48,11 @@ LayerFileInfo info_of(const LayerFile& file) {
     return info;
 }
 
+void check_warnings(const LayerFile& file) {
+    if (!file.warnings.empty())
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", file.path, file.warnings.front()));
+}
+
 void check_no_vectors(const LayerFile& file, const LayerSteps& steps) {
     for (const LayerPart& part : file.parts)
         if (part.exposure && steps.any())

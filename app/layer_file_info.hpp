@@ -15,6 +15,9 @@ namespace lamella::app {
 /// layer to the top of the last. Throws Error{input} for a file without layers.
 [[nodiscard]] LayerFileInfo info_of(const LayerFile& file);
 
+/// For --strict: throws Error{defect} with the first warning of the file, if it has any.
+void check_warnings(const LayerFile& file);
+
 /// Throws Error{usage} for steps on scan vectors: hatches are other parts than their contours, which would be
 /// moved alone.
 void check_no_vectors(const LayerFile& file, const LayerSteps& steps);

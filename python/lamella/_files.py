@@ -7,7 +7,7 @@ import itertools
 import numbers
 import operator
 import os
-from typing import Any, Iterable, Iterator, List, Optional, Tuple, Union
+from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -49,7 +49,12 @@ HEIGHTS = {"z": "cuts (z)", "bottom": "bottoms", "top": "tops", "index": "indice
 
 
 def read_layers(
-    path: PathLike, *, max_memory: int = 0, threads: int = 0, progress: Optional[Progress] = None
+    path: PathLike,
+    *,
+    strict: bool = False,
+    max_memory: int = 0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
 ) -> Stack:
     stack, warnings = _lamella.read_layers(
         check.path("path", path),
@@ -57,8 +62,16 @@ def read_layers(
         check.thread_count(threads),
         check.listener(progress),
     )
-    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
+    _told(path, warnings, strict)
     return stack
+
+
+def _told(path: PathLike, warnings: Sequence[str], strict: bool) -> None:
+    """What is odd about a slice file."""
+    texts = [f"{os.fsdecode(path)}: {warning}" for warning in warnings]
+    if strict and texts:
+        raise DefectError(texts[0])
+    warn(texts)
 
 
 def read(
@@ -95,13 +108,10 @@ def read(
     read, warnings = _lamella.read_any(
         *check.reading(path, unit_mm, strict, supports, max_triangles, max_memory, threads, progress)
     )
-    texts = [f"{os.fsdecode(path)}: {warning}" for warning in warnings]
-    if isinstance(read, Stack):
-        if unit_mm is not None:
-            raise UsageError(f"unit_mm goes with meshes, and {os.fsdecode(path)} holds layers, which say their unit")
-        if strict and texts:
-            raise DefectError(texts[0])
-    warn(texts)
+    if isinstance(read, Stack) and unit_mm is not None:
+        raise UsageError(f"unit_mm goes with meshes, and {os.fsdecode(path)} holds layers, which say their unit")
+    # Reading a mesh has looked at `strict` itself.
+    _told(path, warnings, strict and isinstance(read, Stack))
     return read
 
 
@@ -373,7 +383,7 @@ def convert(
     """
     if _same_file(check.path("source", source), check.path("target", target)):
         raise UsageError(f"{os.fsdecode(target)}: the output would overwrite the input")
-    stack = read_layers(source, threads=threads, progress=progress)
+    stack = read_layers(source, strict=check.flag("strict", strict), threads=threads, progress=progress)
     if len(stack) == 0:
         raise InputError(f"{os.fsdecode(source)}: holds no layers")
     write(

@@ -61,6 +61,13 @@ class Convert(ProgramTest):
         self.fail_with(4, "2 hatch lines left out", "convert", "hatched.json", "no.json", "--offset", "0.1", "--strict")
         self.assertEqual(self.succeed("convert", "hatched.json", "out.json", "--min-area", "1", "--strict").err, "")
 
+    def test_what_is_odd_about_the_file_is_an_error_where_it_is_asked_to_be(self):
+        self.write("odd.json", self.HATCHED.replace("[[0, 0, 4, 0, 0, 4]]", "[[0, 0, 4, 0, 0, 4], [1, 1, 2, 2]]").replace("hatches", "no"))
+        for command in [["convert", "odd.json", "out.cli"], ["scan", "odd.json", "-o", "out.cli"]]:
+            odd = r"odd\.json: 1 contour had too few different points; it was dropped"
+            self.assertRegex(self.succeed(*command).err, "warning: " + odd)
+            self.fail_with(4, odd, *command, "--strict")
+
     def test_contours_that_vanish_are_counted(self):
         layers = self.succeed("info", "torus.cli", "--json").json()
         text = self.succeed("convert", "torus.cli", "out.cli", "--offset=-100").text

@@ -272,6 +272,19 @@ def test_what_a_format_has_no_place_for_is_an_error_where_it_is_asked_to_be(tmp_
         assert not (tmp_path / "strict.slc").exists()
 
 
+def test_what_is_odd_about_a_slice_file_is_an_error_where_it_is_asked_to_be(tmp_path):
+    layers = '{"z":1,"bottom":0,"top":2,"parts":[{"rings":[[0,0,4,0,0,4],[1,1,2,2]]}]}'
+    (tmp_path / "odd.json").write_text('{"format":"lamella layers","version":1,"parts":[{"label":"a"}],"layers":[' + layers + "]}")
+    with pytest.warns(lamella.DefectWarning) as caught:
+        lamella.convert(tmp_path / "odd.json", tmp_path / "out.cli")
+    for ask in [lambda: lamella.read(tmp_path / "odd.json", strict=True),
+                lambda: lamella.convert(tmp_path / "odd.json", tmp_path / "strict.cli", strict=True)]:  # fmt: skip
+        with pytest.raises(lamella.DefectError) as error:
+            ask()
+        assert str(error.value) == str(caught[0].message)
+    assert not (tmp_path / "strict.cli").exists()
+
+
 def test_what_is_left_of_a_stream_is_written(tmp_path):
     stack = lamella.slice(box_arrays(), 1)
     layers = lamella.iter_layers(box_arrays(), 1)
