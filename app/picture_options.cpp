@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <limits>
 #include <string_view>
 
@@ -62,23 +61,6 @@ Option count_within(std::string name, std::string help, std::uint32_t least, std
                     std::optional<std::uint32_t>& target) {
     return row(std::move(name), ValueKind::count, "N", std::move(help),
                [=, &target](const std::string& text) { target = parse_count_within(text, least, most); });
-}
-
-/// The time that builds agree upon, so that results can be compared (reproducible-builds.org).
-std::int64_t source_date() {
-    const char* const text = std::getenv("SOURCE_DATE_EPOCH");
-    if (text == nullptr || *text == '\0')
-        return 0;
-    constexpr std::uint64_t last = 253402300799; // of the year 9999
-    std::uint64_t seconds = last + 1;
-    try {
-        seconds = parse_count(text);
-    } catch (const Error&) { // told below
-    }
-    if (seconds > last)
-        throw Error(ErrorKind::usage,
-                    fmt::format("SOURCE_DATE_EPOCH is \"{}\", and not a number of seconds since 1970", text));
-    return static_cast<std::int64_t>(seconds);
 }
 
 } // namespace

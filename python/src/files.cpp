@@ -210,7 +210,10 @@ std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::str
     }
     if (info.box.empty())
         info.box.add(Point3{0, 0, bottom});
-    return std::make_unique<StackWriter>(path, format, info, write_options(options));
+    LayerWriteOptions writing = write_options(options);
+    if (layer_format(format, path).exposure)
+        writing.exposure.created_s = source_date();
+    return std::make_unique<StackWriter>(path, format, info, writing);
 }
 
 std::vector<std::string> write_mesh(const std::string& path, const std::string& extension,

@@ -244,6 +244,18 @@ def test_options_of_pictures_are_those_of_the_program(program, rook, tmp_path, n
     assert (tmp_path / "converted.out").stat().st_size > 0
 
 
+def test_the_time_that_builds_agree_upon_is_that_of_a_job(program, rook, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    program.succeed("slice", rook, "-o", tmp_path / "rook.sl1", "--layer-height", 10)
+    expected = (tmp_path / "rook.sl1").read_bytes()
+    lamella.write(tmp_path / "rook.sl1", lamella.slice(rook, 10))
+    assert (tmp_path / "rook.sl1").read_bytes() == expected
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "soon")
+    with pytest.raises(lamella.UsageError, match='SOURCE_DATE_EPOCH is "soon"'):
+        lamella.write(tmp_path / "rook.sl1", lamella.slice(rook, 10))
+    lamella.write(tmp_path / "rook.cli", lamella.slice(rook, 10))
+
+
 def test_layers_are_written_from_whatever_has_them(tmp_path):
     stack = lamella.slice(box_arrays(), 1)
 

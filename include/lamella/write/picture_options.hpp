@@ -46,4 +46,9 @@ struct ExposureOptions {
     std::int64_t created_s = 0;
 };
 
+/// The time that builds agree upon, so that results can be compared (reproducible-builds.org): the
+/// environment variable SOURCE_DATE_EPOCH, seconds since 1970; 0 where it is not set. Throws Error{usage} for
+/// one that is no time.
+[[nodiscard]] std::int64_t source_date();
+
 } // namespace lamella
