@@ -12,15 +12,6 @@
 namespace lamella::app {
 namespace {
 
-Box3 box_of(const LayerStack& layers) {
-    Box3 box;
-    for (const Layer& layer : layers)
-        for (const PointArray* points : {&layer.points, &layer.hatches})
-            for (const Point2& p : *points)
-                box.add(Point3{p.x, p.y, layer.z});
-    return box;
-}
-
 /// Never empty.
 Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
     Box3 box;
@@ -42,7 +33,7 @@ LayerFileInfo info_of(const LayerFile& file) {
     LayerFileInfo info{
         .box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}, .rule = file.rule};
     for (const LayerPart& part : file.parts)
-        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label, box_of(part.layers),
+        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label, part_box(part.layers),
                               part.exposure, part.support});
     info.box = box_of(info, layers);
     return info;

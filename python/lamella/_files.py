@@ -297,13 +297,17 @@ def _planes_of_parts(stacks: List[Stack]) -> Planes:
     if any(stack.rule != stacks[0].rule for stack in stacks):
         raise UsageError("what: the parts of a file must be cut by the same rule: slice them with the same `at`")
     parts: List[Part] = [
-        # A part without contours makes the box of the file no larger, where there are others.
-        (check.label("label", stack.label or "part"), stack._box if len(stacks) > 1 else stack.bounds,
-         stack.exposure, stack.support)
-        for stack in stacks
-    ]  # fmt: skip
+        (check.label("label", stack.label or "part"), box, stack.exposure, stack.support)
+        for stack, box in zip(stacks, _boxes(stacks))
+    ]
     planes = (list(plane) for plane in zip(*stacks))
     return parts, planes, len(stacks[0]), stacks[0][0].bottom, stacks[0].rule
+
+
+def _boxes(stacks: List[Stack]) -> List[npt.NDArray[np.float64]]:
+    """A part without contours makes the box of the file no larger, where there are others with some."""
+    boxes = [stack._box for stack in stacks]
+    return boxes if any(np.isfinite(box).all() for box in boxes) else [stack.bounds for stack in stacks]
 
 
 def _planes_of_scan_layers(layers: List[ScanLayer]) -> Planes:
@@ -311,7 +315,7 @@ def _planes_of_scan_layers(layers: List[ScanLayer]) -> Planes:
     if any(layer.exposures != exposures for layer in layers):
         raise UsageError("what: the scan layers of a file must have the same exposures: scan them by one strategy")
     stacks = [Stack([layer.layers[k] for layer in layers]) for k in range(len(exposures))]
-    return _planes_of_vectors(layers, layers[0], len(layers), [stack._box for stack in stacks], "section_above")
+    return _planes_of_vectors(layers, layers[0], len(layers), _boxes(stacks), stacks[0].rule)
 
 
 def _planes_of_vectors(

@@ -237,7 +237,7 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
         VerifyOptions options{.mesh = {}, .rule = stack.rule, .rounding = stack.rounding};
         if (mesh)
             options.mesh = mesh->mesh();
-        LayerStack layers = plain(stack);
+        LayerStack layers = plain(stack.layers);
         if (!at.empty())
             options.rule = place_cuts(layers, slice_at_named(at));
         return verify(layers, options, execution);
@@ -307,8 +307,8 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
 py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance, unsigned threads,
                    const py::object& progress) {
     const StackComparison found = result_of(threads, progress, [&](const Execution& execution) {
-        const LayerStack of_first = plain(first);
-        const LayerStack of_second = plain(second);
+        const LayerStack of_first = plain(first.layers);
+        const LayerStack of_second = plain(second.layers);
         return compare(RoundedLayers{of_first, first.rounding}, {of_second, second.rounding}, tolerance,
                        execution);
     });

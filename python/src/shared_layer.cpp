@@ -2,6 +2,7 @@
 
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/write/layer_writer.hpp"
 
 namespace lamella::python {
 
@@ -32,16 +33,7 @@ std::uint64_t SharedLayer::hash() const {
 }
 
 Box3 box_of(const std::vector<LayerPointer>& layers) {
-    Box3 box;
-    for (const LayerPointer& layer : layers)
-        for (const PointArray* points : {&layer->get().points, &layer->get().hatches})
-            for (const Point2& p : *points)
-                box.add(Point3{p.x, p.y, layer->get().z});
-    if (!box.empty()) {
-        box.min.z = layers.front()->get().bottom;
-        box.max.z = layers.back()->get().top;
-    }
-    return box;
+    return part_box(plain(layers));
 }
 
 Box3 shown_box(const Stack& stack) {
@@ -66,10 +58,10 @@ PlaneRule rule_named(const std::string& name) {
     return *rule;
 }
 
-LayerStack plain(const Stack& stack) {
+LayerStack plain(const std::vector<LayerPointer>& shared) {
     LayerStack layers;
-    layers.reserve(stack.layers.size());
-    for (const LayerPointer& layer : stack.layers)
+    layers.reserve(shared.size());
+    for (const LayerPointer& layer : shared)
         layers.push_back(layer->get());
     return layers;
 }

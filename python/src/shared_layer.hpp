@@ -65,8 +65,7 @@ struct Stack {
     std::vector<std::shared_ptr<Stack>> parts = {};
 };
 
-/// Of the contours and hatches, from the bottom of the first layer to the top of the last; empty where there
-/// are none.
+/// See part_box.
 [[nodiscard]] Box3 box_of(const std::vector<LayerPointer>& layers);
 /// The box of the stack, or where it is empty the origin at the heights of its layers.
 [[nodiscard]] Box3 shown_box(const Stack& stack);
@@ -75,6 +74,6 @@ struct Stack {
 /// Throws Error{usage} for no rule's name.
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
 /// The layers themselves: their points stay where they are.
-[[nodiscard]] LayerStack plain(const Stack& stack);
+[[nodiscard]] LayerStack plain(const std::vector<LayerPointer>& shared);
 
 } // namespace lamella::python

@@ -209,6 +209,19 @@ class HeldWriter final : public LayerWriter {
 
 } // namespace
 
+Box3 part_box(std::span<const Layer> layers) noexcept {
+    Box3 box;
+    for (const Layer& layer : layers)
+        for (const PointArray* points : {&layer.points, &layer.hatches})
+            for (const Point2& p : *points)
+                box.add(Point3{p.x, p.y, layer.z});
+    if (!box.empty()) {
+        box.min.z = layers.front().bottom;
+        box.max.z = layers.back().top;
+    }
+    return box;
+}
+
 std::span<const LayerFormat> layer_formats() noexcept {
     return formats;
 }

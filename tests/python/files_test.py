@@ -199,6 +199,8 @@ def test_a_part_without_contours_leaves_the_box_of_a_file_alone(tmp_path):
     lamella.write(tmp_path / "out.geojson", [empty, full])
     assert json.loads((tmp_path / "out.geojson").read_text())["bbox"] == [50, 60, 70, 90]
     assert empty.bounds.tolist() == [[0, 0, 0], [0, 0, 10]]
+    lamella.write(tmp_path / "out.cli", [empty, empty])
+    assert b"$$DIMENSION/0.000000,0.000000,0.000000,0.000000,0.000000,10.000000" in (tmp_path / "out.cli").read_bytes()
 
 
 def test_conversion_is_that_of_the_program(program, rook, tmp_path):
@@ -209,6 +211,16 @@ def test_conversion_is_that_of_the_program(program, rook, tmp_path):
     program.succeed("convert", tmp_path / "rook.svg", tmp_path / "program.cli", "--units-mm", 0.01)
     lamella.convert(tmp_path / "rook.svg", tmp_path / "rook.cli", units_mm=0.01)
     assert (tmp_path / "rook.cli").read_bytes() == (tmp_path / "program.cli").read_bytes()
+    for format in ("3mf", "3mf-toolpath"):
+        for made, folder in [("convert", "a"), ("scan", "b")]:
+            (tmp_path / folder).mkdir(exist_ok=True)
+            output = ["-o"] if made == "scan" else []
+            program.succeed(made, tmp_path / "rook.cli", *output, tmp_path / folder / "rook.3mf", "--format", format)
+        lamella.convert(tmp_path / "rook.cli", tmp_path / "rook.3mf", format=format)
+        assert (tmp_path / "rook.3mf").read_bytes() == (tmp_path / "a/rook.3mf").read_bytes()
+        layers = lamella.read(tmp_path / "rook.cli")
+        lamella.write(tmp_path / "rook.3mf", lamella.scan(layers, part=layers.label), format=format)
+        assert (tmp_path / "rook.3mf").read_bytes() == (tmp_path / "b/rook.3mf").read_bytes()
     with pytest.raises(lamella.UsageError, match="would overwrite the input"):
         lamella.convert(tmp_path / "rook.cli", tmp_path / "rook.cli")
 

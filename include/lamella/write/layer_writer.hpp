@@ -31,6 +31,10 @@ struct PartInfo {
     bool support = false; ///< is exposed as one in scan vectors; 3MF marks it
 };
 
+/// Of the contours and hatch lines of a part, from the bottom of its first layer to the top of its last;
+/// empty where there are none. O(points).
+[[nodiscard]] Box3 part_box(std::span<const Layer> layers) noexcept;
+
 /// A piece of a slice file, for formats whose files are layers one after the other (LayerFormat::pieces):
 /// several processes write one file so. The pieces of a file, put together, are the file.
 struct LayerFilePiece {
