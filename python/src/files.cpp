@@ -46,9 +46,10 @@ bool holds_scan_vectors(const Stack& stack) {
 
 StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layers) {
     auto stack = std::make_shared<Stack>();
-    stack->layers = shared(std::move(layers));
+    stack->layers = shared(std::move(layers), file.rule);
     stack->label = std::move(label);
     stack->box = box_of(stack->layers);
+    stack->planned = stack->layers.empty() ? 0 : stack->layers.back()->get().index + 1;
     stack->path = file.path;
     stack->format = file.format;
     stack->rounding = file.rounding;

@@ -1,9 +1,12 @@
 #include "layer_stream.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/slice_file.hpp"
 
 #include "unlocked.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -59,15 +62,24 @@ LayerQueue::Found LayerQueue::take(Layer& layer) {
     return Found::end;
 }
 
-LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads,
+Plan CutPlan::only(std::uint64_t begin, std::uint64_t end, const SourceMesh& mesh,
+                   const Execution& execution) const {
+    FileJob job;
+    job.layering = layering;
+    job.layering.only = {.index_range = {{begin, end}}};
+    return plan_of(job, mesh.plate(), execution);
+}
+
+LayerStream::LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, unsigned threads,
                          py::object listener)
-    : mesh_(std::move(mesh)), plan_(std::move(plan)), listener_(std::move(listener)) {
+    : mesh_(std::move(mesh)), cuts_(std::move(cuts)), engine_(with), threads_(threads),
+      listener_(std::move(listener)) {
     Execution execution{.threads = threads, .cancel = &queue_.closed()};
     if (!listener_.is_none())
         execution.progress = [this](const Progress& progress) {
             progress_.put(progress);
         };
-    worker_ = std::thread([this, execution, &with] {
+    worker_ = std::thread([this, execution] {
         std::exception_ptr failure;
         try {
             const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
@@ -75,7 +87,7 @@ LayerStream::LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsign
                     queue_.put(std::move(kept));
                 };
             };
-            slice_to(sink, mesh_->mesh(), plan_, execution, nullptr, with);
+            slice_to(sink, mesh_->mesh(), plan(), execution, nullptr, engine_);
         } catch (...) {
             failure = std::current_exception();
         }
@@ -103,7 +115,7 @@ LayerPointer LayerStream::next() {
                 close();
             else if (found == LayerQueue::Found::layer) {
                 ++taken_;
-                return std::make_shared<SharedLayer>(std::move(layer));
+                return std::make_shared<SharedLayer>(std::move(layer), plan().rule);
             }
         }
     } catch (
@@ -135,7 +147,31 @@ void LayerStream::close() {
 double LayerStream::bottom() const {
     if (left() == 0)
         throw Error(ErrorKind::usage, "no layers are left: the stream is closed or at its end");
-    return plan_.layers[taken_].bottom;
+    return plan().layers[taken_].bottom;
+}
+
+LayerStream::Beside LayerStream::beside(std::uint64_t below, std::uint64_t above) const {
+    const PlaneSelection& only = cuts_.layering.only;
+    if (left() == 0 || (taken_ == 0 && !only.z_range && !only.index_range))
+        return {};
+    const std::uint64_t first = plan().layers[taken_].index;
+    const std::uint64_t last = plan().layers.back().index;
+    const std::uint64_t lowest = first - std::min(first, below);
+    return result_of(threads_, py::none(), [&](const Execution& execution) {
+        // With those that were taken: what is left may miss the part, and a plan must not.
+        const Plan wider =
+            cuts_.only(std::min(lowest, plan().layers.front().index), last + 1 + above, *mesh_, execution);
+        const auto sliced = [&](const auto& wanted) {
+            Plan some{{}, wider.rule};
+            std::copy_if(wider.layers.begin(), wider.layers.end(), std::back_inserter(some.layers), wanted);
+            return some.layers.empty()
+                       ? std::vector<LayerPointer>()
+                       : shared(slice(mesh_->mesh(), some, execution, nullptr, engine_), some.rule);
+        };
+        return Beside{
+            sliced([&](const PlannedLayer& layer) { return lowest <= layer.index && layer.index < first; }),
+            sliced([&](const PlannedLayer& layer) { return layer.index > last; })};
+    });
 }
 
 } // namespace lamella::python

@@ -2,6 +2,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
@@ -17,6 +18,8 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace lamella::python {
 
@@ -47,10 +50,21 @@ class LayerQueue {
     std::exception_ptr failure_;
 };
 
+/// A plan, and how it was made.
+struct CutPlan {
+    Plan plan;
+    Layering layering;
+
+    /// The same with these layers, as far as there are such.
+    [[nodiscard]] Plan only(std::uint64_t begin, std::uint64_t end, const SourceMesh& mesh,
+                            const Execution& execution) const;
+};
+
 /// Slices while somebody takes the layers, one by one and in ascending z.
 class LayerStream {
   public:
-    LayerStream(MeshPointer mesh, Plan plan, const Engine& with, unsigned threads, pybind11::object listener);
+    LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, unsigned threads,
+                pybind11::object listener);
     LayerStream(const LayerStream&) = delete;
     LayerStream& operator=(const LayerStream&) = delete;
     ~LayerStream(); // NOLINT(bugprone-exception-escape): see there
@@ -61,11 +75,16 @@ class LayerStream {
     void close();
 
     [[nodiscard]] const SourceMesh& mesh() const noexcept { return *mesh_; }
-    [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
+    [[nodiscard]] const Plan& plan() const noexcept { return cuts_.plan; }
     /// How many layers are to come.
-    [[nodiscard]] std::size_t left() const noexcept { return closed_ ? 0 : plan_.layers.size() - taken_; }
+    [[nodiscard]] std::size_t left() const noexcept { return closed_ ? 0 : plan().layers.size() - taken_; }
     /// Where the next one begins. Throws Error{usage} where none is left.
     [[nodiscard]] double bottom() const;
+
+    /// So many layers right below the next one, and right above the last one, which the stream does not give:
+    /// in ascending z, fewer where the part ends.
+    using Beside = std::pair<std::vector<LayerPointer>, std::vector<LayerPointer>>;
+    [[nodiscard]] Beside beside(std::uint64_t below, std::uint64_t above) const;
 
     /// Who hears of progress; None once the stream is closed or at its end.
     [[nodiscard]] const pybind11::object& listener() const noexcept { return listener_; }
@@ -73,7 +92,9 @@ class LayerStream {
 
   private:
     MeshPointer mesh_;
-    Plan plan_;
+    CutPlan cuts_;
+    const Engine& engine_;
+    unsigned threads_;
     pybind11::object listener_;
     ProgressBox progress_;
     LayerQueue queue_;

@@ -135,7 +135,7 @@ std::vector<std::uint64_t> offsets_of(const Numbers& numbers, std::size_t points
 }
 
 LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const Numbers& offsets,
-                             std::size_t rings, const Doubles& hatches) {
+                             std::size_t rings, const Doubles& hatches, std::optional<PlaneRule> rule) {
     if (!(std::isfinite(head.bottom) && std::isfinite(head.top) && head.bottom <= head.z &&
           head.z <= head.top))
         throw Error(ErrorKind::input, "a layer is cut between its bottom and its top, which are finite");
@@ -148,7 +148,8 @@ LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const
     layer.rings = rings;
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
-    return std::make_shared<SharedLayer>(std::move(layer)); // as it was: the order of scan vectors counts
+    // As it was: the order of scan vectors counts.
+    return std::make_shared<SharedLayer>(std::move(layer), rule);
 }
 
 /// Without what docs/conventions.md drops from contours: points equal to the one before them, contours with
@@ -212,27 +213,33 @@ std::string layer_text(const SharedLayer& layer) {
 LayerPointer after(const SharedLayer& layer, const LayerSteps& steps) {
     const Unlocked released;
     LayerChanges changes;
-    return std::make_shared<SharedLayer>(take_steps(steps, layer.get(), changes));
+    return std::make_shared<SharedLayer>(take_steps(steps, layer.get(), changes), layer.rule());
 }
 
 /// What the operation makes of a layer and another one.
 template <BooleanOperation operation>
 LayerPointer combined(const SharedLayer& layer, const SharedLayer& other) {
     const Unlocked released;
-    return std::make_shared<SharedLayer>(combine(layer.get(), other.get(), operation));
+    return std::make_shared<SharedLayer>(combine(layer.get(), other.get(), operation), layer.rule());
 }
 
 py::tuple layer_state(const py::object& self) {
     const Layer& layer = layer_of(self);
+    std::optional<std::string_view> rule;
+    if (const auto known = self.cast<const SharedLayer&>().rule())
+        rule = plane_rule_name(*known);
     return py::make_tuple(layer.index, layer.z, layer.bottom, layer.top, view_of(layer.points.span(), self),
-                          offsets_of(self), layer.rings, view_of(layer.hatches.span(), self));
+                          offsets_of(self), layer.rings, view_of(layer.hatches.span(), self), rule);
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
     const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
                          state[3].cast<double>()};
+    std::optional<PlaneRule> rule;
+    if (!state[8].is_none())
+        rule = rule_named(state[8].cast<std::string>());
     return layer_of_arrays(head, state[4].cast<Doubles>(), state[5].cast<Numbers>(),
-                           state[6].cast<std::size_t>(), state[7].cast<Doubles>());
+                           state[6].cast<std::size_t>(), state[7].cast<Doubles>(), rule);
 }
 
 using StackPointer = std::shared_ptr<Stack>;
@@ -252,6 +259,8 @@ StackPointer part_of(const Stack& stack, const py::slice& range) {
     part->layers.clear();
     for (py::ssize_t i = 0; i < count; ++i)
         part->layers.push_back(stack.layers[static_cast<std::size_t>(start + i * step)]);
+    if (!part->of_mesh)
+        part->box = box_of(part->layers);
     return part;
 }
 
@@ -326,9 +335,22 @@ void require_ascending(const std::vector<LayerPointer>& layers) {
                                               std::to_string(i + 1) + " is not above the one before it");
 }
 
+PlaneRule rule_of(const std::vector<LayerPointer>& layers) {
+    std::optional<PlaneRule> found;
+    for (const LayerPointer& layer : layers) {
+        const std::optional<PlaneRule> rule = layer->rule();
+        if (found && rule && *rule != *found)
+            throw Error(ErrorKind::usage, "layers: those of a stack must be cut by the same rule: slice them "
+                                          "with the same `at`");
+        found = rule ? rule : found;
+    }
+    return found.value_or(PlaneRule::section_above);
+}
+
 StackPointer stack_of_layers(std::vector<LayerPointer> layers, const std::string& label) {
     require_ascending(layers);
     auto stack = std::make_shared<Stack>();
+    stack->rule = rule_of(layers);
     stack->box = box_of(layers);
     stack->layers = std::move(layers);
     stack->label = label;
@@ -339,7 +361,7 @@ py::tuple pickled(const Stack& stack) {
     return py::make_tuple(stack.layers, py::bytes(stack.label), bounds_of(stack.box), matrix_of(stack.matrix),
                           py::bytes(stack.path), stack.format, stack.rounding.step_mm,
                           stack.rounding.single_precision, plane_rule_name(stack.rule), stack.parts,
-                          stack.exposure, stack.support);
+                          stack.exposure, stack.support, stack.of_mesh, stack.planned);
 }
 
 /// None of them None, which pybind11 takes for a pointer.
@@ -366,6 +388,8 @@ StackPointer unpickled(const py::tuple& state) {
             throw Error(ErrorKind::input, "the parts of a pickled stack must have as many layers as it has");
     stack->exposure = state[10].cast<std::optional<Exposure>>();
     stack->support = state[11].cast<bool>();
+    stack->of_mesh = state[12].cast<bool>();
+    stack->planned = state[13].cast<std::uint64_t>();
     if (!finite(stack->matrix) || !(stack->box.empty() || finite(stack->box)))
         throw Error(ErrorKind::input, "the bounds and the matrix of a pickled stack must be finite");
     return stack;
@@ -485,7 +509,7 @@ void bind_layer(py::module_& module) {
             py::is_operator())
         .def("__hash__", [](const SharedLayer& self) { return self.hash() >> 1; })
         .def("__repr__", &layer_text);
-    bind_pickle(cls, "layer", 8, &layer_state, &layer_of_state);
+    bind_pickle(cls, "layer", 9, &layer_state, &layer_of_state);
 }
 
 void bind_stack(py::module_& module) {
@@ -556,6 +580,7 @@ void bind_stack(py::module_& module) {
             "Whether that file marks the part as a support.")
         // Of nothing it is empty, from inf to -inf, where `bounds` has the origin.
         .def_property_readonly("_box", [](const Stack& self) { return bounds_of(self.box); })
+        .def_property_readonly("_planned", [](const Stack& self) { return self.planned; })
         .def_property_readonly(
             "path", [](const Stack& self) { return path_text(self.path); },
             "The slice file it was read from; empty where it was sliced.")
@@ -584,7 +609,7 @@ void bind_stack(py::module_& module) {
             "__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },
             py::is_operator())
         .def("__repr__", &stack_text);
-    bind_pickle(cls, "stack of layers", 12, &pickled, &unpickled);
+    bind_pickle(cls, "stack of layers", 14, &pickled, &unpickled);
 }
 
 } // namespace

@@ -130,7 +130,7 @@ Scanned scanned(const SharedLayer& layer, const std::vector<LayerPointer>& below
     std::uint64_t thin_rings = 0;
     std::vector<Layer> vectors = scan(ScanLayer(layer.get(), rounding), layers_of(below, rounding),
                                       layers_of(above, rounding), strategy, nullptr, &thin_rings);
-    return {shared(std::move(vectors)), thin_rings};
+    return {shared(std::move(vectors), layer.rule()), thin_rings};
 }
 
 Scanned scanned_support(const SharedLayer& layer, const ScanStrategy& strategy, const Stack* stack) {
@@ -138,7 +138,7 @@ Scanned scanned_support(const SharedLayer& layer, const ScanStrategy& strategy, 
     std::uint64_t thin_rings = 0;
     std::vector<Layer> vectors =
         scan_support(ScanLayer(layer.get(), rounding_of(stack)), strategy, nullptr, &thin_rings);
-    return {shared(std::move(vectors)), thin_rings};
+    return {shared(std::move(vectors), layer.rule()), thin_rings};
 }
 
 std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,

@@ -37,16 +37,18 @@ Box3 box_of(const std::vector<LayerPointer>& layers) {
 }
 
 Box3 shown_box(const Stack& stack) {
-    if (!stack.box.empty() || stack.layers.empty())
+    if (!stack.box.empty())
         return stack.box;
+    if (stack.layers.empty())
+        return {{0, 0, 0}, {0, 0, 0}};
     return {{0, 0, stack.layers.front()->get().bottom}, {0, 0, stack.layers.back()->get().top}};
 }
 
-std::vector<LayerPointer> shared(LayerStack layers) {
+std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule) {
     std::vector<LayerPointer> pointers;
     pointers.reserve(layers.size());
     for (Layer& layer : layers)
-        pointers.push_back(std::make_shared<SharedLayer>(std::move(layer)));
+        pointers.push_back(std::make_shared<SharedLayer>(std::move(layer), rule));
     return pointers;
 }
 

@@ -22,9 +22,12 @@ namespace lamella::python {
 /// the interpreter lock, since another thread may be finding out the same.
 class SharedLayer {
   public:
-    explicit SharedLayer(Layer layer) : layer_(std::move(layer)) {}
+    explicit SharedLayer(Layer layer, std::optional<PlaneRule> rule = {})
+        : layer_(std::move(layer)), rule_(rule) {}
 
     [[nodiscard]] const Layer& get() const noexcept { return layer_; }
+    /// By which it was cut, and what it was made of; unset where that is arrays.
+    [[nodiscard]] std::optional<PlaneRule> rule() const noexcept { return rule_; }
     [[nodiscard]] const LayerMeasure& measure() const;
     [[nodiscard]] const Nesting& nesting() const;
     [[nodiscard]] std::uint64_t hash() const;
@@ -33,6 +36,7 @@ class SharedLayer {
 
   private:
     Layer layer_;
+    std::optional<PlaneRule> rule_;
     mutable std::once_flag measured_;
     mutable std::once_flag nested_;
     mutable std::once_flag hashed_;
@@ -51,6 +55,10 @@ struct Stack {
     /// Of the mesh that was sliced, as it was sliced. Where there was none, of the layers themselves; empty
     /// where these are.
     Box3 box = {};
+    bool of_mesh = false; ///< which of both
+    /// How many layers the plan has at least that these belong to, those included that were left out; 0 where
+    /// that is not known.
+    std::uint64_t planned = 0;
     /// From the coordinates of the mesh to those in which it was sliced.
     Transform matrix = {};
     /// The slice file it was read from; empty where it was sliced.
@@ -70,7 +78,7 @@ struct Stack {
 /// The box of the stack, or where it is empty the origin at the heights of its layers.
 [[nodiscard]] Box3 shown_box(const Stack& stack);
 
-[[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers);
+[[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule);
 /// Throws Error{usage} for no rule's name.
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
 /// The layers themselves: their points stay where they are.

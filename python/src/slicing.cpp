@@ -38,25 +38,37 @@ using ZRange = std::optional<std::pair<double, double>>;
 using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
 /// What slice_file would cut, by the layering of a job.
-Plan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
-              const IndexRange& layers, unsigned threads, const py::object& progress) {
+CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
+                 const IndexRange& layers, unsigned threads, const py::object& progress) {
     FileJob job;
     job.layering = {
         .cut = cut, .at = slice_at_named(at), .only = {.z_range = z_range, .index_range = layers}};
-    return result_of(threads, progress,
-                     [&](const Execution& execution) { return plan_of(job, mesh->plate(), execution); });
+    Plan plan = result_of(threads, progress,
+                          [&](const Execution& execution) { return plan_of(job, mesh->plate(), execution); });
+    return {std::move(plan), std::move(job.layering)};
 }
 
-std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const Plan& plan, const std::string& with,
+/// How many layers the whole plan has: up to one more than these, which tells whether there are any above.
+std::uint64_t planned(const CutPlan& cuts, const SourceMesh& mesh, const Execution& execution) {
+    const std::uint64_t end = cuts.plan.layers.back().index + 1;
+    const PlaneSelection& only = cuts.layering.only;
+    return only.z_range || only.index_range
+               ? cuts.only(cuts.plan.layers.front().index, end + 1, mesh, execution).layers.back().index + 1
+               : end;
+}
+
+std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts, const std::string& with,
                                    unsigned threads, const py::object& progress) {
     const Engine& chosen = engine(with);
     auto stack = std::make_shared<Stack>();
     run(threads, progress, [&](const Execution& execution) {
-        stack->layers = shared(slice(mesh->mesh(), plan, execution, nullptr, chosen));
+        stack->layers = shared(slice(mesh->mesh(), cuts.plan, execution, nullptr, chosen), cuts.plan.rule);
+        stack->planned = planned(cuts, *mesh, execution);
     });
-    stack->rule = plan.rule;
+    stack->rule = cuts.plan.rule;
     stack->label = mesh->origin().label;
     stack->box = mesh->box();
+    stack->of_mesh = true;
     stack->matrix = mesh->origin().matrix;
     return stack;
 }
@@ -151,6 +163,7 @@ void bind_stream(py::module_& module) {
             "rule", [](const LayerStream& self) { return plane_rule_name(self.plan().rule); },
             "The rule of the plane, as Stack.rule.")
         .def_property_readonly("_bottom", &LayerStream::bottom)
+        .def("_beside", &LayerStream::beside)
         .def("_close", &LayerStream::close)
         .def("__length_hint__", &LayerStream::left)
         .def("__iter__", [](const py::object& self) { return self; })
@@ -161,16 +174,18 @@ void bind_stream(py::module_& module) {
             return "<lamella.LayerStream: " + std::to_string(self.left()) + " of " +
                    std::to_string(self.plan().layers.size()) + " layers left>";
         });
-    module.def("stream", [](const MeshPointer& mesh, const Plan& plan, const std::string& with,
+    module.def("stream", [](const MeshPointer& mesh, const CutPlan& cuts, const std::string& with,
                             unsigned threads, const py::object& progress) {
-        return std::make_unique<LayerStream>(mesh, plan, engine(with), threads, progress);
+        return std::make_unique<LayerStream>(mesh, cuts, engine(with), threads, progress);
     });
 }
 
 } // namespace
 
 void bind_slicing(py::module_& module) {
-    py::class_<Plan>(module, "Plan").def("__len__", [](const Plan& self) { return self.layers.size(); });
+    py::class_<CutPlan>(module, "Plan").def("__len__", [](const CutPlan& self) {
+        return self.plan.layers.size();
+    });
     bind_cuts(module);
     module.def("plan", &plan_for);
     module.def("slice_stack", &slice_stack);

@@ -176,6 +176,33 @@ def test_scan_vectors_are_written_as_by_the_program(program, rook, jobs):
     assert (jobs / "again.ilt").read_bytes() == (jobs / "sliced.ilt").read_bytes()
 
 
+def test_the_rule_of_the_plane_goes_with_layers(tmp_path):
+    stack = lamella.slice(nested_boxes(), 1, at="top")
+    assert lamella.Stack(list(stack)).rule == "section_below"
+    by_hand = lamella.Layer(list(stack[0]), 0.5, 0, 0.5)
+    for what in [list(stack), (layer.offset(0.1) for layer in stack), [layer.union(by_hand) for layer in stack],
+                 [by_hand, *stack[1:]], pickle.loads(pickle.dumps(list(stack))), stack[3], iter(lamella.iter_layers(nested_boxes(), 1, at="top")),
+                 list(lamella.scan(stack))]:  # fmt: skip
+        lamella.write(tmp_path / "out.json", what)
+        assert lamella.read(tmp_path / "out.json").rule == "section_below"
+    assert lamella.Stack([by_hand]).rule == "section_above"
+    with pytest.raises(lamella.UsageError, match="cut by the same rule"):
+        lamella.Stack([lamella.slice(nested_boxes(), 1)[0], stack[1]])
+
+
+def test_slices_of_stacks_have_the_bounds_of_what_there_is(bodies, tmp_path):
+    cone = lamella.slice(bodies("sphere", "--size", 20), 1)
+    assert (cone[:5].bounds == cone.bounds).all(), "those of the mesh"
+    lamella.write(tmp_path / "cone.json", cone)
+    for stack in [lamella.read(tmp_path / "cone.json"), lamella.Stack(list(cone))]:
+        for few in [stack[:5], stack[:9][:5], pickle.loads(pickle.dumps(stack[:9]))[:5]]:
+            assert (few.bounds == lamella.Stack(list(few)).bounds).all() and (few.bounds[1] < stack.bounds[1]).all()
+    lamella.write(tmp_path / "twice.json", [cone, cone])
+    few = lamella.read(tmp_path / "twice.json")[:5]
+    assert all((part.bounds == few.bounds).all() for part in few.parts)
+    assert lamella.Stack([]).bounds.tolist() == [[0, 0, 0], [0, 0, 0]]
+
+
 def test_scan_layers_of_any_kind_are_written(jobs):
     scanned = list(lamella.scan(lamella.read(jobs / "part.cli")))
 
