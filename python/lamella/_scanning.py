@@ -8,7 +8,7 @@ import operator
 import os
 from collections import deque
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, Deque, Dict, Generator, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
@@ -102,33 +102,37 @@ def scan(
     layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part", *, support: bool = False
 ) -> Iterator[ScanLayer]:
     """Makes scan vectors of layers in ascending z, such as a Stack or what `iter_layers` gives; one by one, while no
-    more layers are held than skins ask for. Of a Stack that comes from a file, points are left out that the file's
-    rounding alone moved off a straight way.
+    more layers are held than skins ask for. Layers that `iter_layers` was to leave out count for skins, too; of other
+    layers, and of a Stack of some of its part's layers only, there is no material beside them. Of a Stack that comes
+    from a file, points are left out that the file's rounding alone moved off a straight way.
 
     strategy: a ScanStrategy, as it is now; the path of a TOML file, as the program takes it (needs Python 3.11); the
         same as a dict, such as {"hatch": {"distance": 0.08}}; None is what is there by default.
-    part: what exposures call the part.
+    part: what exposures call the part; an empty text is "part".
     support: it is a support: exposed by the strategy's rule for these, without skins.
 
     `write` takes what this gives.
 
-    Raises UsageError for a strategy that is not right and for layers that do not ascend, LimitError for layers that
-    would have too many vectors. Issues a DefectWarning where layers have what no vectors are made of: hatch lines, open
-    chains, contours that run the wrong way because the mesh is inside out; of a Stack at once, of other layers when the
-    last one has been taken.
+    Raises UsageError for a strategy that is not right and for layers that do not ascend, InputError for a Stack that
+    holds scan vectors already, LimitError for layers that would have too many vectors. Issues a DefectWarning where
+    layers have what no vectors are made of: hatch lines, open chains, contours that run the wrong way because the mesh
+    is inside out. It comes at once for a Stack, for other layers when the last one has been taken. So it does where skins
+    ask for layers of the part that are not in a Stack.
     """
     try:
         each = _ascending(iter(layers))
     except TypeError:
         check.refuse_type("layers", "layers in ascending z", layers)
     known = as_strategy("strategy", strategy)
-    label = check.label("part", part)
-    stack = layers if isinstance(layers, Stack) else None
-    told = _told((stack and stack.path) or "layers", each)
-    # All layers of a stack are there to be looked at before any is scanned.
-    each = iter(list(told)) if stack else told
-    make = _scan_support if check.flag("support", support) else _scan
-    scanned = make(each, known, label, stack)
+    label = check.label("part", part) or b"part"
+    support = check.flag("support", support)
+    each = _told((isinstance(layers, Stack) and layers.path) or "layers", each)
+    if isinstance(layers, Stack):
+        _check_stack(layers)
+        each = iter(list(each))  # told at once: all of them are there
+        if not support:
+            _warn_of_skins(layers, known)
+    scanned = (_scan_support if support else _scan)(each, known, label, layers)
     return ScanStream(scanned, layers) if isinstance(layers, (Stack, LayerStream)) else scanned
 
 
@@ -143,6 +147,30 @@ def _ascending(layers: Iterator[Any]) -> Iterator[Layer]:
         yield layer
 
 
+def _check_stack(stack: Stack) -> None:
+    """Vectors are no material: a hatch has no contours, and each contour would be hatched."""
+    for part in stack.parts:
+        if part.exposure is not None:
+            raise InputError(
+                f"{stack.path}: holds scan vectors already ({part.label}); give the layers that they are made of"
+            )
+
+
+def _warn_of_skins(stack: Stack, strategy: ScanStrategy) -> None:
+    if len(stack) == 0 or stack._planned == 0:
+        return
+    cut_off = {
+        "below": strategy.downskin.layers and stack[0].index > 0,
+        "above": strategy.upskin.layers and stack[-1].index + 1 < stack._planned,
+    }
+    sides = " and ".join(side for side, cut in cut_off.items() if cut)
+    if sides:
+        warn([
+            f"layers: those {sides} are not in the stack, and skins are made as if there were no material; scan all layers "
+            "and keep some, or scan what iter_layers gives"
+        ])  # fmt: skip
+
+
 def _told(name: str, layers: Iterable[Layer]) -> Iterator[Layer]:
     """Warns at the end of what they have that no vectors are made of."""
     losses = _lamella.ScanLosses()
@@ -153,20 +181,27 @@ def _told(name: str, layers: Iterable[Layer]) -> Iterator[Layer]:
 
 
 def _scan_support(
-    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, stack: Optional[Stack]
+    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, source: Iterable[Layer]
 ) -> Generator[ScanLayer, None, None]:
+    stack = source if isinstance(source, Stack) else None
     exposures = tuple(_lamella.support_exposures(strategy, part))
     for layer in layers:
         yield _scan_layer(layer, exposures, _lamella.scan_support(layer, strategy, stack))
 
 
 def _scan(
-    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, stack: Optional[Stack]
+    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, source: Iterable[Layer]
 ) -> Generator[ScanLayer, None, None]:
+    stack = source if isinstance(source, Stack) else None
     exposures = tuple(_lamella.exposures(strategy, part))
-    below: Deque[Layer] = deque(maxlen=strategy.downskin.layers)
+    wanted = strategy.downskin.layers, strategy.upskin.layers
+    # Those that iter_layers left out tell what is skin, too.
+    beneath, on_top = source._beside(*wanted) if isinstance(source, LayerStream) and any(wanted) else ([], [])
+    end = on_top[0] if on_top else None
+    layers = chain(layers, on_top)
+    below: Deque[Layer] = deque(beneath, maxlen=strategy.downskin.layers)
     coming: Deque[Layer] = deque(islice(layers, 1 + strategy.upskin.layers))
-    while coming:
+    while coming and coming[0] is not end:
         layer = coming.popleft()
         scanned = _lamella.scan(layer, list(reversed(below)), list(coming), strategy, stack)
         yield _scan_layer(layer, exposures, scanned)

@@ -155,6 +155,11 @@ def test_scan_vectors_keep_their_parameters(program, jobs):
         assert (jobs / name).read_bytes() == (jobs / "expected.ovf").read_bytes()
     with pytest.raises(lamella.UsageError, match="holds scan vectors"):
         lamella.verify(stack[1:3])
+    text = program.error("scan", jobs / "program.ilt", "-o", jobs / "out.ilt").replace("program.ilt", "converted.ovf")
+    for vectors in [lamella.read(jobs / "converted.ovf"), lamella.read(jobs / "converted.ovf")[1:3]]:
+        with pytest.raises(lamella.InputError) as caught:
+            lamella.scan(vectors)
+        assert str(caught.value) == text
 
 
 def test_scan_vectors_are_written_as_by_the_program(program, rook, jobs):

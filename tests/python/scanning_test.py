@@ -60,6 +60,53 @@ def test_what_no_vectors_are_made_of_is_told(tmp_path):
     ]
 
 
+@pytest.mark.filterwarnings("ignore:.* spots were left out")
+@pytest.mark.parametrize(
+    "options, keywords",
+    [
+        (["--layers", "4:6"], {"layers": (4, 6)}),
+        (["--layers", "38:99"], {"layers": (38, 99)}),
+        (["--z-range", "0:2"], {"z_range": (0, 2)}),
+    ],
+)
+def test_skins_see_the_layers_beside_those_that_are_sliced(program, bodies, tmp_path, options, keywords):
+    box = bodies("box", "--size", 10)
+    skins = {"upskin": {"layers": 3}, "downskin": {"layers": 2}}
+    (tmp_path / "skins.toml").write_text("upskin.layers = 3\ndownskin.layers = 2\n")
+    slicing = ["--layer-height", 0.25, *options, "--strategy", tmp_path / "skins.toml"]
+    program.succeed("slice", box, "-o", tmp_path / "program.ovf", *slicing)
+    stream = lamella.iter_layers(box, 0.25, **keywords)
+    lamella.write(tmp_path / "python.ovf", lamella.scan(stream, skins))
+    assert (tmp_path / "python.ovf").read_bytes() == (tmp_path / "program.ovf").read_bytes()
+
+
+def test_skins_see_the_layers_that_were_taken_from_a_stream(bodies):
+    skins = {"downskin": {"layers": 2}}
+    stream = lamella.iter_layers(bodies("box", "--size", 10), 0.25)
+    everything = list(lamella.scan(lamella.slice(bodies("box", "--size", 10), 0.25), skins))
+    next(stream)
+    assert list(lamella.scan(stream, skins)) == everything[1:]
+
+
+@pytest.mark.filterwarnings("error")
+def test_skins_at_the_ends_of_a_piece_of_a_part_are_warned_of(bodies, tmp_path):
+    box = bodies("box", "--size", 10)
+    stack = lamella.slice(box, 0.25)
+    lamella.write(tmp_path / "box.json", stack)
+    below, above = {"downskin": {"layers": 1}}, {"upskin": {"layers": 1}}
+    for middle in [stack[4:6], lamella.slice(box, 0.25, layers=(4, 6)), lamella.slice(box, 0.25, z_range=(1, 1.5)),
+                   pickle.loads(pickle.dumps(stack[4:6])), lamella.read(tmp_path / "box.json")[4:6]]:  # fmt: skip
+        for strategy, sides in [(below, "below"), (above, "above"), ({**below, **above}, "below and above")]:
+            with pytest.warns(lamella.DefectWarning, match=f"^layers: those {sides} are not in the stack"):
+                lamella.scan(middle, strategy)
+        lamella.scan(middle)
+        lamella.scan(middle, {**below, **above}, support=True)
+    for whole in [stack, lamella.slice(box, 0.25, layers=(0, 999)), lamella.Stack(list(stack[4:6]))]:
+        lamella.scan(whole, {**below, **above})
+    lamella.scan(stack[:4], below)
+    lamella.scan(stack[4:], above)
+
+
 def test_hatch_lines_are_those_that_shapely_cuts():
     shapely = pytest.importorskip("shapely.geometry")
     strategy = lamella.ScanStrategy()
@@ -292,6 +339,7 @@ def test_names_need_not_be_utf_8():
     strategy = {"hatch": {"parameters": "caf\udce9"}, "parameters": {"caf\udce9": {"power_w": 7}}}
     (layer,) = lamella.scan([square(10)], strategy, "a\udcff")
     exposure = layer.exposures[0]
+    assert next(lamella.scan([square(10)], part="")).exposures[0].part == "part"
     assert (exposure.part, exposure.parameters.name) == ("a\udcff", "caf\udce9")
     assert repr(exposure) == "<lamella.Exposure a\udcff core hatch>"
 
