@@ -19,7 +19,7 @@ from matplotlib.pyplot import subplots  # noqa: E402
 def main(mesh, layer_height, picture):
     measured = [(layer.z, layer.area, layer.thickness) for layer in lamella.iter_layers(mesh, float(layer_height))]
     z, area, thickness = np.array(measured).T
-    steepest = np.abs(np.diff(area)).argmax()
+    steepest = np.abs(np.diff(area, append=area[-1])).argmax()
     figure, axes = subplots()
     axes.step(z, area, where="mid")
     axes.set(xlabel="z in mm", ylabel="area in mm²", title=f"volume {(area * thickness).sum():.1f} mm³")

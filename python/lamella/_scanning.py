@@ -40,6 +40,15 @@ class ScanLayer:
     #: Rings of the layer that are thinner than the beam's offsets: they have no vectors.
     thin_rings: int = 0
 
+    def __post_init__(self) -> None:
+        if len(self.layers) != len(self.exposures):
+            raise UsageError(
+                f"layers: expected {len(self.exposures)}, one for each exposure, found {len(self.layers)}"
+            )
+        for layer in self.layers:
+            if (layer.index, layer.z, layer.bottom, layer.top) != (self.index, self.z, self.bottom, self.top):
+                raise UsageError("layers: index, z, bottom and top must be those of the scan layer")
+
     def __iter__(self) -> Iterator[Tuple[Exposure, Layer]]:
         return zip(self.exposures, self.layers)
 
@@ -237,8 +246,8 @@ def _toml(path: str) -> Dict[str, Any]:
     except ImportError as error:
         raise ImportError("strategies as files need Python 3.11; a dict of the same tables will do") from error
     try:
-        with open(path, "rb") as file:
-            return tomllib.load(file)
+        with open(path, encoding="utf-8-sig", newline="") as file:  # a byte order mark is left out
+            return tomllib.loads(file.read())
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from error
     except ValueError as error:
@@ -290,7 +299,9 @@ def _assign(name: str, rule: Any, table: Any, sets: Optional[Dict[str, Parameter
             raise UsageError(f"{name}: there is no {key}; {hint}")
         place = f"{before}{key}"
         if key == "parameters" and sets is not None:
-            if check.text(place, value) not in sets:
+            if not check.text(place, value):
+                raise UsageError(f"{place}: expected the name of parameters, found an empty text")
+            if value not in sets:
                 raise UsageError(f"{place}: there are no parameters {value}; there are {', '.join(sets)}")
             rule.parameters = sets[value]
         elif isinstance(getattr(rule, key), (ContourRule, HatchRule, SkinRule, SupportRule)):

@@ -53,6 +53,7 @@ def test_area_over_height(rook, tmp_path):
     assert (layers, volume) == (len(stack), pytest.approx(stack.volume, abs=1e-3))
     assert step == pytest.approx(stack.z[np.abs(np.diff(stack.area)).argmax()], abs=1e-3)
     assert imread(picture).std() > 0
+    assert numbers(run("area_over_height.py", rook, 50, picture))[0] == 1
 
 
 def test_scan_vectors_are_drawn(bodies, tmp_path):

@@ -1,6 +1,7 @@
 """Scan vectors in Python."""
 
 import copy
+import dataclasses
 import pickle
 
 import numpy as np
@@ -213,7 +214,9 @@ def test_strategies_come_from_files_and_dicts(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text('[hatch]\ndistance = 0.5\nparameters = "fast"\n[parameters.fast]\nspeed_mm_s = 1500\n')
     tables = {"hatch": {"distance": 0.5, "parameters": "fast"}, "parameters": {"fast": {"speed_mm_s": 1500}}}
-    for strategy in (path, str(path), tables):
+    marked = tmp_path / "marked.toml"
+    marked.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().replace(b"\n", b"\r\n"))
+    for strategy in (path, str(path), tables, marked):
         (layer,) = lamella.scan([square(10)], strategy)
         assert layer.exposures[0].parameters.name == "fast"
         assert layer.exposures[0].parameters.speed_mm_s == 1500
@@ -226,6 +229,7 @@ def test_strategies_come_from_files_and_dicts(tmp_path):
     "tables, text",
     [
         ({"hatch": {"distnace": 1}}, "strategy: hatch: there is no distnace; did you mean distance?"),
+        ({"hatch": {"parameters": ""}, "parameters": {"": {}}}, "strategy: hatch.parameters: expected the name of parameters, found an empty text"),
         ({"hatches": {}}, "strategy: there is no hatches; did you mean hatch?"),
         ({"hatch": {"distance": 0}}, "`hatch.distance` is 0, but has to be above 0"),
         ({"hatch": {"pattern": "zigzag"}}, 'hatch.pattern: "zigzag" is none of "lines", "meander", "stripes", "chessboard" and'),
@@ -342,6 +346,14 @@ def test_names_need_not_be_utf_8():
     assert next(lamella.scan([square(10)], part="")).exposures[0].part == "part"
     assert (exposure.part, exposure.parameters.name) == ("a\udcff", "caf\udce9")
     assert repr(exposure) == "<lamella.Exposure a\udcff core hatch>"
+
+
+def test_scan_layers_have_a_layer_for_each_exposure():
+    (layer,) = lamella.scan([square(10)])
+    with pytest.raises(lamella.UsageError, match="^layers: expected 2, one for each exposure, found 1$"):
+        dataclasses.replace(layer, layers=layer.layers[:1])
+    with pytest.raises(lamella.UsageError, match="^layers: index, z, bottom and top must be those of the scan layer$"):
+        dataclasses.replace(layer, layers=(layer.layers[0], square(10, z=9)))
 
 
 def test_files_of_pyslm_find_what_they_look_for():
