@@ -41,13 +41,21 @@ Option scale_option(std::optional<std::vector<double>>& target) {
                });
 }
 
-/// Whether both are one file, which need not exist: names can be written in several ways.
+/// The only name of a file, which need not exist. Where the system does not tell, such as in a folder that
+/// may not be searched, the name as it was given, without "." and "..".
+std::filesystem::path place_of(const std::string& name) {
+    std::error_code error;
+    std::filesystem::path path = std::filesystem::absolute(name, error);
+    if (error)
+        path = name;
+    const std::filesystem::path place = std::filesystem::weakly_canonical(path, error);
+    return error ? path.lexically_normal() : place;
+}
+
+/// Whether both are one file: names can be written in several ways.
 bool are_same(const std::string& first, const std::string& second) {
-    namespace fs = std::filesystem;
     std::error_code ignored;
-    return fs::weakly_canonical(fs::absolute(first, ignored), ignored) ==
-               fs::weakly_canonical(fs::absolute(second, ignored), ignored) ||
-           fs::equivalent(first, second, ignored);
+    return place_of(first) == place_of(second) || std::filesystem::equivalent(first, second, ignored);
 }
 
 } // namespace

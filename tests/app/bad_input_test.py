@@ -5,7 +5,7 @@ import resource
 import subprocess
 import unittest
 
-from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main
+from program import PROGRAM, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main
 
 
 class BadInput(ProgramTest):
@@ -186,6 +186,24 @@ class BadInput(ProgramTest):
         self.fail_with(2, "overwrite", "slice", "box.stl", "-o", "twin.cli")
         self.fail_with(2, "overwrite", "slice", "box.stl", "--stats", "box.stl")
         self.assertEqual(self.bytes_of("box.stl"), before)
+
+    def test_names_that_the_system_cannot_follow_are_not_one_file(self):
+        inner = self.path("locked/inner")
+        inner.mkdir(parents=True)
+        self.box("locked/inner/box.stl")
+        for path in [self.folder, inner]:
+            path.chmod(0o777)
+        self.addCleanup(self.path("locked").chmod, 0o700)
+        self.path("locked").chmod(0o700)
+        # Whoever is not root locks his own folder once the program's process is in it.
+        keywords = {"cwd": inner, **(UNPRIVILEGED or {"preexec_fn": lambda: os.chmod("..", 0)})}
+        for arguments in [["slice", "box.stl", "-o", "x.cli", "--stats", "x.json"], ["convert", "x.cli", "y.svg"]]:
+            self.assertEqual(self.run_program(*arguments, **keywords).err, "")
+        result = self.run_program("slice", "box.stl", "-o", "../inner/box.stl", "--format", "cli", **keywords)
+        self.assertEqual(result.code, 2)
+        self.assertIn("overwrite", result.err)
+        self.path("locked").chmod(0o700)
+        self.fail_with(3, "too long", "slice", "locked/" + "a" * 256 + ".stl", "-o", "b" * 256 + ".cli")
 
     def test_a_failed_run_leaves_an_older_result_alone(self):
         self.write("out.cli", "older result")

@@ -9,7 +9,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main, open_box
+from program import PROGRAM, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, open_box
 
 
 class Batch(ProgramTest):
@@ -212,14 +212,13 @@ class Batch(ProgramTest):
         self.folder.chmod(0o777)
         self.path("parts/locked").chmod(0)
         self.addCleanup(self.path("parts/locked").chmod, 0o700)
-        unprivileged = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
-        records = self.batch(7, "parts", "-o", "out", "--format", "cli", **unprivileged)
+        records = self.batch(7, "parts", "-o", "out", "--format", "cli", **UNPRIVILEGED)
         self.assertEqual([(r["path"], r["ok"]) for r in records],
                          [("parts/a/box00.stl", True), ("parts/locked", False), ("parts/z/box00.stl", True)])
         self.assertEqual(records[1]["error"]["text"], "parts/locked: no permission to read this file")
         self.path("parts").chmod(0)
         self.addCleanup(self.path("parts").chmod, 0o700)
-        result = self.run_program("slice", "--batch", "parts", "-o", "out", "--format", "cli", **unprivileged)
+        result = self.run_program("slice", "--batch", "parts", "-o", "out", "--format", "cli", **UNPRIVILEGED)
         self.assertEqual(result.code, 3)
         self.assertIn("parts: the folder cannot be listed", result.err)
 

@@ -12,6 +12,8 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 PROGRAM = os.environ.get("LAMELLA_PROGRAM", str(SOURCE / "build" / "lamella"))
+# How a process is started that permissions hold for.
+UNPRIVILEGED = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
 
 
 class Result:
@@ -38,8 +40,8 @@ class ProgramTest(unittest.TestCase):
 
     def run_program(self, *arguments, stdin=b"", **keywords):
         command = [PROGRAM] + [str(a) for a in arguments]
-        return Result(subprocess.run(command, cwd=self.folder, input=stdin, capture_output=True, timeout=240,
-                                     **keywords))
+        return Result(subprocess.run(command, input=stdin, capture_output=True, timeout=240,
+                                     **{"cwd": self.folder, **keywords}))
 
     def succeed(self, *arguments, **keywords):
         result = self.run_program(*arguments, **keywords)
