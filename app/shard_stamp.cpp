@@ -15,6 +15,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <variant>
 
 namespace lamella::app {
@@ -48,13 +50,15 @@ Json input_json(const PlateInput& input, const Execution& execution) {
 Json read_stamp(const std::string& output) {
     const std::string path = stamp_path(output);
     Json stamp = Json::parse(read_text_file(path), nullptr, false);
-    if (!stamp.is_object() || !stamp.contains("origin") || !stamp.contains("output"))
+    if (!stamp.is_object() || !stamp.contains("output") || !stamp.value("origin", Json()).is_object())
         throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard", path));
     return stamp;
 }
 
 Json output_json(const std::string& path, const Execution& execution) {
-    return {{"bytes", std::filesystem::file_size(path)}, {"hash", hash_text(path, execution)}};
+    std::string hash = hash_text(path, execution); // which fails where the file cannot be read
+    std::error_code ignored;
+    return {{"bytes", std::filesystem::file_size(path, ignored)}, {"hash", std::move(hash)}};
 }
 
 /// The same of a file beside it; null where none was asked for, and for pipes and devices, which keep
@@ -74,13 +78,21 @@ struct Stamped {
 
 Stamped stamped(const std::string& path, const Execution& execution) {
     Stamped file{path, read_stamp(path), 0, 0};
+    std::uint64_t all = 0;
     try {
         file.begin = file.stamp.at("layers").at(0).get<std::uint64_t>();
         file.end = file.stamp.at("layers").at(1).get<std::uint64_t>();
-        static_cast<void>(file.stamp.at("of").get<std::uint64_t>());
+        all = file.stamp.at("of").get<std::uint64_t>();
     } catch (const Json::exception&) {
         throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard", stamp_path(path)));
     }
+    std::error_code ignored;
+    if (std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found)
+        throw Error(
+            ErrorKind::input,
+            fmt::format("{}: there is no such file, only its stamp: layers {} to {} of {} are missing; "
+                        "slice this shard again",
+                        path, file.begin, file.end - 1, all));
     if (file.stamp["output"] != output_json(path, execution))
         throw Error(ErrorKind::input,
                     fmt::format("{}: is not as it was when its stamp {} was written; slice this shard again",
@@ -144,7 +156,8 @@ void stamp_shard(const FileJob& job, const std::string& stats, const FileResult&
 
 void check_stamps(const std::vector<std::string>& paths, const Execution& execution) {
     const auto has_stamp = [](const std::string& path) {
-        return std::filesystem::exists(stamp_path(path));
+        std::error_code ignored; // where nobody can look, or the name would be too long, there is none
+        return std::filesystem::exists(stamp_path(path), ignored);
     };
     if (std::none_of(paths.begin(), paths.end(), has_stamp))
         return;

@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 
-from program import PROGRAM, SOURCE, ProgramTest, binary_stl, box_triangles, main, open_box
+from program import PROGRAM, SOURCE, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, open_box
 
 CLUSTER = SOURCE / "examples" / "cluster"
 
@@ -150,6 +150,33 @@ class Shard(ProgramTest):
         self.assertEqual(self.run_program(*shard, "/dev/full").code, 6)
         self.assertNotIn("a.cli.shard", self.listing())
         self.assertIn("sliced", self.succeed(*shard, "a.json").text)
+
+    def test_merge_tells_what_is_missing_or_cannot_be_read(self):
+        self.lattice()
+        a, b = self.slice_all(2, "cli")
+        layers, whole = self.stamp(b), self.bytes_of(b)
+        self.path(b).unlink()
+        begin, end = layers["layers"]
+        self.fail_with(3, f"{b}: there is no such file.* layers {begin} to {end - 1} of {layers['of']} are missing", "merge", "m.cli", a, b)
+        self.write(b, whole)
+        for origin in ["x", None, [1]]:
+            self.write(b + ".shard", json.dumps({**layers, "origin": origin}))
+            self.fail_with(3, f"{b}.shard: is no stamp", "merge", "m.cli", a, b)
+        for name in ["x" * 246 + ".cli", "x" * 251 + ".cli"]:  # a stamp would have too long a name
+            self.path(a).rename(self.path(name))
+            self.path(a + ".shard").unlink(missing_ok=True)
+            self.path(b + ".shard").unlink(missing_ok=True)
+            self.succeed("merge", "m.cli", name, b)
+            self.path(name).rename(self.path(a))
+        locked = self.path("locked")
+        locked.mkdir()
+        self.path(b).rename(locked / b)
+        self.folder.chmod(0o777)
+        locked.chmod(0)
+        self.addCleanup(locked.chmod, 0o700)
+        result = self.run_program("merge", "n.cli", a, f"locked/{b}", **UNPRIVILEGED)
+        self.assertEqual(result.code, 3)
+        self.assertIn("no permission", result.err)
 
     def test_merge_refuses_what_does_not_belong_together(self):
         self.lattice()
