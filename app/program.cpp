@@ -1,6 +1,7 @@
 #include "program.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/execution.hpp"
 #include "lamella/core/version.hpp"
 
 #include "command_line.hpp"
@@ -17,8 +18,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <system_error>
@@ -40,7 +43,8 @@ namespace {
     throw Error(ErrorKind::usage, fmt::format("there is no command \"{}\"; lamella --help lists them", word));
 }
 
-int run(std::vector<Command>& commands, const std::vector<std::string>& words, Messages& messages) {
+int run(std::vector<Command>& commands, const std::vector<std::string>& words, Messages& messages,
+        const CancelFlag& cancel) {
     if (words.empty() || words[0] == "--help" || words[0] == "-h") {
         messages.result(program_help(commands));
         return 0;
@@ -63,8 +67,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
     case Wish::run:
         break;
     }
-    const Interrupt interrupt(messages);
-    return command->run({*command, messages, &interrupt.flag()});
+    return command->run({*command, messages, &cancel});
 }
 
 } // namespace
@@ -74,15 +77,21 @@ int run_program(std::vector<Command> commands, const std::vector<std::string>& w
     Messages messages;
     if (!speaks)
         messages.set_style(ProgressStyle::silent);
+    // From the first file that is opened to the last word: a pipe may keep the program waiting at any of
+    // them.
+    std::optional<Interrupt> interrupt;
+    int code = 0;
     try {
-        const int code = run(commands, words, messages);
+        interrupt.emplace(messages);
+        code = run(commands, words, messages, interrupt->flag());
         finish_printing();
-        return code;
     } catch (...) {
         const Failure failure = failure_of(std::current_exception());
         messages.error(failure.text, failure.exit_code);
-        return failure.exit_code;
+        code = failure.exit_code;
+        static_cast<void>(std::fflush(stdout)); // later nobody would hear a signal; it has failed already
     }
+    return code;
 }
 
 } // namespace lamella::app

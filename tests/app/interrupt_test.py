@@ -49,12 +49,15 @@ class Interrupt(ProgramTest):
             json.loads(lines.readline())
         self.fill(error_write)
         os.close(error_write)
+        self.wait_until_stuck(process)
+        return process
+
+    def wait_until_stuck(self, process):
         before, now = -1, self.processor_ticks(process)
         while before != now:
             time.sleep(0.5)
             before, now = now, self.processor_ticks(process)
         self.assertIsNone(process.poll())
-        return process
 
     @staticmethod
     def fill(pipe):
@@ -83,6 +86,43 @@ class Interrupt(ProgramTest):
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
+
+    def test_whoever_does_not_read_what_is_told_keeps_no_run_from_ending(self):
+        self.box()
+        reading, writing = os.pipe()
+        self.addCleanup(os.close, reading)
+        self.addCleanup(os.close, writing)
+        self.fill(writing)
+        missing = ["slice", "missing.stl", "-o", "x.cli", "--progress", "json"]
+        for arguments, stuck in [(["info", "box.stl"], "stdout"), (["slice", "box.stl", "-o", "box.cli"], "stdout"),
+                                 (["--help"], "stdout"), (missing, "stderr")]:
+            with self.subTest(arguments):
+                process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder,
+                                           **{"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stuck: writing})
+                self.addCleanup(process.kill)
+                self.wait_until_it_hears(process, signal.SIGTERM)
+                self.wait_until_stuck(process)
+                process.send_signal(signal.SIGTERM)
+                self.assertEqual(process.wait(timeout=60), 130)
+
+    def test_waiting_for_a_configuration_file_can_be_stopped(self):
+        os.mkfifo(self.path("pipe"))
+        process = self.start("slice", "box.stl", "-o", "box.cli", "--config", "pipe")
+        self.wait_until_it_hears(process, signal.SIGTERM)
+        process.send_signal(signal.SIGTERM)
+        self.assertIn(b"cancelled", process.communicate(timeout=60)[1])
+        self.assertEqual(process.returncode, 130)
+
+    def wait_until_it_hears(self, process, number):
+        """The program blocks the signals that it waits for."""
+        end = time.monotonic() + 60
+        while time.monotonic() < end and process.poll() is None:
+            status = self.path(f"/proc/{process.pid}/status").read_text()
+            blocked = next(line for line in status.splitlines() if line.startswith("SigBlk:"))
+            if int(blocked.split()[1], 16) >> (number - 1) & 1:
+                return
+            time.sleep(0.01)
+        self.fail("it hears no signal")
 
     def test_waiting_for_standard_input_can_be_stopped(self):
         process = self.start("slice", "-", "-o", "out.cli")
