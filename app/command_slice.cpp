@@ -338,22 +338,6 @@ std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& re
     return warnings;
 }
 
-/// What `work(execution)` returns, unless --timeout ends it: then an error that begins with the name.
-template <class Work>
-auto in_time(const SliceArguments& arguments, const std::string& name, const Messages& messages,
-             const Execution& execution, const Work& work) {
-    if (!arguments.timeout)
-        return work(execution);
-    Deadline deadline(*arguments.timeout, one_line(input_name(name)), messages, execution);
-    try {
-        return work(deadline.execution());
-    } catch (const Error& error) {
-        if (error.kind() == ErrorKind::cancelled)
-            deadline.check();
-        throw;
-    }
-}
-
 /// What the files and their layers say.
 std::vector<std::string> all_warnings(const FileJob& job, const FileResult& result) {
     std::vector<std::string> warnings;
@@ -392,27 +376,26 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     arguments.output = items.front().output;
     arguments.stats = items.front().stats;
     // Lists and strategies may come from pipes.
+    const Execution execution = arguments.run.execution(context);
     FileJob model =
-        in_time(arguments, arguments.batch.source, context.messages, arguments.run.execution(context),
-                [&](const Execution&) { return make_job(arguments); });
+        Deadline(arguments.timeout, one_line(input_name(arguments.batch.source)), context.messages, execution)
+            .run([&](const Execution&) { return make_job(arguments); });
     check_conflict(model.shard.has_value(), true, "--batch and --shard", "share out the list instead");
     model.layer_statistics = true; // for the hashes
     Messages unheard;              // what becomes of a file is told by its record
     unheard.set_style(ProgressStyle::silent);
-    const SliceItem slice = [&](const BatchItem& item, const Execution& execution) {
+    const SliceItem slice = [&](const BatchItem& item, const Execution& given) {
         FileJob job = model;
         job.inputs.front().path = item.input;
         job.output = item.output;
-        BatchResult result{in_time(arguments, item.input, unheard, execution,
-                                   [&](const Execution& run) { return slice_file(job, run); }),
-                           {},
-                           {}};
+        Deadline deadline(arguments.timeout, one_line(item.input), unheard, given);
+        BatchResult result{deadline.run([&](const Execution& run) { return slice_file(job, run); }), {}, {}};
         result.warnings = all_warnings(job, result.file);
         if (!item.stats.empty())
             result.stats = json_text(stats_json(context.command, job, result.file));
         return result;
     };
-    return run_batch(items, arguments.batch, slice, arguments.run.execution(context), context.messages);
+    return run_batch(items, arguments.batch, slice, execution, context.messages);
 }
 
 /// They are written when all else is done, so nobody shall slice for hours what cannot be told then. All
@@ -454,8 +437,10 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         check_place_of_stats(arguments, processes);
         return slice_file(job, run, processes);
     };
-    const std::optional<FileResult> outcome =
-        in_time(arguments, arguments.inputs.front().path, context.messages, execution, slice);
+    Deadline deadline(arguments.timeout, one_line(input_name(arguments.inputs.front().path)),
+                      context.messages, execution);
+    const std::optional<FileResult> outcome = deadline.run(slice);
+    deadline.note_output();
     if (!outcome) {
         context.messages.written(fmt::format("{}: shard {}/{} is finished\n", one_line(job.output),
                                              job.shard->number, job.shard->count),
@@ -482,6 +467,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         stamp_shard(job, arguments.stats, result, origin, execution);
     const bool to_output = arguments.output == "-" || arguments.stats == "-" || arguments.report == "-";
     context.messages.written(summary(job, result), to_output ? "-" : arguments.output);
+    finish_printing(); // while the deadline counts
     return 0;
 }
 

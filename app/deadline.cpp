@@ -1,7 +1,5 @@
 #include "deadline.hpp"
 
-#include "lamella/core/error.hpp"
-
 #include "crash.hpp"
 #include "numbers.hpp"
 
@@ -16,16 +14,21 @@ namespace lamella::app {
 namespace {
 
 constexpr int limit_exit_code = 5;
-// Reading may wait for standard input for ever. Later there are gigabytes to let go of, and a temporary file.
-constexpr std::chrono::milliseconds patience_reading{700};
+// Reading may wait for standard input for ever, and so may telling for somebody to read. Between them there
+// are gigabytes to let go of, and a temporary file.
+constexpr std::chrono::milliseconds short_patience{700};
 constexpr std::chrono::seconds patience{20};
 constexpr double longest_seconds = 1e9; // some thirty years: clocks can count further
 
 } // namespace
 
-Deadline::Deadline(double seconds, std::string what, const Messages& messages, const Execution& execution)
+Deadline::Deadline(std::optional<double> seconds, std::string what, const Messages& messages,
+                   const Execution& execution)
     : seconds_(seconds), what_(std::move(what)), messages_(messages), given_(execution),
-      stop_(execution.cancel), watcher_([this] { watch(); }) {}
+      stop_(execution.cancel) {
+    if (seconds_)
+        watcher_ = std::thread([this] { watch(); });
+}
 
 Deadline::~Deadline() {
     {
@@ -33,10 +36,18 @@ Deadline::~Deadline() {
         ending_ = true;
     }
     done_.notify_all();
-    watcher_.join();
+    if (watcher_.joinable())
+        watcher_.join();
+}
+
+void Deadline::note_output() {
+    const std::lock_guard lock(mutex_);
+    told_ = true;
 }
 
 Execution Deadline::execution() {
+    if (!seconds_)
+        return given_;
     Execution execution = given_;
     execution.progress = [this](const Progress& progress) {
         {
@@ -52,6 +63,8 @@ Execution Deadline::execution() {
 }
 
 void Deadline::check() const {
+    if (!seconds_)
+        return;
     // Of several processes of one run, another one may have come to its end a moment sooner.
     constexpr std::chrono::seconds skew{1};
     std::unique_lock lock(mutex_);
@@ -65,7 +78,7 @@ void Deadline::watch() {
         return ending_;
     };
     std::unique_lock lock(mutex_);
-    const std::chrono::duration<double> time(std::min(seconds_, longest_seconds));
+    const std::chrono::duration<double> time(std::min(*seconds_, longest_seconds));
     if (done_.wait_for(lock, time, is_ending))
         return;
     expired_ = true;
@@ -74,12 +87,14 @@ void Deadline::watch() {
     stop_.request();
     lock.lock();
     const bool reading = !started_ || (last_.stage == Stage::read && last_.done < last_.total);
-    if (!done_.wait_for(lock, reading ? patience_reading : patience, is_ending))
+    if (!done_.wait_for(lock, reading || told_ ? short_patience : patience, is_ending))
         leave_at_once(messages_.last_words(message(), limit_exit_code), limit_exit_code);
 }
 
 std::string Deadline::message() const {
-    std::string text = fmt::format("{}: stopped after {} s (--timeout)", what_, brief(seconds_));
+    std::string text = fmt::format("{}: stopped after {} s (--timeout)", what_, brief(*seconds_));
+    if (told_)
+        return text + " while figures were written, after all layers";
     if (started_) {
         const double part =
             last_.total == 0 ? 1 : static_cast<double>(last_.done) / static_cast<double>(last_.total);

@@ -2,12 +2,14 @@
 
 // --timeout: an end to a computation that takes too long.
 
+#include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
 
 #include "messages.hpp"
 
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -17,23 +19,38 @@ namespace lamella::app {
 /// program is ended a short while after with exit code 5.
 class Deadline {
   public:
-    /// `what` stands at the begin of the message: the file that is worked on.
-    Deadline(double seconds, std::string what, const Messages& messages, const Execution& execution);
+    /// Without `seconds` there is no end. `what` stands at the begin of the message: the file that is worked
+    /// on.
+    Deadline(std::optional<double> seconds, std::string what, const Messages& messages,
+             const Execution& execution);
     ~Deadline();
     Deadline(const Deadline&) = delete;
     Deadline& operator=(const Deadline&) = delete;
 
-    /// The execution given, stopped by it or by the deadline. Not to be used after the deadline is gone.
-    [[nodiscard]] Execution execution();
+    /// What `work(execution)` returns, with the execution given, stopped by it or by the deadline. Where that
+    /// was the deadline, Error{limit} says how far the computation came.
+    template <class Work>
+    auto run(const Work& work) {
+        try {
+            return work(execution());
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled)
+                check();
+            throw;
+        }
+    }
 
-    /// Throws Error{limit} that says how far the computation came, if it was the deadline that stopped it.
-    void check() const;
+    /// The output has its name: what is still to come is to tell of it. Where the time is up before that is
+    /// done, the program is ended as if it were stuck.
+    void note_output();
 
   private:
+    [[nodiscard]] Execution execution();
+    void check() const;
     void watch();
     [[nodiscard]] std::string message() const;
 
-    double seconds_;
+    std::optional<double> seconds_;
     std::string what_;
     const Messages& messages_;
     const Execution& given_;
@@ -42,6 +59,7 @@ class Deadline {
     mutable std::condition_variable done_; ///< or expired
     Progress last_;
     bool started_ = false; ///< `last_` is a report
+    bool told_ = false;    ///< only telling is left
     bool ending_ = false;
     bool expired_ = false;
     std::thread watcher_;

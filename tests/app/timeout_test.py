@@ -66,6 +66,27 @@ class Timeout(ProgramTest):
                 with open(self.path("pipe"), "r+b", buffering=0):  # the other end is open, and nothing comes
                     is_stopped(option)
 
+    def test_whoever_does_not_take_the_figures_is_not_waited_for(self):
+        self.box()
+        os.mkfifo(self.path("pipe"))
+        reading, writing = os.pipe()
+        self.addCleanup(os.close, reading)
+        self.addCleanup(os.close, writing)
+        os.set_blocking(writing, False)
+        with open(writing, "wb", buffering=0, closefd=False) as pipe:
+            while pipe.write(b"."):
+                pass
+        os.set_blocking(writing, True)
+        for more, stdout in [(["--stats", "pipe"], subprocess.DEVNULL), (["--stats", "-"], writing), ([], writing)]:
+            with self.subTest(more):
+                process = subprocess.Popen([PROGRAM, "slice", "box.stl", "-o", "box.cli", "--timeout", "2", *more],
+                                           cwd=self.folder, stdout=stdout, stderr=subprocess.PIPE)
+                self.addCleanup(process.kill)
+                err = process.communicate(timeout=60)[1].decode()
+                self.assertEqual(process.returncode, 5, err)
+                self.assertIn("box.stl: stopped after 2 s (--timeout) while figures were written, after all layers", err)
+                self.path("box.cli").unlink()
+
     def test_progress_as_json_ends_with_the_error(self):
         self.succeed("make", "rook")
         result = self.run_program("slice", "rook.stl", "-o", "rook.cli", "--layer-height", "0.0001", "--engine",
