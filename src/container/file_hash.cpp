@@ -35,6 +35,7 @@ std::uint64_t file_hash(const std::string& path, const Execution& execution) {
         XXH3_64bits_update(state.get(), piece.data(), piece.size());
         release(source, piece);
     }
+    check_length(source);
     return XXH3_64bits_digest(state.get());
 }
 

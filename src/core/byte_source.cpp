@@ -44,6 +44,11 @@ namespace {
     }
 }
 
+[[noreturn]] void fail_cut_off(const ByteSource& source, std::uint64_t end) {
+    fail(source.name, "was cut off while it was read: it had " + std::to_string(source.bytes.size()) +
+                          " bytes, and ends after " + std::to_string(end) + " now");
+}
+
 /// A file descriptor that is closed at the end, but for one that was lent (standard input).
 class Descriptor {
   public:
@@ -234,13 +239,19 @@ void copy_out(const ByteSource& source, std::uint64_t place, std::span<std::byte
         if (got < 0 && errno != EINTR)
             fail_with_errno(source.name, errno);
         if (got == 0)
-            fail(source.name, "was cut off while it was read: it had " + std::to_string(source.bytes.size()) +
-                                  " bytes, and ends after " + std::to_string(place) + " now");
+            fail_cut_off(source, place);
         if (got > 0) {
             place += static_cast<std::uint64_t>(got);
             to = to.subspan(static_cast<std::size_t>(got));
         }
     }
+}
+
+void check_length(const ByteSource& source) {
+    struct stat status {};
+    if (source.mapped && source.descriptor >= 0 && fstat(source.descriptor, &status) == 0 &&
+        static_cast<std::uint64_t>(status.st_size) < source.bytes.size())
+        fail_cut_off(source, static_cast<std::uint64_t>(status.st_size));
 }
 
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {

@@ -45,6 +45,11 @@ struct ByteSource {
 /// at once. Throws Error{input} when the file has become shorter.
 void copy_out(const ByteSource& source, std::uint64_t place, std::span<std::byte> to);
 
+/// To be called by who has read the bytes. Throws Error{input} when their file has become shorter meanwhile:
+/// in the page of its new end, bytes that are gone read as zeros, without any signal. Costs a question to the
+/// system; without a descriptor, nobody can tell.
+void check_length(const ByteSource& source);
+
 /// Lets go of the memory that a stretch of mapped bytes takes; when touched again, they come from the file
 /// again. So a file larger than memory can be gone through. Does nothing for bytes that are not mapped.
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept;

@@ -279,6 +279,7 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
             out.append(piece);
             release(file.source, std::as_bytes(std::span(piece)));
         }
+        check_length(file.source);
         if (i + 1 == shards.size())
             out.append(file.tail);
     }

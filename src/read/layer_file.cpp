@@ -64,7 +64,9 @@ LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions&
     ReadLimits limits(source.name, options);
     if (!source.mapped)
         limits.add_bytes(source.bytes.size());
-    return read_source(source, options, limits, execution);
+    LayerFile file = read_source(source, options, limits, execution);
+    check_length(source);
+    return file;
 }
 
 LayerStack LayerFile::merged() const {

@@ -29,6 +29,7 @@ MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& opt
                             const Execution& execution) {
     const MeshFormatRow& format = mesh_format_of(source, options);
     MeshFile file = format.read(source, options, execution);
+    check_length(source);
     if (file.format.empty()) // STL says which of its two forms it has
         file.format = format.extension;
     return file;
@@ -78,6 +79,7 @@ MeshFile MeshInput::stream(const TriangleSink& sink, const MeshReadOptions& opti
             ErrorKind::usage,
             fmt::format("{}: only STL files that are not packed can be read batch by batch", source_->name));
     MeshFile file = mesh_format_of(*source_, options).stream(*source_, sink, options, execution, share);
+    check_length(*source_);
     file.path = path_;
     return file;
 }

@@ -137,6 +137,16 @@ TEST_F(ByteSourceTest, SaysThatAFileWasCutOffWhileItWasRead) {
     EXPECT_NE(error.find("it had 100000 bytes, and ends after 4000 now"), std::string::npos) << error;
 }
 
+TEST_F(ByteSourceTest, SaysThatTheLastPageOfAFileWasCutOff) {
+    const std::string file = write("part", some_text(100'000));
+    const ByteSource source = open_bytes(file);
+    check_length(source);
+    fs::resize_file(file, 99'990);
+    const std::string error = error_of([&] { check_length(source); });
+    EXPECT_NE(error.find("it had 100000 bytes, and ends after 99990 now"), std::string::npos) << error;
+    check_length(copy_bytes(std::as_bytes(std::span("seven b", 7)), "text"));
+}
+
 TEST_F(ByteSourceTest, CopiesBytesThatAreInMemoryAlready) {
     const ByteSource source = copy_bytes(std::as_bytes(std::span("seven b", 7)), "text");
     std::string copy(3, ' ');
