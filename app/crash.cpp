@@ -2,6 +2,8 @@
 
 #include "lamella/core/whole_file.hpp"
 
+#include "failure.hpp"
+
 #include <poll.h>
 #include <unistd.h>
 
@@ -15,21 +17,31 @@ namespace {
 // A handler of signals can be given nothing, and may ask for no memory.
 std::atomic<ProgressStyle> told_as = ProgressStyle::none;
 
-std::string_view lost_input() noexcept {
-    switch (told_as) {
-    case ProgressStyle::silent:
-        return {};
-    case ProgressStyle::json:
-        return "\n{\"error\":\"a file became shorter while it was read, or its disk "
-               "failed\",\"exit_code\":3}\n";
-    default:
-        return "\nlamella: error: a file became shorter while it was read, or its disk failed\n";
-    }
+struct LastWords {
+    std::string_view for_people; ///< on a line of their own: a bar may stand on this one
+    std::string_view for_programs;
+};
+constexpr LastWords lost_input{
+    "\nlamella: error: a file became shorter while it was read, or its disk failed\n",
+    "{\"error\":\"a file became shorter while it was read, or its disk failed\",\"exit_code\":3}\n"};
+constexpr LastWords time_is_up{
+    "\nlamella: error: the processor time that a process may take is used up (see ulimit -t)\n",
+    "{\"error\":\"the processor time that a process may take is used up (see ulimit "
+    "-t)\",\"exit_code\":5}\n"};
+
+[[noreturn]] void leave_with(const LastWords& words, int exit_code) noexcept {
+    const ProgressStyle style = told_as;
+    leave_at_once(style == ProgressStyle::silent ? std::string_view()
+                  : style == ProgressStyle::json ? words.for_programs
+                                                 : words.for_people,
+                  exit_code);
 }
 
 extern "C" void at_crash(int number) {
     if (number == SIGBUS)
-        leave_at_once(lost_input(), lost_input_exit_code);
+        leave_with(lost_input, lost_input_exit_code);
+    if (number == SIGXCPU && told_as != ProgressStyle::silent)
+        leave_with(time_is_up, limit_exit_code);
     remove_unfinished();
     raise(number); // with its default action again, once this handler is left
 }
@@ -49,7 +61,7 @@ void prepare_for_crashes() noexcept {
     // A reader that went away and a file that grew too large are errors of writing, not ends of the program.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    for (const int number : {SIGBUS, SIGSEGV, SIGILL, SIGFPE, SIGABRT}) {
+    for (const int number : {SIGBUS, SIGSEGV, SIGILL, SIGFPE, SIGABRT, SIGXCPU}) {
         struct sigaction before {};
         if (sigaction(number, nullptr, &before) != 0 || (before.sa_flags & SA_SIGINFO) != 0 ||
             before.sa_handler != SIG_DFL)

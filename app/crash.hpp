@@ -16,7 +16,8 @@ namespace lamella::app {
 /// and a page of an input that is gone, because somebody shortened the file while it was read or its disk
 /// failed, is told as such on standard error and ends the program with the exit code of unreadable inputs.
 /// A pipe without a reader and a file that is too large become errors of writing. Signals that somebody
-/// handles already (such as a sanitizer) are left alone.
+/// handles already (such as a sanitizer) are left alone. Processor time that is used up ends the program with
+/// the exit code of limits; a worker, which tells nobody, ends by that signal.
 void prepare_for_crashes() noexcept;
 
 /// How a lost page is told from now on; until then, it is told to people.

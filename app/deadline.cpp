@@ -1,6 +1,7 @@
 #include "deadline.hpp"
 
 #include "crash.hpp"
+#include "failure.hpp"
 #include "numbers.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +14,6 @@
 namespace lamella::app {
 namespace {
 
-constexpr int limit_exit_code = 5;
 // Reading may wait for standard input for ever, and so may telling for somebody to read. Between them there
 // are gigabytes to let go of, and a temporary file.
 constexpr std::chrono::milliseconds short_patience{700};

@@ -13,6 +13,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace lamella::app {
@@ -67,7 +68,7 @@ Failure failure(ErrorKind kind, std::string text) {
     case ErrorKind::defect:
         return {"defect", 4, std::move(text)};
     case ErrorKind::limit:
-        return {"limit", 5, std::move(text)};
+        return {"limit", limit_exit_code, std::move(text)};
     case ErrorKind::output:
         return {"output", 6, std::move(text)};
     case ErrorKind::cancelled:
@@ -88,13 +89,24 @@ Failure failure_of(const std::exception_ptr& error) {
     } catch (const std::bad_alloc&) {
         return failure(ErrorKind::limit,
                        "memory ran out; free some, or work on less at once, such as fewer layers");
+    } catch (const std::system_error& refused) {
+        for (const std::errc limit :
+             {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory,
+              std::errc::too_many_files_open, std::errc::too_many_files_open_in_system})
+            if (refused.code() == limit)
+                return failure(
+                    ErrorKind::limit,
+                    fmt::format("the system gives no further threads or files: {}; raise the limits "
+                                "of this process (see ulimit)",
+                                refused.code().message()));
+        return failure(ErrorKind::internal, refused.what());
     } catch (const std::exception& unknown) {
         return failure(ErrorKind::internal, unknown.what());
     }
 }
 
 Failure failure_of_process(int status, const std::string& path) {
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 5)
+    if (WIFEXITED(status) && WEXITSTATUS(status) == limit_exit_code)
         return failure(ErrorKind::limit, fmt::format("{}: stopped by --timeout while it was stuck", path));
     if (WIFEXITED(status) && WEXITSTATUS(status) == 130)
         return failure(ErrorKind::cancelled, "cancelled");
@@ -102,6 +114,10 @@ Failure failure_of_process(int status, const std::string& path) {
         return failure(
             ErrorKind::input,
             fmt::format("{}: the file became shorter while it was read, or its disk failed", path));
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+        return failure(
+            ErrorKind::limit,
+            fmt::format("{}: the processor time that a process may take is used up (see ulimit -t)", path));
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
         return failure(
             ErrorKind::limit,

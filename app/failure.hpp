@@ -8,6 +8,8 @@
 
 namespace lamella::app {
 
+/// The exit code of a limit.
+constexpr int limit_exit_code = 5;
 /// The exit code of a batch of which some files failed.
 constexpr int batch_failed_exit_code = 7;
 

@@ -187,6 +187,13 @@ class BadInput(ProgramTest):
         self.fail_with(2, "overwrite", "slice", "box.stl", "--stats", "box.stl")
         self.assertEqual(self.bytes_of("box.stl"), before)
 
+    def test_threads_and_files_that_the_system_refuses_are_limits(self):
+        self.box()
+        for limit in [(resource.RLIMIT_NOFILE, 4), (resource.RLIMIT_NPROC, 1)]:
+            with self.subTest(limit):
+                self.fail_with(5, "no further threads or files", "info", "box.stl",
+                               preexec_fn=lambda: resource.setrlimit(limit[0], (limit[1], limit[1])), **UNPRIVILEGED)
+
     def test_names_that_the_system_cannot_follow_are_not_one_file(self):
         inner = self.path("locked/inner")
         inner.mkdir(parents=True)

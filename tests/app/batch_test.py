@@ -286,7 +286,7 @@ class Workers(ProgramTest):
         return [json.loads(line) for line in out.splitlines()], err.decode()
 
     def test_one_that_dies_takes_nobody_along(self):
-        deaths = [(signal.SIGSEGV, "crash", 1), (signal.SIGKILL, "limit", 5)]
+        deaths = [(signal.SIGSEGV, "crash", 1), (signal.SIGKILL, "limit", 5), (signal.SIGXCPU, "limit", 5)]
         if "LAMELLA_SANITIZED" not in os.environ:
             deaths.append((signal.SIGBUS, "input", 3))
         for number, kind, code in deaths:
@@ -330,6 +330,13 @@ class Workers(ProgramTest):
         for record in [records[1], records[3]]:
             self.assertEqual(record["error"]["kind"], "limit")
             self.assertIn("--timeout", record["error"]["text"])
+
+    def test_progress_is_told_where_there_is_any(self):
+        process = self.start(["box1", "pipe", "box2"], "--jobs", "2", "--progress", "json", "--timeout", "1")
+        _, err = self.end_of(process)
+        done = [line["done"] for line in map(json.loads, err.splitlines()) if "done" in line]
+        self.assertEqual(done, sorted(set(done)))
+        self.assertEqual(done[-1], 3)
 
     def test_a_batch_that_is_stopped_leaves_neither_files_nor_processes(self):
         for number in [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]:

@@ -79,6 +79,19 @@ class Interrupt(ProgramTest):
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
 
+    def test_processor_time_that_is_used_up_is_a_limit_and_leaves_nothing(self):
+        self.succeed("make", "rook")
+        process = self.start("slice", "rook.stl", "-o", "rook", "--format", "png", "--layer-height", "0.001", "--progress", "json")
+        while process.poll() is None and not self.has_unfinished_file(process):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGXCPU)
+        err = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 5)
+        last = [json.loads(line) for line in err.splitlines()][-1]
+        self.assertEqual(last["exit_code"], 5)
+        self.assertIn("processor time", last["error"])
+        self.assertEqual(self.listing(), ["rook.stl"])
+
     def test_a_second_signal_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
         process.send_signal(signal.SIGINT)
