@@ -56,6 +56,11 @@ void Messages::progress(const Progress& progress) {
         return;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
     if (style_ == ProgressStyle::json) {
+        // Who waits for others reports again and again that there is nothing new.
+        if (last_ && last_->stage == progress.stage && last_->done == progress.done &&
+            last_->total == progress.total)
+            return;
+        last_ = progress;
         put_json({{"stage", stage_name(progress.stage)},
                   {"done", progress.done},
                   {"total", progress.total},
@@ -113,8 +118,9 @@ void Messages::sum_up(const std::string& text, const std::string& json) {
 }
 
 std::string Messages::last_words(const std::string& text, int exit_code) const {
-    // A bar may stand on the line, or half of another object.
-    return is_silent() ? std::string() : '\n' + error_line(text, exit_code);
+    // A bar may stand on the line.
+    return is_silent() ? std::string()
+                       : (style_ == ProgressStyle::json ? "" : "\n") + error_line(text, exit_code);
 }
 
 std::string Messages::error_line(const std::string& text, int exit_code) const {

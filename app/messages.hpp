@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -77,6 +78,7 @@ class Messages {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     const bool on_terminal_ = isatty(STDERR_FILENO) != 0;
     bool bar_drawn_ = false;
+    std::optional<Progress> last_; ///< that programs were told
 };
 
 /// The text on one line, without characters that would move a terminal's cursor.

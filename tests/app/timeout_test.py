@@ -79,12 +79,14 @@ class Timeout(ProgramTest):
         os.set_blocking(writing, True)
         for more, stdout in [(["--stats", "pipe"], subprocess.DEVNULL), (["--stats", "-"], writing), ([], writing)]:
             with self.subTest(more):
-                process = subprocess.Popen([PROGRAM, "slice", "box.stl", "-o", "box.cli", "--timeout", "2", *more],
-                                           cwd=self.folder, stdout=stdout, stderr=subprocess.PIPE)
+                process = subprocess.Popen([PROGRAM, "slice", "box.stl", "-o", "box.cli", "--timeout", "2", "--progress", "json",
+                                            *more], cwd=self.folder, stdout=stdout, stderr=subprocess.PIPE)
                 self.addCleanup(process.kill)
                 err = process.communicate(timeout=60)[1].decode()
                 self.assertEqual(process.returncode, 5, err)
-                self.assertIn("box.stl: stopped after 2 s (--timeout) while figures were written, after all layers", err)
+                last = [json.loads(line) for line in err.splitlines()][-1]
+                self.assertEqual(last["exit_code"], 5)
+                self.assertIn("box.stl: stopped after 2 s (--timeout) while figures were written, after all layers", last["error"])
                 self.path("box.cli").unlink()
 
     def test_progress_as_json_ends_with_the_error(self):
