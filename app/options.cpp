@@ -257,8 +257,13 @@ Option include_option(ReadLimits& target) {
 }
 
 Option max_triangles_option(ReadLimits& target) {
-    return count("max-triangles", "N", "stop at a file of more triangles than this (exit code 5)",
-                 target.max_triangles);
+    return row("max-triangles", ValueKind::count, "N",
+               "stop at a file of more triangles than this (exit code 5)",
+               [&target](const std::string& text) {
+                   target.max_triangles = parse_count(text);
+                   if (*target.max_triangles == 0) // which is no limit in the library
+                       throw Error(ErrorKind::usage, "there must be one at least");
+               });
 }
 
 Option max_memory_option(ReadLimits& target, std::string_view what) {

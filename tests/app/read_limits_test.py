@@ -98,6 +98,9 @@ class ReadLimits(ProgramTest):
                 if arguments[0] != "view":  # which needs the viewer, too
                     self.succeed(*arguments, "--max-triangles", 12, "--max-memory", "10M")
 
+    def test_no_triangles_are_no_limit(self):
+        self.fail_with(2, "--max-triangles.*there must be one at least", "info", self.box(), "--max-triangles", 0)
+
     def test_standard_input_that_is_too_much_waits_in_a_file(self):
         allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (ALLOWED, ALLOWED))  # noqa: E731
         blanks = b" " * UNPACKED
