@@ -27,6 +27,13 @@ void remove_folder(const fs::path& folder) {
     fs::remove_all(folder, ignored);
 }
 
+/// Nothing can take its place. Also where the same file system is mounted once more.
+bool is_mount_point(const fs::path& folder) {
+    struct statx status {};
+    return ::statx(AT_FDCWD, folder.c_str(), 0, STATX_TYPE, &status) == 0 &&
+           (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
+}
+
 } // namespace
 
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
@@ -68,20 +75,34 @@ void AtomicDirectory::check_replaceable() const {
     const fs::file_status status = fs::status(target_, error);
     if (status.type() == fs::file_type::not_found)
         return;
+    if (status.type() == fs::file_type::none)
+        throw output_error(path_, error.value());
     if (!fs::is_directory(status))
         throw Error(ErrorKind::output,
                     fmt::format("cannot write '{}': it is a file, and the layers go into a folder; choose "
                                 "another name",
                                 path_));
+    if (is_mount_point(target_))
+        throw Error(ErrorKind::output,
+                    fmt::format("cannot write '{}': it is a mount point, which nothing can replace; choose a "
+                                "folder in it, such as '{}'",
+                                path_, (target_ / "layers").string()));
+    // Meanwhile another run may have exchanged the folder for its own and be about to remove this one:
+    // entries that are gone are not something else, and a name is asked for twice, since one answer may be
+    // put together from both folders.
+    const auto is_foreign = [this](const fs::path& entry) {
+        std::error_code ignored;
+        return !may_remove_(entry) && fs::exists(fs::symlink_status(entry, ignored));
+    };
     fs::directory_iterator entries(target_, error);
     for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
-        if (!may_remove_(entries->path()))
+        if (is_foreign(entries->path()) && is_foreign(entries->path()))
             throw Error(ErrorKind::output,
                         fmt::format("cannot write '{}': the folder holds something else ('{}'); empty it or "
                                     "choose another name",
                                     path_, entries->path().filename().string()));
     }
-    if (error)
+    if (error && error != std::errc::no_such_file_or_directory)
         throw output_error(path_, error.value());
 }
 

@@ -16,7 +16,8 @@ namespace lamella {
 
 /// A new folder that gets its name when it is complete. Until then it has another name beside it, and is
 /// removed with this object. Where a folder of that name is there already, it is replaced as a whole,
-/// provided that it is empty or `may_remove` says so of every entry in it; its permissions stay.
+/// provided that it is empty or `may_remove` says so of every entry in it, and no mount point; its
+/// permissions stay. `may_remove` says no of what is not there.
 ///
 /// Failures are Error{output}.
 class AtomicDirectory {

@@ -6,7 +6,7 @@ import os
 import zipfile
 
 from png_picture import Picture
-from program import ProgramTest, binary_stl, main, open_box
+from program import UNPRIVILEGED, ProgramTest, binary_stl, main, open_box
 
 
 class Pictures(ProgramTest):
@@ -167,6 +167,17 @@ class Pictures(ProgramTest):
         result = self.succeed("slice", "open.stl", "-o", "part.zip", "--layer-height", "5")
         self.assertIn("open chain", result.err)
         self.assertEqual(Picture(self.archive("part.zip").read("00000.png")).covered(), 0)
+
+    def test_a_folder_that_may_not_be_searched(self):
+        self.box()
+        locked = self.path("locked")
+        locked.mkdir()
+        self.folder.chmod(0o777)
+        locked.chmod(0)
+        self.addCleanup(locked.chmod, 0o700)
+        result = self.run_program("slice", "box.stl", "-o", "locked/x", "--format", "png", **UNPRIVILEGED)
+        self.assertEqual(result.code, 6)
+        self.assertIn("no permission in the folder 'locked'", result.err)
 
 
 if __name__ == "__main__":

@@ -104,6 +104,26 @@ TEST(AtomicDirectory, RefusesAFolderWithSomethingElseInIt) {
     EXPECT_EQ(file_bytes(folder.path() / "out" / "thesis.txt"), "years of work");
 }
 
+TEST(AtomicDirectory, TakesWhatVanishesMeanwhileForNothing) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "out");
+    for (int i = 0; i < 3; ++i)
+        write_file(folder.path() / "out" / std::to_string(i), "a");
+    AtomicDirectory directory(folder.file("out"), [](const fs::path& entry) {
+        fs::remove(entry);
+        return false;
+    });
+    directory.commit();
+    EXPECT_EQ(folder.entries(), Names{"out"});
+}
+
+TEST(AtomicDirectory, RefusesAMountPoint) {
+    EXPECT_NE(
+        error_of("/proc").find("'/proc': it is a mount point, which nothing can replace; choose a folder in "
+                               "it, such as '/proc/layers'"),
+        std::string::npos);
+}
+
 TEST(AtomicDirectory, LooksAgainBeforeItReplaces) {
     const TemporaryFolder folder;
     {
