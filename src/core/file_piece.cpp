@@ -11,10 +11,10 @@
 
 namespace lamella {
 
-FilePiece::FilePiece(std::string path, std::uint64_t place)
-    : path_(std::move(path)), place_(place), descriptor_(::open(path_.c_str(), O_WRONLY | O_CLOEXEC)) {
+FilePiece::FilePiece(const std::string& path, std::uint64_t place, std::string name)
+    : name_(std::move(name)), place_(place), descriptor_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
     if (descriptor_ < 0)
-        throw output_error(path_, errno);
+        throw output_error(name_, errno);
 }
 
 FilePiece::~FilePiece() {
@@ -27,7 +27,7 @@ void FilePiece::append(std::string_view bytes) {
         const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place_));
         if (written < 0) {
             if (errno != EINTR)
-                throw output_error(path_, errno);
+                throw output_error(name_, errno);
             continue;
         }
         bytes.remove_prefix(static_cast<std::size_t>(written));
@@ -38,9 +38,9 @@ void FilePiece::append(std::string_view bytes) {
 void FilePiece::finish() {
     // Where files live on another machine, the last bytes meet it only now.
     if (::fsync(descriptor_) != 0 && errno != EINVAL)
-        throw output_error(path_, errno);
+        throw output_error(name_, errno);
     if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)
-        throw output_error(path_, errno);
+        throw output_error(name_, errno);
 }
 
 } // namespace lamella

@@ -12,7 +12,8 @@ namespace lamella {
 /// For one thread.
 class FilePiece {
   public:
-    FilePiece(std::string path, std::uint64_t place);
+    /// `name` is what errors call the file: nobody knows the path that it has until its end.
+    FilePiece(const std::string& path, std::uint64_t place, std::string name);
     ~FilePiece();
     FilePiece(const FilePiece&) = delete;
     FilePiece& operator=(const FilePiece&) = delete;
@@ -23,7 +24,7 @@ class FilePiece {
     void finish();
 
   private:
-    std::string path_;
+    std::string name_;
     std::uint64_t place_; ///< of the next byte
     int descriptor_ = -1;
 };

@@ -57,9 +57,9 @@ std::vector<Layer> unpacked(const std::string& message) {
     return parts;
 }
 
-/// Writes the bytes from `place` on, into a file that exists.
-void write_at(const std::string& path, std::uint64_t place, const ByteStore& bytes) {
-    FilePiece piece(path, place);
+/// Writes the bytes from `place` on, into a file that exists; errors call it by `name`.
+void write_at(const std::string& path, std::uint64_t place, const ByteStore& bytes, const std::string& name) {
+    FilePiece piece(path, place, name);
     std::string block;
     for (std::uint64_t at = 0; at < bytes.size(); at += block.size()) {
         block.resize(std::min<std::uint64_t>(ByteStore::block_bytes, bytes.size() - at));
@@ -201,7 +201,7 @@ std::uint64_t JobOutput::write_shared() {
             fmt::format("'{}' would take {} bytes, more than the {} that it may; choose higher layers, "
                         "another format or a larger limit",
                         path_, total, most_bytes_));
-    in_agreement(processes_, [&] { write_at(working_path_, place, waiting_); });
+    in_agreement(processes_, [&] { write_at(working_path_, place, waiting_, path_); });
     in_agreement(processes_, [&] {
         if (file_)
             file_->commit();

@@ -15,9 +15,9 @@ TEST(FilePiece, IsWrittenAtItsPlaceWhateverOrderOthersAreWrittenIn) {
     const TemporaryFolder folder;
     const std::string path = folder.file("whole");
     std::ofstream(path, std::ios::binary) << "";
-    FilePiece later(path, 5);
+    FilePiece later(path, 5, "part");
     later.append("56");
-    FilePiece first(path, 0);
+    FilePiece first(path, 0, "part");
     first.append("01");
     later.append("");
     later.append("78");
@@ -31,7 +31,13 @@ TEST(FilePiece, IsWrittenAtItsPlaceWhateverOrderOthersAreWrittenIn) {
 TEST(FilePiece, OfAFileThatIsNotThereIsRefused) {
     const TemporaryFolder folder;
     const std::string path = folder.file("nowhere");
-    test::expect_error(ErrorKind::output, {path.c_str()}, [&] { FilePiece(path, 0); });
+    test::expect_error(ErrorKind::output, {"part.cli"}, [&] { FilePiece(path, 0, "part.cli"); });
+}
+
+TEST(FilePiece, CallsTheFileByTheNameThatItWillHave) {
+    FilePiece piece("/dev/full", 0, "part.cli");
+    EXPECT_EQ(test::error_of(ErrorKind::output, [&] { piece.append("x"); }),
+              "cannot write 'part.cli': the disk is full; free some space or choose another place");
 }
 
 } // namespace
