@@ -148,13 +148,19 @@ void check_path(const std::string& path) {
         refuse("the name of a file is empty");
 }
 
+/// What the system calls standard output is "-" here, so that nothing else is written between its bytes.
+std::string output_of(const std::string& text) {
+    return text == "/dev/stdout" || text == "/dev/fd/1" || text == "/proc/self/fd/1" ? "-" : text;
+}
+
 /// Gives a command its options and operands, one after the other.
 class Assignment {
   public:
     explicit Assignment(Command& command) : command_(command) {}
 
     /// `origin` says where the text came from, in case it is wrong.
-    void set(Option& option, const std::string& origin, const std::string& text) {
+    void set(Option& option, const std::string& origin, const std::string& given) {
+        const std::string text = option.kind == ValueKind::output ? output_of(given) : given;
         try {
             if (option.kind == ValueKind::flag && text != "true" && text != "false")
                 refuse(fmt::format("\"{}\" is neither true nor false", text));
@@ -175,15 +181,16 @@ class Assignment {
             option.given_for_all = text;
     }
 
-    void take(const std::string& text) {
+    void take(const std::string& given) {
         std::vector<Operand>& operands = command_.operands;
         if (taken_ >= operands.size() && (operands.empty() || !operands.back().repeated))
             refuse(fmt::format("lamella {} takes {}, so what is \"{}\"? See lamella {} --help", command_.name,
                                operands.empty()       ? "no arguments"
                                : operands.size() == 1 ? "one argument"
                                                       : fmt::format("{} arguments", operands.size()),
-                               text, command_.name));
+                               given, command_.name));
         Operand& operand = operands[std::min(taken_, operands.size() - 1)];
+        const std::string text = operand.written ? output_of(given) : given;
         ++taken_;
         try {
             check_choice(operand.choices, text);

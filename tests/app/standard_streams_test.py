@@ -131,6 +131,22 @@ class StandardStreams(ProgramTest):
             with self.subTest(arguments):
                 self.fail_with(2, f"{first} - and {second} - contradict each other: standard input holds one file only", *arguments)
 
+    def test_what_the_system_calls_standard_output_is_it(self):
+        for arguments in [["slice", "box.stl", "-o", "-", "--format", "cli"], ["make", "box", "-o", "-"],
+                          ["slice", "box.stl", "-o", "x.cli", "--stats", "-"]]:
+            with self.subTest(arguments):
+                expected = self.succeed(*arguments)
+                for name in ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"]:
+                    result = self.succeed(*[name if a == "-" else a for a in arguments])
+                    if "--stats" not in arguments:  # which tell of seconds
+                        self.assertEqual(result.out, expected.out)
+                    else:
+                        self.assertEqual(result.json()["layers"], expected.json()["layers"])
+        self.succeed("slice", "box.stl", "-o", "x.cli")
+        converted = self.succeed("convert", "x.cli", "/dev/stdout", "--format", "svg")
+        self.assertEqual(converted.out, self.succeed("convert", "x.cli", "-", "--format", "svg").out)
+        self.fail_with(2, "contradict.*standard output", "slice", "box.stl", "-o", "-", "--format", "cli", "--stats", "/dev/stdout")
+
     def test_only_one_can_write_standard_output(self):
         self.fail_with(2, "--output - and --report - contradict.*standard output", "slice", "box.stl", "-o", "-", "--format", "cli",
                        "--report", "-")
