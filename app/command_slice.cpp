@@ -398,13 +398,22 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     return run_batch(items, arguments.batch, slice, execution, context.messages);
 }
 
-/// They are written when all else is done, so nobody shall slice for hours what cannot be told then. All
-/// processes fail together.
-void check_place_of_stats(const SliceArguments& arguments, Communicator& processes) {
+/// The stamp, where a shard has one; else "".
+std::string stamp_of(const SliceArguments& arguments) {
+    return arguments.shard && !arguments.output.empty() && arguments.output != "-"
+               ? stamp_path(arguments.output)
+               : std::string();
+}
+
+/// The statistics and the stamp are written when all else is done, so nobody shall slice for hours what
+/// cannot be told then. All processes fail together.
+void check_places(const SliceArguments& arguments, Communicator& processes) {
     std::string refusal;
-    if (!arguments.stats.empty() && processes.process() == 0) {
+    if (processes.process() == 0) {
         try {
-            check_writable(arguments.stats);
+            for (const std::string& path : {arguments.stats, stamp_of(arguments)})
+                if (!path.empty())
+                    check_writable(path);
         } catch (const Error& error) {
             refusal = error.what();
         }
@@ -419,7 +428,10 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     if (arguments.inputs.empty())
         throw Error(ErrorKind::usage, "lamella slice needs FILE: a mesh, or --batch for many of them; see "
                                       "lamella slice --help");
-    check_outputs(context.command);
+    std::vector<NamedFile> stamp;
+    if (const std::string path = stamp_of(arguments); !path.empty())
+        stamp.push_back({"the stamp of the shard", path});
+    check_outputs(context.command, stamp);
     finish_input(arguments);
     Communicator& processes = arguments.team != nullptr ? *arguments.team : alone();
     const Execution execution = arguments.run.execution(context);
@@ -434,7 +446,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             if (arguments.resume && is_finished_shard(job, arguments.stats, origin, run))
                 return std::nullopt;
         }
-        check_place_of_stats(arguments, processes);
+        check_places(arguments, processes);
         return slice_file(job, run, processes);
     };
     Deadline deadline(arguments.timeout, one_line(input_name(arguments.inputs.front().path)),

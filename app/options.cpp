@@ -41,17 +41,6 @@ Option scale_option(std::optional<std::vector<double>>& target) {
                });
 }
 
-/// The only name of a file, which need not exist. Where the system does not tell, such as in a folder that
-/// may not be searched, the name as it was given, without "." and "..".
-std::filesystem::path place_of(const std::string& name) {
-    std::error_code error;
-    std::filesystem::path path = std::filesystem::absolute(name, error);
-    if (error)
-        path = name;
-    const std::filesystem::path place = std::filesystem::weakly_canonical(path, error);
-    return error ? path.lexically_normal() : place;
-}
-
 /// Whether both are one file: names can be written in several ways.
 bool are_same(const std::string& first, const std::string& second) {
     std::error_code ignored;
@@ -372,13 +361,26 @@ const std::vector<std::string>& slice_at_names() {
     return names;
 }
 
+std::filesystem::path place_of(const std::string& name) {
+    constexpr int most_links = 40; // what Linux allows
+    std::error_code error;
+    std::filesystem::path path = std::filesystem::absolute(name, error);
+    if (error)
+        path = name;
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(path, error); ++i)
+        path = path.parent_path() / std::filesystem::read_symlink(path, error);
+    const std::filesystem::path place = std::filesystem::weakly_canonical(path, error);
+    return error ? path.lexically_normal() : place;
+}
+
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason) {
     if (first && second)
         throw Error(ErrorKind::usage, fmt::format("{} contradict each other: {}", names, reason));
 }
 
-void check_outputs(const Command& command) {
-    const std::vector<NamedFile> outputs = files_of(command, ValueKind::output);
+void check_outputs(const Command& command, const std::vector<NamedFile>& more) {
+    std::vector<NamedFile> outputs = files_of(command, ValueKind::output);
+    outputs.insert(outputs.end(), more.begin(), more.end());
     const std::vector<NamedFile> inputs = files_of(command, ValueKind::input);
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const NamedFile& output = outputs[i];

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -130,8 +131,13 @@ struct LayerStepOptions {
 /// Throws Error{usage} that names two options, where both are given and cannot go together.
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason);
 
-/// Throws Error{usage} when a result would overwrite a file that it is made from, or another result.
-void check_outputs(const Command& command);
+/// The only name of a file, which need not exist: where links to it lead. Where the system does not tell,
+/// such as in a folder that may not be searched, the name as it is, without "." and "..".
+[[nodiscard]] std::filesystem::path place_of(const std::string& name);
+
+/// Throws Error{usage} when a result would overwrite a file that it is made from, or another result. `more`
+/// are results that no option names.
+void check_outputs(const Command& command, const std::vector<NamedFile>& more = {});
 /// The same of one result that is called otherwise than an option says.
 void check_distinct(const std::string& input, const std::string& output);
 

@@ -151,6 +151,16 @@ class Shard(ProgramTest):
         self.assertNotIn("a.cli.shard", self.listing())
         self.assertIn("sliced", self.succeed(*shard, "a.json").text)
 
+    def test_the_place_of_the_stamp_is_seen_to_before(self):
+        self.lattice()
+        shard = ["slice", "part.stl", "--shard", "1/2", "-o"]
+        self.fail_with(2, "--stats and the stamp of the shard contradict", *shard, "a.cli", "--stats", "./a.cli.shard")
+        os.link(self.path("part.stl"), self.path("b.cli.shard"))
+        self.fail_with(2, "b.cli.shard: the output would overwrite the input", *shard, "b.cli")
+        self.path("c.cli.shard").mkdir()
+        self.fail_with(6, "cannot write 'c.cli.shard': it is a folder", *shard, "c.cli")
+        self.fail_with(6, r"cannot write '.*\.cli\.shard': the name is too long", *shard, "d" * 247 + ".cli")
+
     def test_merge_tells_what_is_missing_or_cannot_be_read(self):
         self.lattice()
         a, b = self.slice_all(2, "cli")
