@@ -357,16 +357,18 @@ std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::s
     std::vector<BatchItem> items(inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i)
         items[i].input = inputs[i];
+    std::vector<std::string> given;
     const auto give = [&](const std::string& pattern, std::string_view ending, std::string BatchItem::*into) {
         if (pattern.empty())
             return;
-        std::vector<std::string> given = names.give(inputs, pattern, ending);
-        check_distinct(kept, given);
-        for (std::size_t i = 0; i < items.size(); ++i)
-            items[i].*into = std::move(given[i]);
+        for (std::size_t i = 0; std::string & name : names.give(inputs, pattern, ending)) {
+            items[i++].*into = name;
+            given.push_back(std::move(name));
+        }
     };
     give(output, extension, &BatchItem::output);
     give(stats, ".json", &BatchItem::stats);
+    check_distinct(kept, given);
     return items;
 }
 

@@ -5,6 +5,7 @@
 
 #include "names.hpp"
 #include "numbers.hpp"
+#include "options.hpp"
 #include "standard_streams.hpp"
 #include "text_file.hpp"
 
@@ -183,6 +184,12 @@ void check_distinct(std::span<const std::string> inputs, std::span<const std::st
             return std::nullopt;
         return Identity{status.st_dev, status.st_ino};
     };
+    std::map<fs::path, const std::string*> places;
+    for (const std::string& output : outputs)
+        if (const auto [other, is_new] = places.emplace(place_of(output), &output); !is_new)
+            throw Error(ErrorKind::usage,
+                        fmt::format("{} and {} are one file, through a link; choose another folder",
+                                    *other->second, output));
     std::map<Identity, const std::string*> known;
     for (const std::string& input : inputs)
         if (const auto file = identity(input))
@@ -221,8 +228,13 @@ void OutputNames::note_folders(const fs::path& name) {
 std::vector<std::string> OutputNames::give(std::span<const std::string> inputs, const std::string& pattern,
                                            std::string_view extension) {
     std::vector<fs::path> paths;
-    for (const std::string& input : inputs)
-        paths.push_back(fs::absolute(input).lexically_normal());
+    for (const std::string& input : inputs) {
+        std::error_code error;
+        paths.push_back(fs::absolute(input, error).lexically_normal());
+        if (error)
+            refuse(input, fmt::format("the working folder, which this path begins in, cannot be told: {}",
+                                      error.message()));
+    }
     const fs::path shared = common_folder(paths);
     std::vector<fs::path> wanted;
     for (std::size_t i = 0; i < paths.size(); ++i) {

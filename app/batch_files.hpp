@@ -24,7 +24,8 @@ namespace lamella::app {
 /// name of a mesh.
 [[nodiscard]] std::vector<std::string> batch_inputs(const std::string& source, const std::string& results);
 
-/// Throws Error{usage} where a result would be written over one of the inputs.
+/// Throws Error{usage} where a result would be written over one of the inputs, or over another result, as
+/// through a symbolic link.
 void check_distinct(std::span<const std::string> inputs, std::span<const std::string> outputs);
 
 /// Gives out names, none of them twice, nor one that is a folder of another.

@@ -36,6 +36,12 @@ std::string first_bad_folder(const std::string& path) {
     return folder.string();
 }
 
+bool working_folder_is_gone() {
+    std::error_code error;
+    static_cast<void>(fs::current_path(error));
+    return error == std::errc::no_such_file_or_directory;
+}
+
 std::string folder_of(const std::string& path) {
     const std::string folder = fs::path(path).parent_path().string();
     return folder.empty() ? "." : folder;
@@ -83,6 +89,9 @@ Error output_error(const std::string& path, int system_error) {
     const auto text = [&](const std::string& reason) {
         return Error(ErrorKind::output, fmt::format("cannot write {}: {}", what, reason));
     };
+    // Systems tell it by several errors.
+    if (path != "-" && fs::path(path).is_relative() && working_folder_is_gone())
+        return text("the working folder has been removed; choose another place");
     switch (system_error) {
     case ENOENT:
         return text(fmt::format("the folder '{}' does not exist; create it first", first_bad_folder(path)));

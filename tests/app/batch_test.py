@@ -165,6 +165,33 @@ class Batch(ProgramTest):
         self.fail_with(2, "list.toml: this output would overwrite the input list.toml", "slice", "--batch", "list",
                        "--config", "list.toml", "--stats", "{name}.toml")
 
+    def test_results_that_links_make_one_file_are_refused(self):
+        self.boxes("parts", 2)
+        self.path("out").mkdir()
+        os.symlink("box01.cli", self.path("out/box00.cli"))
+        os.symlink("out", self.path("linked"))
+        for _ in range(2):  # where there is no result yet, and where there is one
+            self.fail_with(2, "out/box00.cli and out/box01.cli are one file", "slice", "--batch", "parts", "-o", "out", "--format", "cli")
+            self.write("out/box01.cli", "")
+        self.path("out/box00.cli").unlink()
+        self.fail_with(2, "out/box00 and linked/box00 are one file", "slice", "--batch", "parts", "-o", "out/{name}", "--format",
+                       "cli", "--stats", "linked/{name}")
+        self.batch(0, "parts", "-o", "out", "--format", "cli", "--stats", "linked")
+
+    def test_a_working_folder_that_is_gone_is_told(self):
+        self.boxes("parts", 2)
+        self.write("list", "box00.stl\n")
+        self.path("gone").mkdir()
+        result = self.run_program("slice", "--batch", self.path("list"), "-o", self.path("out"), "--format", "cli",
+                                  cwd=self.path("gone"), preexec_fn=lambda: os.rmdir("../gone"))
+        self.assertEqual(result.code, 3, result.err)
+        self.assertIn("box00.stl: the working folder", result.err)
+        self.path("gone").mkdir()
+        result = self.run_program("slice", self.path("parts/box00.stl"), "-o", "x.cli", cwd=self.path("gone"),
+                                  preexec_fn=lambda: os.rmdir("../gone"))
+        self.assertEqual(result.code, 6, result.err)
+        self.assertIn("cannot write 'x.cli': the working folder has been removed", result.err)
+
     def test_a_file_whose_statistics_cannot_be_written_has_an_output(self):
         self.boxes("parts", 1)
         self.path("stats/box00.json").mkdir(parents=True)
