@@ -51,7 +51,7 @@ def slice_files():
         ("slices.3mf", lambda: zipped({"3D/3dmodel.model": slices()}), "line 1"),
         ("binary.cli", lambda: cli.format("$$BINARY").encode() + b"\x80\x00\x01\x00" * 2_000_000, "byte "),
         ("text.cli", lambda: cli.format("$$ASCII") + "\n$$GEOMETRYSTART\n" + "$$LAYER/1\n" * 1_000_000 + "$$GEOMETRYEND",
-         "byte "),
+         "line "),
         ("layers.slc", lambda: b"-SLCVER 2.0 -UNIT MM -TYPE PART \r\n\x1a" + bytes(256) + b"\x01" + bytes(16)
          + bytes(8 * 2_000_000), "byte "),
         ("layers.svg", lambda: "<svg>" + "<g slic3r:z='1'/>\n" * 1_000_000 + "</svg>", "line "),
