@@ -32,6 +32,13 @@ std::string text_of(const std::pair<double, double>& z_range) {
     return fmt::format("{} to {} mm", z_range.first, z_range.second);
 }
 
+Error too_far(const std::vector<double>& z) {
+    return {ErrorKind::usage,
+            fmt::format("layers at z from {} to {} reach further than a double can say; choose "
+                        "a larger unit",
+                        z.front(), z.back())};
+}
+
 void require_ranges_that_hold_something(const PlaneSelection& only) {
     if (const auto& range = only.index_range; range && !(range->first < range->second))
         throw Error(ErrorKind::usage,
@@ -173,10 +180,7 @@ void check_list(const std::vector<double>& z) {
                             i + 1, z[i], z[i - 1]));
     }
     if (!std::isfinite(z.back() - z.front()))
-        throw Error(ErrorKind::usage,
-                    fmt::format("the list of z reaches from {} to {}, further than a double "
-                                "can say; choose a larger unit",
-                                z.front(), z.back()));
+        throw too_far(z);
 }
 
 Plan plan_listed(const std::vector<double>& z, SliceAt slice_at, double single_height) {
@@ -194,6 +198,8 @@ Plan plan_listed(const std::vector<double>& z, SliceAt slice_at, double single_h
         const double above = i + 1 < n ? z[i + 1] - z[i] : last_gap;
         const double f = fraction(slice_at);
         const PlannedLayer& layer = plan.layers[i] = {i, z[i], z[i] - f * below, z[i] + (1 - f) * above};
+        if (!std::isfinite(layer.bottom) || !std::isfinite(layer.top))
+            throw too_far(z);
         if (!(layer.bottom < layer.top))
             throw Error(
                 ErrorKind::usage,

@@ -19,40 +19,47 @@ namespace lamella {
 
 namespace {
 
-/// Layers on one another: height_at(bottom) -> height, from z_min on as long as cuts meet the part.
+/// Fails where there is nothing to stack layers on, and for more of them, about `count`, than can be
+/// numbered.
+void require_stack(double z_min, double z_max, double count, double lowest_height) {
+    require_part(z_min, z_max);
+    if (count > static_cast<double>(max_layers))
+        throw Error(ErrorKind::usage,
+                    fmt::format("layers of down to {} mm make {:.6g} layers of a part that is {} mm high; at "
+                                "most {} are possible",
+                                lowest_height, count, z_max - z_min, max_layers));
+}
+
+/// Layers on one another: height_at(bottom) -> height, from z_min on as long as cuts meet the part. A height
+/// that rounding made 0 is told as the lowest.
 template <class HeightAt>
 Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at, const HeightAt& height_at) {
-    require_part(z_min, z_max);
-    if ((z_max - z_min) / lowest_height > static_cast<double>(max_layers))
-        throw Error(ErrorKind::usage,
-                    fmt::format("layers of {} mm are too many for a part that is {} mm high; at most {} are "
-                                "possible",
-                                lowest_height, z_max - z_min, max_layers));
     Plan plan;
     plan.rule = rule_for(slice_at);
-    const bool at_top = slice_at == SliceAt::top;
-    for (double bottom = z_min;;) {
+    for (double bottom = z_min;; bottom = plan.layers.back().top) {
         const double height = height_at(bottom);
         const double top = bottom + height;
-        double z = bottom + fraction(slice_at) * height;
+        const double z = bottom + fraction(slice_at) * height;
         if (!meets_part(z, height, z_max, slice_at))
             break;
         if (!(bottom < top) || (!plan.layers.empty() && !(plan.layers.back().z < z)))
             throw Error(ErrorKind::usage,
                         fmt::format("a layer height of {} mm is too small for coordinates around {} mm: "
                                     "neighbouring cuts fall on the same number",
-                                    std::max(height, lowest_height), z)); // that may be rounded to 0
-        // A remainder that counts as nothing must not lift the last cut off the top face.
-        if (at_top && z > z_max - negligible * height)
-            z = z_max;
-        plan.layers.push_back({plan.layers.size(), z, bottom, std::max(top, z)});
-        bottom = top;
+                                    std::max(height, lowest_height), z));
+        plan.layers.push_back({plan.layers.size(), z, bottom, top});
     }
     if (plan.layers.empty())
         throw Error(ErrorKind::usage,
                     fmt::format("no layer: the first cut misses the part (z from {} to {} mm); choose layers "
                                 "below {} mm",
                                 z_min, z_max, z_max - z_min));
+    // A remainder that counts as nothing must not lift the last cut off the top face.
+    PlannedLayer& last = plan.layers.back();
+    if (slice_at == SliceAt::top && last.z > z_max - negligible * (last.top - last.bottom)) {
+        last.z = z_max;
+        last.top = std::max(last.top, z_max);
+    }
     return plan;
 }
 
@@ -124,6 +131,8 @@ Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& 
                     SliceAt slice_at) {
     require_height(layer_height, "the layer height");
     double lowest = layer_height;
+    double count = 0;
+    double rest = z_max - z_min; // outside of all ranges
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const HeightRange& range = ranges[i];
         require_height(range.layer_height, "a layer height of the ranges");
@@ -140,19 +149,27 @@ Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& 
                 fmt::format("the range {}:{} begins before the one before it ends, at {}; ranges must "
                             "ascend and not overlap",
                             range.from, range.to, ranges[i - 1].to));
+        const double reach = std::max(0.0, std::min(range.to, z_max - z_min) - range.from);
+        count += reach / range.layer_height;
+        rest -= reach;
     }
+    require_stack(z_min, z_max, count + rest / layer_height, lowest);
     // Heights are base + i h within a stretch of equal heights, never a running sum.
     double base = z_min;
     double base_height = 0;
     std::uint64_t above_base = 0;
     double expected = z_min;
+    auto range = ranges.begin(); // the first that has not ended
     const auto height_at = [&](double bottom) {
+        const auto reaches = [&](double end, double height) {
+            return end - negligible * height <= bottom - z_min;
+        };
+        while (range != ranges.end() && reaches(range->to, range->layer_height))
+            ++range;
         double height = layer_height;
-        for (const HeightRange& range : ranges) {
-            const double slack = negligible * range.layer_height;
-            if (range.from - slack <= bottom - z_min && bottom - z_min < range.to - slack)
-                height = range.layer_height;
-        }
+        for (auto at = range; at != ranges.end() && reaches(at->from, at->layer_height); ++at)
+            if (!reaches(at->to, at->layer_height))
+                height = at->layer_height;
         if (height != base_height || bottom != expected) {
             base = bottom;
             base_height = height;
@@ -178,9 +195,7 @@ Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, SliceAt slice
     const Box3 box = bounding_box(mesh, execution);
     const double z_min = box.min.z;
     const double z_max = box.max.z;
-    if (!(std::isfinite(z_max - z_min) && z_min < z_max))
-        throw Error(ErrorKind::usage, "the mesh has no height, so there is nothing to slice; another slicing "
-                                      "direction may have some");
+    require_stack(z_min, z_max, (z_max - z_min) / layers.min_height, layers.min_height);
     Slopes slopes(z_min, z_max, layers.min_height / 4);
     Executor executor(execution);
     constexpr std::size_t chunk = std::size_t{1} << 14;

@@ -415,6 +415,11 @@ TEST(PlanListed, RefusesCutsFurtherApartThanADoubleCanSay) {
         (void)plan_listed({-1.7e308, 0, 1.7e308});
     });
     EXPECT_EQ(plan_listed({-8e307, 0, 8e307}).layers.size(), 3U);
+    // The lowest layer would begin at twice that.
+    expect_error(ErrorKind::usage, {"-1.7e+308", "0.5"}, [] { (void)plan_listed({-1.7e308, 0.5}); });
+    expect_error(ErrorKind::usage, {"1.7e+308"},
+                 [] { (void)plan_listed({1.7e308}, SliceAt::bottom, 1.7e308); });
+    EXPECT_EQ(plan_listed({-1.7e308, 0.5}, SliceAt::bottom).layers[1].top, 1.7e308);
 }
 
 TEST(PlanListed, NamesTheFirstNumberThatIsNotFinite) {

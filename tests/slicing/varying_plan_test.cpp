@@ -79,6 +79,39 @@ TEST(PlanByRanges, RefusesRangesThatMakeNoSense) {
     EXPECT_THROW((void)plan_by_ranges(0, 1, {}, 5, SliceAt::top), Error);
 }
 
+TEST(PlanByRanges, AFineRangeCountsOnlyAsFarAsItReachesIntoThePart) {
+    EXPECT_EQ(plan_by_ranges(0, 1000, {{0, 0.001, 1e-7}}, 0.1).layers.size(), 20'000U);
+    EXPECT_EQ(plan_by_ranges(0, 10, {{500, 600, 1e-9}}, 0.1).layers.size(), 100U);
+    test::expect_error(ErrorKind::usage, {"1e-09 mm", "5e+09 layers", "10 mm high"}, [] {
+        (void)plan_by_ranges(0, 10, {{5, 600, 1e-9}}, 0.1);
+    });
+}
+
+TEST(PlanByRanges, OnlyTheLastCutIsMovedToTheTopFace) {
+    // After a layer of 1 mm just half a thousandth is left, where layers are finer.
+    const Plan plan = plan_by_ranges(0, 1.0005, {{1, 2, 0.0003}}, 1, SliceAt::top);
+    ASSERT_EQ(plan.layers.size(), 2U);
+    EXPECT_EQ(plan.layers[0].z, 1);
+    EXPECT_EQ(plan.layers[1].z, 1.0003);
+    const Plan uniform = plan_by_ranges(0, 1.0005, {}, 1, SliceAt::top);
+    ASSERT_EQ(uniform.layers.size(), 1U);
+    EXPECT_EQ(uniform.layers[0].z, 1.0005);
+    EXPECT_EQ(uniform.layers[0].top, 1.0005);
+}
+
+TEST(PlanByRanges, OfManyRangesEachIsFound) {
+    std::vector<HeightRange> ranges;
+    for (int i = 0; i < 1000; ++i)
+        ranges.push_back({2.0 * i, 2.0 * i + 1, i % 2 == 0 ? 0.5 : 0.25});
+    const Plan plan = plan_by_ranges(7, 2007, ranges, 1);
+    EXPECT_EQ(plan.layers.size(), 500 * (2 + 1 + 4 + 1));
+    for (const PlannedLayer& layer : plan.layers) {
+        const double above = layer.bottom - 7;
+        const bool in_range = std::fmod(above, 2) < 1;
+        ASSERT_EQ(layer.top - layer.bottom, !in_range ? 1 : std::fmod(above, 4) < 2 ? 0.5 : 0.25);
+    }
+}
+
 TEST(PlanByRanges, NamesAHeightThatIsTooSmallForTheCoordinates) {
     test::expect_error(ErrorKind::usage, {"a layer height of 1e-09 mm is too small", "around 1000000000"},
                        [] {
