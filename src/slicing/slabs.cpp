@@ -217,7 +217,7 @@ std::vector<PlaneRange> divide_evenly(const SlabSurvey& survey, std::uint32_t sl
 }
 
 std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan, const SlabMemory& memory,
-                                      std::uint64_t most_bytes, std::uint32_t at_least) {
+                                      std::uint64_t most_bytes) {
     const auto fits = [&](const SlabNeeds& needs) {
         return memory.bytes(needs) <= most_bytes;
     };
@@ -229,8 +229,7 @@ std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan
                                     plan.layers[p].z, needs.triangles, byte_amount(memory.bytes(needs)),
                                     byte_amount(most_bytes)));
     const std::uint64_t any_work = std::numeric_limits<std::uint64_t>::max();
-    const std::size_t most = fill(survey, any_work, at_least, fits).size();
-    return level(survey, at_least, most, fits);
+    return level(survey, 0, fill(survey, any_work, 0, fits).size(), fits);
 }
 
 std::vector<PlaneRange> divide_by_points(const SlabSurvey& survey, std::uint64_t most_points) {

@@ -157,12 +157,10 @@ struct SlabMemory {
 /// Error{usage} when there are fewer planes, or none are asked for.
 [[nodiscard]] std::vector<PlaneRange> divide_evenly(const SlabSurvey& survey, std::uint32_t slabs);
 
-/// Fewest slabs that take no more than `most_bytes` each, but no fewer than `at_least`, or one for each plane
-/// where planes are fewer; among those, the division with the smallest largest work. Throws Error{limit} when
-/// a single plane takes more, saying where it lies and how much it takes.
+/// Fewest slabs that take no more than `most_bytes` each; among those, the division with the smallest largest
+/// work. Throws Error{limit} when a single plane takes more, saying where it lies and how much it takes.
 [[nodiscard]] std::vector<PlaneRange> divide_to_fit(const SlabSurvey& survey, const Plan& plan,
-                                                    const SlabMemory& memory, std::uint64_t most_bytes,
-                                                    std::uint32_t at_least = 1);
+                                                    const SlabMemory& memory, std::uint64_t most_bytes);
 
 /// Slabs filled one after the other with planes of `most_points` together, or with a single plane of more.
 [[nodiscard]] std::vector<PlaneRange> divide_by_points(const SlabSurvey& survey, std::uint64_t most_points);
