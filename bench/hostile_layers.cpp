@@ -22,11 +22,8 @@ using Contour = std::vector<Point2>;
 Layer layer_of(const std::vector<Contour>& rings, const std::vector<Contour>& chains = {}) {
     LayerBuilder builder;
     for (const auto* contours : {&rings, &chains})
-        for (const Contour& contour : *contours) {
-            for (const Point2& p : contour)
-                builder.add_point(p);
-            builder.end_contour(contours == &rings);
-        }
+        for (const Contour& contour : *contours)
+            builder.add_contour(contour, contours == &rings);
     return builder.finish(0, 0.5, 0, 1);
 }
 

@@ -159,11 +159,8 @@ void add_contour(const PointArray& points, bool closed, LayerBuilder& builder) {
     std::unique_copy(points.begin(), points.end(), std::back_inserter(kept));
     while (closed && kept.size() > 1 && kept.back() == kept.front())
         kept.pop_back();
-    if (kept.size() < (closed ? 3U : 2U))
-        return;
-    for (const Point2& p : kept)
-        builder.add_point(p);
-    builder.end_contour(closed);
+    if (kept.size() >= (closed ? 3U : 2U))
+        builder.add_contour(kept, closed);
 }
 
 /// Contours in any order.

@@ -271,14 +271,10 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
     if (result.joins.empty())
         return result;
     LayerBuilder builder;
-    const auto add = [&](std::span<const Point2> points, bool closed) {
-        for (const Point2& p : points)
-            builder.add_point(p);
-        builder.end_contour(closed);
-    };
     for (std::size_t c = 0; c < layer.rings; ++c)
-        add(layer.contour(c), true);
-    joined.for_each(add);
+        builder.add_contour(layer.contour(c), true);
+    joined.for_each(
+        [&](std::span<const Point2> points, bool closed) { builder.add_contour(points, closed); });
     result.layer = builder.finish(layer.index, layer.z, layer.bottom, layer.top);
     // Each join makes one chain of two, or a ring of one.
     assert(result.layer.open_chains() + result.joins.size() == layer.open_chains());

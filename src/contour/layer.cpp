@@ -20,6 +20,12 @@ void LayerBuilder::end_contour(bool closed) {
         ends_.push_back({points_.size(), closed});
 }
 
+void LayerBuilder::add_contour(std::span<const Point2> points, bool closed) {
+    for (const Point2& p : points)
+        add_point(p);
+    end_contour(closed);
+}
+
 Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double top) {
     return normal_form(finish_as_added(index, z, bottom, top));
 }
@@ -65,11 +71,8 @@ Layer merged(std::span<const Layer> layers) {
     LayerBuilder builder;
     std::vector<Point2> hatches;
     for (const Layer& layer : layers) {
-        for (std::size_t i = 0; i < layer.contours(); ++i) {
-            for (const Point2& p : layer.contour(i))
-                builder.add_point(p);
-            builder.end_contour(layer.closed(i));
-        }
+        for (std::size_t i = 0; i < layer.contours(); ++i)
+            builder.add_contour(layer.contour(i), layer.closed(i));
         hatches.insert(hatches.end(), layer.hatches.begin(), layer.hatches.end());
     }
     const Layer& first = layers.front();

@@ -165,15 +165,10 @@ class Boundaries {
         if (layer_.open_chains() == 0)
             return normal_form(std::move(layer));
         LayerBuilder builder;
-        const auto add = [&](const Layer& from, std::size_t first, std::size_t last, bool closed) {
-            for (std::size_t i = first; i < last; ++i) {
-                for (const Point2& p : from.contour(i))
-                    builder.add_point(p);
-                builder.end_contour(closed);
-            }
-        };
-        add(layer, 0, layer.rings, true);
-        add(layer_, layer_.rings, layer_.contours(), false);
+        for (std::size_t i = 0; i < layer.rings; ++i)
+            builder.add_contour(layer.contour(i), true);
+        for (std::size_t i = layer_.rings; i < layer_.contours(); ++i)
+            builder.add_contour(layer_.contour(i), false);
         return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
     }
 

@@ -26,11 +26,8 @@ Layer selected(const Layer& layer, const Wanted& wanted) {
         return layer;
     LayerBuilder builder;
     for (std::size_t i = 0; i < layer.contours(); ++i)
-        if (keep[i]) {
-            for (const Point2& p : layer.contour(i))
-                builder.add_point(p);
-            builder.end_contour(layer.closed(i));
-        }
+        if (keep[i])
+            builder.add_contour(layer.contour(i), layer.closed(i));
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 

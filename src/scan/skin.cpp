@@ -67,13 +67,9 @@ class Occupied {
 template <class Chosen>
 Layer rings_of(const Layer& layer, const Chosen& chosen) {
     LayerBuilder builder;
-    for (std::size_t i = 0; i < layer.rings; ++i) {
-        if (!chosen(i))
-            continue;
-        for (const Point2& p : layer.contour(i))
-            builder.add_point(p);
-        builder.end_contour(true);
-    }
+    for (std::size_t i = 0; i < layer.rings; ++i)
+        if (chosen(i))
+            builder.add_contour(layer.contour(i), true);
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 

@@ -63,9 +63,7 @@ inline void add_contour(LayerBuilder& layer, std::vector<Point2>& contour, bool 
     drop_repeated_points(contour, closed);
     if (contour.size() < (closed ? 3U : 2U) || (closed && (folds_flat(contour) || lies_on_line(contour))))
         return;
-    for (const Point2& p : contour)
-        layer.add_point(p);
-    layer.end_contour(closed);
+    layer.add_contour(contour, closed);
 }
 
 } // namespace lamella

@@ -156,11 +156,8 @@ TEST(NonManifold, ASolidTwiceHasEveryRingTwice) {
         for (std::size_t i = 0; i < single.size(); ++i) {
             LayerBuilder builder;
             for (int copy = 0; copy < 2; ++copy)
-                for (std::size_t c = 0; c < single[i].contours(); ++c) {
-                    for (const Point2& p : single[i].contour(c))
-                        builder.add_point(p);
-                    builder.end_contour(true);
-                }
+                for (std::size_t c = 0; c < single[i].contours(); ++c)
+                    builder.add_contour(single[i].contour(c), true);
             EXPECT_TRUE(same_contours(twofold[i], builder.finish(0, 0, 0, 0))) << plan.name << ' ' << i;
         }
     }

@@ -9,9 +9,7 @@ namespace lamella {
 namespace {
 
 void add(LayerBuilder& builder, std::initializer_list<Point2> points, bool closed) {
-    for (const Point2& p : points)
-        builder.add_point(p);
-    builder.end_contour(closed);
+    builder.add_contour(points, closed);
 }
 
 TEST(PointArray, KeepsItsMemoryAliveThroughCopies) {

@@ -115,9 +115,7 @@ Layer random_layer(test::Random& random, const PlannedLayer& plane) {
         test::Contour ring = test::rectangle(x, y, x + random.real(0.1, 9), y + random.real(0.1, 9));
         if (random.integer(0, 2) == 0)
             ring = test::reversed(ring);
-        for (const Point2& p : ring)
-            builder.add_point(p);
-        builder.end_contour(true);
+        builder.add_contour(ring, true);
     }
     for (std::int64_t chains = random.integer(-3, 2); chains > 0; --chains) {
         for (std::int64_t points = random.integer(2, 5); points > 0; --points)

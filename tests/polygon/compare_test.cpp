@@ -18,16 +18,10 @@ using Contour = std::vector<Point2>;
 
 Layer layer_with(const std::vector<Contour>& rings, const std::vector<Contour>& chains = {}) {
     LayerBuilder builder;
-    for (const Contour& ring : rings) {
-        for (const Point2& p : ring)
-            builder.add_point(p);
-        builder.end_contour(true);
-    }
-    for (const Contour& chain : chains) {
-        for (const Point2& p : chain)
-            builder.add_point(p);
-        builder.end_contour(false);
-    }
+    for (const Contour& ring : rings)
+        builder.add_contour(ring, true);
+    for (const Contour& chain : chains)
+        builder.add_contour(chain, false);
     return builder.finish(0, 0, 0, 1);
 }
 

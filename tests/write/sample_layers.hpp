@@ -29,9 +29,7 @@ inline bool contains(const std::string& text, const std::string& part) {
 }
 
 inline void add_contour(LayerBuilder& builder, std::initializer_list<Point2> points, bool closed = true) {
-    for (const Point2& p : points)
-        builder.add_point(p);
-    builder.end_contour(closed);
+    builder.add_contour(points, closed);
 }
 
 /// Two layers of 0.5 mm: a square of 10 mm with a square hole of 2 mm; 96 mm^2.
