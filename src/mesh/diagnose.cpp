@@ -182,7 +182,6 @@ Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, con
     Diagnosis found;
     const Survey all = survey(executor, mesh, true);
     found.counts = all.found;
-    found.counts.box = bounding_box(mesh, execution);
     found.opposite_pairs = all.opposite_pairs;
 
     const auto keep_first = [&](auto& places) {

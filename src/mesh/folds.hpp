@@ -9,6 +9,7 @@
 #include "core/executor.hpp"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace lamella {
@@ -27,6 +28,16 @@ template <class Value, class Piece, class Merge>
     for (const Value& value : values)
         merge(total, value);
     return total;
+}
+
+[[nodiscard]] inline Box3 fold_box(Executor& executor, std::span<const Point3> points) {
+    const auto piece = [&](std::size_t begin, std::size_t end) {
+        Box3 box;
+        for (const Point3& p : points.subspan(begin, end - begin))
+            box.add(p);
+        return box;
+    };
+    return fold(executor, points.size(), Box3{}, piece, [](Box3& total, const Box3& box) { total.add(box); });
 }
 
 /// Six times the signed volume between a triangle and a point.

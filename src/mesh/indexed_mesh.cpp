@@ -77,14 +77,7 @@ void drop_unused_vertices(IndexedMesh& mesh, const Execution& execution) {
 
 Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
-    const auto piece = [&](std::size_t begin, std::size_t end) {
-        Box3 box;
-        for (std::size_t i = begin; i < end; ++i)
-            box.add(mesh.vertices[i]);
-        return box;
-    };
-    return fold(executor, mesh.vertices.size(), Box3{}, piece,
-                [](Box3& total, const Box3& box) { total.add(box); });
+    return fold_box(executor, mesh.vertices);
 }
 
 double volume(const IndexedMesh& mesh, const Execution& execution) {

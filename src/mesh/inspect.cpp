@@ -34,6 +34,7 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
     found = edges.counts;
     found.triangles = n;
     found.vertices = mesh.vertices.size();
+    found.box = fold_box(executor, mesh.vertices);
     all.opposite_pairs = edges.opposite_pairs;
     all.places = std::move(edges.places);
 
@@ -86,9 +87,7 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
 
 Inspection inspect(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
-    Inspection found = survey(executor, mesh, false).found;
-    found.box = bounding_box(mesh, execution);
-    return found;
+    return survey(executor, mesh, false).found;
 }
 
 } // namespace lamella

@@ -91,7 +91,7 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
     result.flat_triangles = fold(executor, n, std::uint64_t{0}, piece,
                                  [](std::uint64_t& total, std::uint64_t count) { total += count; });
 
-    const BoxTree tree(executor, mesh, bounding_box(mesh, execution),
+    const BoxTree tree(executor, mesh, fold_box(executor, mesh.vertices),
                        [&](std::uint32_t i) { return without_area[i] == 0; });
     std::vector<Found> found(executor.workers());
     constexpr std::size_t leaves_at_once = 256;

@@ -15,7 +15,7 @@
 namespace lamella {
 
 struct Survey {
-    Inspection found = {}; ///< without the box
+    Inspection found = {};
     std::uint64_t opposite_pairs = 0;
     EdgePlaces places = {};
     Shells shells;
