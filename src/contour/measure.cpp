@@ -1,11 +1,11 @@
 #include "lamella/contour/measure.hpp"
 
+#include "contour/distance.hpp"
 #include "contour/fan_area.hpp"
 #include "core/vector_clones.hpp"
 
 #include <array>
 #include <cassert>
-#include <cmath>
 
 namespace lamella {
 
@@ -26,17 +26,11 @@ bool begins_clockwise(const Layer& layer) noexcept {
 double contour_length(std::span<const Point2> contour, bool closed) noexcept {
     if (contour.size() < 2)
         return 0;
-    // Not std::hypot: it is many times slower, and squares of millimetres are far from overflow.
-    const auto distance = [](const Point2& a, const Point2& b) {
-        const double dx = b.x - a.x;
-        const double dy = b.y - a.y;
-        return std::sqrt(dx * dx + dy * dy);
-    };
     std::array<double, 4> sums{};
     for (std::size_t i = 1; i < contour.size(); ++i)
-        sums[i % 4] += distance(contour[i - 1], contour[i]);
+        sums[i % 4] += quick_distance(contour[i - 1], contour[i]);
     if (closed)
-        sums[0] += distance(contour.back(), contour.front());
+        sums[0] += quick_distance(contour.back(), contour.front());
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 

@@ -1,6 +1,7 @@
 #include "lamella/contour/exposure.hpp"
 
-#include <cmath>
+#include "contour/distance.hpp"
+
 #include <cstddef>
 #include <span>
 
@@ -20,21 +21,18 @@ ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters
     ScanFigures figures;
     std::uint64_t marks = 0; // runs of lines without a jump
     std::uint64_t jumps = 0;
-    const auto distance = [](const Point2& a, const Point2& b) {
-        return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-    };
     const auto jump = [&](const Point2& to) {
         if (beam && *beam == to && marks > 0)
             return;
         if (beam && *beam != to) {
-            figures.jumped_mm += distance(*beam, to);
+            figures.jumped_mm += quick_distance(*beam, to);
             ++jumps;
         }
         beam = to;
         ++marks;
     };
     const auto mark = [&](const Point2& to) {
-        figures.marked_mm += distance(*beam, to);
+        figures.marked_mm += quick_distance(*beam, to);
         ++figures.vectors;
         beam = to;
     };
