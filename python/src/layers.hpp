@@ -1,5 +1,7 @@
 #pragma once
 
+#include "made.hpp"
+
 #include <pybind11/pybind11.h>
 
 #include <string>

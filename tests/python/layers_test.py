@@ -239,6 +239,19 @@ def test_what_cannot_be_pickled_so_is_a_type_error(layer):
                     reduce()
 
 
+@pytest.mark.parametrize("base", [lamella.Stack, lamella.Layer, lamella.Mesh, lamella.LayerStream, lamella.Exposure,
+                                  lamella.ScanFigures, lamella.ParameterSet, lamella.HatchRule, lamella.ContourRule,
+                                  lamella.SkinRule, lamella.SupportRule, lamella.ScanStrategy])  # fmt: skip
+def test_objects_that_are_not_made_yet_are_a_type_error(base):
+    class Early(base):
+        pass
+
+    early = Early.__new__(Early)
+    for name in [name for name in dir(base) if isinstance(getattr(base, name), property)]:
+        with pytest.raises(TypeError, match="has not been called"):
+            getattr(early, name)
+
+
 def test_copies_are_the_same(layer):
     assert copy.copy(layer) == copy.deepcopy(layer) == layer
 
