@@ -92,7 +92,8 @@ void AtomicDirectory::check_replaceable() const {
     // put together from both folders.
     const auto is_foreign = [this](const fs::path& entry) {
         std::error_code ignored;
-        return !may_remove_(entry) && fs::exists(fs::symlink_status(entry, ignored));
+        // What cannot be looked at is there.
+        return !may_remove_(entry) && fs::symlink_status(entry, ignored).type() != fs::file_type::not_found;
     };
     fs::directory_iterator entries(target_, error);
     for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
@@ -165,7 +166,8 @@ void AtomicDirectory::commit() {
 }
 
 bool begins_with_mark(const fs::path& path, std::string_view mark) {
-    if (!fs::is_regular_file(fs::symlink_status(path)))
+    std::error_code ignored;
+    if (!fs::is_regular_file(fs::symlink_status(path, ignored)))
         return false;
     std::string begin(mark.size(), '\0');
     std::ifstream file(path, std::ios::binary);

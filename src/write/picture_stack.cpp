@@ -57,7 +57,8 @@ class Manifest {
 
 /// Of an entry of a folder that is there already.
 bool is_ours(const fs::path& path) {
-    if (!fs::is_regular_file(fs::symlink_status(path)) ||
+    std::error_code ignored;
+    if (!fs::is_regular_file(fs::symlink_status(path, ignored)) ||
         !begins_with_mark(path.parent_path() / manifest_name, manifest_mark))
         return false;
     const std::string name = path.filename().string();

@@ -168,6 +168,23 @@ class Pictures(ProgramTest):
         self.assertIn("open chain", result.err)
         self.assertEqual(Picture(self.archive("part.zip").read("00000.png")).covered(), 0)
 
+    def test_what_cannot_be_looked_at_is_not_removed(self):
+        self.box()
+        self.folder.chmod(0o777)
+        for name in ["png", "svg-layers"]:
+            with self.subTest(name):
+                out = self.path(name)
+                out.mkdir()
+                (out / "thesis.txt").write_text("years")
+                if UNPRIVILEGED:
+                    os.chown(out, UNPRIVILEGED["user"], UNPRIVILEGED["group"])
+                out.chmod(0o444)
+                result = self.run_program("slice", "box.stl", "-o", name, "--format", name, **UNPRIVILEGED)
+                out.chmod(0o700)
+                self.assertEqual(result.code, 6, result.err)
+                self.assertIn("holds something else", result.err)
+                self.assertEqual((out / "thesis.txt").read_text(), "years")
+
     def test_a_folder_that_may_not_be_searched(self):
         self.box()
         locked = self.path("locked")
