@@ -375,8 +375,8 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     finish_input(arguments);
     arguments.output = items.front().output;
     arguments.stats = items.front().stats;
-    // Lists and strategies may come from pipes.
     const Execution execution = arguments.run.execution(context);
+    // Lists and strategies may come from pipes.
     FileJob model =
         Deadline(arguments.timeout, one_line(input_name(arguments.batch.source)), context.messages, execution)
             .run([&](const Execution&) { return make_job(arguments); });

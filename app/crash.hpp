@@ -20,7 +20,7 @@ namespace lamella::app {
 /// the exit code of limits; a worker, which tells nobody, ends by that signal.
 void prepare_for_crashes() noexcept;
 
-/// How a lost page is told from now on; until then, it is told to people.
+/// How a lost page, and processor time that is used up, are told from now on; until then, to people.
 void tell_crashes(ProgressStyle style) noexcept;
 
 /// The exit code of a program that lost a page of its input.

@@ -54,7 +54,8 @@ void register_errors() {
         } catch (const py::error_already_set&) {
             throw;                        // Python's own
         } catch (const py::cast_error&) { // see made.hpp; of pointers pybind11 looks itself
-            PyErr_SetString(PyExc_TypeError, "an object is not made yet: its __init__ has not been called");
+            PyErr_SetString(PyExc_TypeError,
+                            "an object cannot be used: perhaps its __init__ has not been called");
         } catch (const py::builtin_exception&) {
             throw; // likewise
         } catch (const std::bad_alloc&) {

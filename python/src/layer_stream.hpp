@@ -6,6 +6,7 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "made.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"

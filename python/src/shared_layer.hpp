@@ -9,6 +9,8 @@
 #include "lamella/mesh/transform.hpp"
 #include "lamella/polygon/nesting.hpp"
 
+#include "made.hpp"
+
 #include <cstdint>
 #include <memory>
 #include <mutex>

@@ -8,6 +8,8 @@
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/read/mesh_file.hpp"
 
+#include "made.hpp"
+
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
@@ -32,7 +34,7 @@ struct MeshOrigin {
 };
 
 /// What a mesh is before it is placed. All that moves and turns it is put together before it is applied, as
-/// the program does: coordinates are rounded once.
+/// the program does: coordinates are rounded once. One that was pickled begins anew from those that it has.
 struct MeshSource {
     std::shared_ptr<const MeshFile> file;
     std::optional<double> unit_mm = {}; ///< where the file states none

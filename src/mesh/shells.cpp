@@ -47,14 +47,14 @@ void ShellContent::add(const ShellContent& other) noexcept {
 
 std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
                                          std::span<const Point3> origins) {
-    const auto six_volumes = [&](const Triangle3& t, const Point3& origin) {
+    const auto six_volumes_by_normal = [&](const Triangle3& t, const Point3& origin) {
         const Point3 n = normal(t);
         return (t[0].x - origin.x) * n.x + (t[0].y - origin.y) * n.y + (t[0].z - origin.z) * n.z;
     };
     const auto carefully = [&](std::size_t i) -> ShellContent {
         const Triangle3 t = in_order(corners(mesh, i));
         const Point3& origin = origins[shells.of_triangle[i]];
-        const double six = six_volumes(t, origin);
+        const double six = six_volumes_by_normal(t, origin);
         return {runs_in_order(corners(mesh, i)) ? six : -six,
                 distance(t[0], origin) * distance(t[0], t[1]) * distance(t[0], t[2]), 1};
     };
@@ -66,7 +66,7 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
         const Triangle3 t = corners(mesh, i);
         const Point3& origin = origins[shells.of_triangle[i]];
         const double side = std::max({way(t[0], t[1]), way(t[1], t[2]), way(t[2], t[0])});
-        return {six_volumes(t, origin), (way(t[0], origin) + side) * side * side, 1};
+        return {six_volumes_by_normal(t, origin), (way(t[0], origin) + side) * side * side, 1};
     };
     using Contents = std::vector<std::pair<std::uint32_t, ShellContent>>; // stretches of one shell, in order
     const auto piece = [&](std::size_t begin, std::size_t end) {

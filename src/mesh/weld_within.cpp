@@ -1,8 +1,7 @@
 // Welding with a tolerance, in four steps:
 //
 //     points   equal vertices are one point; points are numbered in lexicographic order, so that nothing
-//     below
-//              depends on the order of the mesh
+//              that follows depends on the order of the mesh
 //     pairs    points no further apart than the tolerance, found by a grid of cells that wide
 //     join     the closest pair first, as long as a group fits a box of that diagonal
 //     rewrite  triangles, from vertices to the first point of their groups

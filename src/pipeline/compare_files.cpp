@@ -4,9 +4,12 @@
 
 #include "contour/distance.hpp"
 #include "contour/same_height.hpp"
+#include "core/executor.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <limits>
 #include <map>
@@ -207,7 +210,18 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
             others.push_back({other});
         }
     }
-    for (ComparedPlane& plane : result.layers.planes) {
+    // Contours that differ all together are told anyway.
+    std::vector<char> alike(result.layers.planes.size(), 1);
+    Executor executor(execution);
+    executor.for_chunks(alike.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        for (std::uint64_t i = begin; i < end; ++i)
+            if (const ComparedPlane& plane = result.layers.planes[i];
+                plane.first && plane.second && plane.agree)
+                alike[i] = exposed_alike(pairs, *plane.first, *plane.second, of_contours) ? 1 : 0;
+    });
+    executor.check_cancelled();
+    for (std::size_t k = 0; k < result.layers.planes.size(); ++k) {
+        ComparedPlane& plane = result.layers.planes[k];
         PlaneDetails& details = result.details.emplace_back();
         if (plane.first && plane.second) {
             for (std::size_t i = 0; i < ones.size(); ++i)
@@ -220,9 +234,7 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                                                                       moved_cut(other, second.rounding) +
                                                                       same_height_mm;
             plane.agree = plane.agree && details.heights_agree && details.hatch_distance_mm <= of_ends;
-            // Where contours differ all together, that is told.
-            details.exposed_alike =
-                !plane.agree || exposed_alike(pairs, *plane.first, *plane.second, of_contours);
+            details.exposed_alike = alike[k] != 0;
             plane.agree = plane.agree && details.exposed_alike;
             details.same = plane.difference.same && details.height_distance_mm == 0 &&
                            details.hatch_distance_mm == 0 && details.exposed_alike;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <tuple>
 
 namespace lamella {
 
@@ -17,8 +18,9 @@ std::vector<const Layer*> from_the_lowest(std::span<const Layer> layers) {
     std::vector<const Layer*> ascending;
     for (const Layer& layer : layers)
         ascending.push_back(&layer);
-    std::stable_sort(ascending.begin(), ascending.end(),
-                     [](const Layer* a, const Layer* b) { return a->bottom < b->bottom; });
+    std::stable_sort(ascending.begin(), ascending.end(), [](const Layer* a, const Layer* b) {
+        return std::tuple(a->bottom, a->top, a->z) < std::tuple(b->bottom, b->top, b->z);
+    });
     return ascending;
 }
 

@@ -135,16 +135,13 @@ void LayerTotals::gather(Communicator& processes) {
 }
 
 void LayerTotals::tell(FileResult& result) const {
-    const auto count = [](bool affected, double z, auto& into) {
-        if (affected && into.layers++ == 0)
-            into.first_z = z;
-    };
     for (const Row& row : rows_) {
         result.doubts.add(row.z, row.open_gaps, row.inside_out);
         result.thin.add(row.thin_rings, row.z);
     }
     for (std::size_t i = 0; i < closed_.size(); ++i) {
-        count(closed_[i].closed > 0, rows_[i].z, result.gaps);
+        if (closed_[i].closed > 0 && result.gaps.layers++ == 0)
+            result.gaps.first_z = rows_[i].z;
         result.gaps.closed += closed_[i].closed;
         result.gaps.longest_mm = std::max(result.gaps.longest_mm, closed_[i].longest_mm);
         result.gaps.total_mm += closed_[i].total_mm;

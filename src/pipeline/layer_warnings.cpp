@@ -16,8 +16,8 @@ std::string counted(std::uint64_t n, std::string_view noun) {
 
 /// "in 3 of 20 layers, first at z = 0.25 mm".
 std::string where(const AffectedLayers& affected, std::uint64_t layers) {
-    constexpr double left_of_0 = 1e-7; // by numbers in single precision
-    const double z = std::abs(affected.first_z) < left_of_0 ? 0 : affected.first_z;
+    constexpr double nearly_0 = 1e-7; // what single precision leaves where 0 is meant
+    const double z = std::abs(affected.first_z) < nearly_0 ? 0 : affected.first_z;
     return fmt::format("in {} of {}, first at z = {:.6g} mm", affected.layers, counted(layers, "layer"), z);
 }
 

@@ -158,8 +158,8 @@ struct CommonLayerFile {
                             path));
 }
 
-/// Where the first command of the binary form ends, a layer; its end where there is no such. The commands
-/// have to end where the file does.
+/// Where the first command of the binary form ends, which has to be a layer. The last one has to end where
+/// the file does.
 std::size_t end_of_first_layer(std::string_view text, std::size_t begin, const std::string& path) {
     const auto number = [&]<class T>(std::size_t at, T value) -> std::uint64_t {
         if (text.size() - begin < at + sizeof value)
@@ -191,11 +191,15 @@ std::size_t end_of_first_layer(std::string_view text, std::size_t begin, const s
             size = 6 + 8 * number(4, std::uint16_t{});
             break;
         }
-        if (size == 0 || size > text.size() - begin || (first == 0 && size > 6))
+        const bool layer =
+            command == CommonLayerCommand::layer_long || command == CommonLayerCommand::layer_short;
+        if (size == 0 || size > text.size() - begin || (first == 0 && !layer))
             refuse_layout(path);
         begin += size;
         first = first == 0 ? begin : first;
     }
+    if (first == 0)
+        refuse_layout(path);
     return first;
 }
 

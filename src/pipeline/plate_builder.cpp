@@ -52,7 +52,7 @@ void check_range(const Box3& box, const std::string& path) {
         const double to = std::array{box.max.x, box.max.y, box.max.z}[axis];
         if (is_too_far(from) || is_too_far(to))
             throw Error(ErrorKind::usage,
-                        fmt::format("{}: the mesh reaches beyond {} mm, to {} mm; a smaller unit, scale or "
+                        fmt::format("{}: reaches beyond {} mm, to {} mm; a smaller unit, scale or "
                                     "translation keeps it within",
                                     path, farthest_mm, std::abs(from) > std::abs(to) ? from : to));
         farthest = std::max({farthest, std::abs(from), std::abs(to)});

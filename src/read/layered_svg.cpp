@@ -134,7 +134,9 @@ class SvgReader {
             if (local(element) != "svg")
                 fail(line, fmt::format("found <{}>; the document must be <svg>", printable(element, 40)));
             if (const std::string_view height = attributes.find("height"); height.data() != nullptr)
-                height_ = Numbers(height, name_, line).next(); // a unit may follow
+                // A unit may follow, also one that begins like an exponent (em, ex).
+                height_ =
+                    Numbers(height.substr(0, height.find_last_of("0123456789.") + 1), name_, line).next();
             if (const std::string_view origin = attributes.find("data-lamella-origin");
                 origin.data() != nullptr) {
                 Numbers numbers(origin, name_, line);

@@ -201,12 +201,15 @@ class BadInput(ProgramTest):
         for path in [self.folder, inner]:
             path.chmod(0o777)
         self.addCleanup(self.path("locked").chmod, 0o700)
-        self.path("locked").chmod(0o700)
         # Whoever is not root locks his own folder once the program's process is in it.
         keywords = {"cwd": inner, **(UNPRIVILEGED or {"preexec_fn": lambda: os.chmod("..", 0)})}
+
+        def run(*arguments):
+            self.path("locked").chmod(0o700)
+            return self.run_program(*arguments, **keywords)
         for arguments in [["slice", "box.stl", "-o", "x.cli", "--stats", "x.json"], ["convert", "x.cli", "y.svg"]]:
-            self.assertEqual(self.run_program(*arguments, **keywords).err, "")
-        result = self.run_program("slice", "box.stl", "-o", "../inner/box.stl", "--format", "cli", **keywords)
+            self.assertEqual(run(*arguments).err, "")
+        result = run("slice", "box.stl", "-o", "../inner/box.stl", "--format", "cli")
         self.assertEqual(result.code, 2)
         self.assertIn("overwrite", result.err)
         self.path("locked").chmod(0o700)

@@ -213,6 +213,14 @@ TEST(Verify, FindsLayersThatOverlapInHeight) {
         std::string::npos)
         << found.findings[0];
     EXPECT_TRUE(verify(layers, {.rounding = {.step_mm = 0.001}}).ok());
+    for (const std::vector<double>& tops : {std::vector<double>{2, 1, 1}, {1, 1, 2}}) {
+        for (std::size_t i = 0; i < tops.size(); ++i) {
+            layers[i].bottom = 0;
+            layers[i].z = 0.5;
+            layers[i].top = tops[i];
+        }
+        EXPECT_EQ(verify(layers).height_overlaps, 1U) << "in any order";
+    }
 }
 
 TEST(Verify, ComparesNoAreaOfLayersWithOpenChains) {

@@ -125,7 +125,7 @@ def test_impossible_plans_are_errors_of_usage(program, rook, keywords, options):
         ({"transform": np.ones((4, 4))}, "the last row of a transform"),
         ({"transform": np.full((4, 4), np.nan)}, "transform"),
         ({"transform": np.diag([1, 1, 1e308, 1]), "z": [1]}, "transform: .* no finite numbers"),
-        ({"transform": np.diag([1, 1, 1e101, 1]), "z": [1]}, "^the mesh: the mesh reaches beyond 1e.100 mm"),
+        ({"transform": np.diag([1, 1, 1e101, 1]), "z": [1]}, "^the mesh: reaches beyond 1e.100 mm"),
         ({"transform": np.eye(4) + [[0, 0, 0, 1e17], *[[0] * 4] * 3]}, "^the mesh: .* away, where numbers are 22 mm apart"),
         ({"transform": np.diag([7e306, 5e306, 1.5e307, 1]), "direction": (1, 1, 1), "z": [1]}, "reaches beyond 1e.100 mm"),
     ],

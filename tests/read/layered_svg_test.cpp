@@ -115,6 +115,8 @@ TEST(ReadLayeredSvg, AnAttributeThatIsNoNumberToItsEndIsRefused) {
     std::string sized = svg("<g slic3r:z=\"1\">" + square + "</g>");
     sized.replace(sized.find("height=\"10\""), 11, "height=\"10mm\"");
     EXPECT_TRUE(read(sized).warnings.empty());
+    sized.replace(sized.find("10mm"), 4, "10em"); // not an exponent
+    EXPECT_TRUE(read(sized).warnings.empty());
 }
 
 TEST(ReadLayeredSvg, NoSlabIsUpsideDown) {

@@ -81,7 +81,7 @@ class LayerBuilder {
     void add_point(const Point2& p) { points_.push_back({p.x + 0.0, p.y + 0.0}); }
     /// Ends the contour under construction. One without points is forgotten.
     void end_contour(bool closed);
-    /// Appends a whole contour.
+    /// Appends a whole contour, while none is under construction.
     void add_contour(std::span<const Point2> points, bool closed);
     /// The layer, in normal form, with index, z, bottom and top as given. The builder is empty afterwards.
     [[nodiscard]] Layer finish(std::uint64_t index, double z, double bottom, double top);

@@ -3,7 +3,7 @@
 // Runs: contours over the planes that one walk serves.
 //
 // A sequence of nodes stays valid up to the first event in it: a node that ends or turns to its other
-// successor. All planes up to there are a run.
+// successor. All planes up to there are a run, but for a bound on its length.
 
 #include "lamella/core/point.hpp"
 #include "lamella/slicing/plan.hpp"

@@ -2,7 +2,7 @@
 
 // Reading contours off the cut graph: from a node that begins on a plane, follow `next` until the start is
 // reached. A contour without a new node is the continuation of one on the plane below; it is not searched
-// for.
+// for, but after `longest_run` planes, from one of its nodes.
 
 #include "lamella/slicing/plan.hpp"
 
