@@ -120,8 +120,10 @@ Figures vector_figures(const LayerFile& file) {
 Figures figures_of(const LayerFile& file) {
     LayerMeasure all;
     double volume_mm3 = 0;
+    std::uint64_t other_hatches = 0; // of no exposure
     for (const LayerPart& part : file.parts)
         for (const Layer& layer : part.layers) {
+            other_hatches += part.exposure ? 0 : layer.hatches.size() / 2;
             const LayerMeasure measured = measure(layer);
             all.add(measured);
             volume_mm3 += measured.area_mm2 * layer.thickness();
@@ -136,6 +138,9 @@ Figures figures_of(const LayerFile& file) {
         range.text = fmt::format("z = {} to {} mm", height(bottom), height(top));
     }
     figures.insert(figures.begin() + 1, std::move(range));
+    if (other_hatches > 0)
+        figures.push_back(
+            {"hatches", other_hatches, "hatched", counted(other_hatches, "line") + " of no exposure"});
     if (holds_vectors(file)) {
         // Contours of an exposure lie within those of others: they bound no volume together.
         std::erase_if(figures, [](const Figure& figure) { return figure.key == "volume_mm3"; });

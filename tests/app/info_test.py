@@ -131,6 +131,12 @@ class Info(ProgramTest):
         found = self.info("-", stdin=self.bytes_of("box.stl"))
         self.assertEqual((found["path"], found["format"], found["triangles"]), ("-", "stl-ascii", 12))
 
+    def test_lines_of_no_exposure_are_told(self):
+        self.write("lines.cli", "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$LAYERS/2\n$$HEADEREND\n$$GEOMETRYSTART\n"
+                   "$$LAYER/0.0\n$$LAYER/1.0\n$$POLYLINE/1,1,4,0,0,9,0,9,9,0,0\n$$HATCHES/1,2,1,1,8,1,2,2,8,2\n$$GEOMETRYEND\n")
+        self.assertEqual(self.succeed("info", "lines.cli", "--json").json()["hatches"], 2)
+        self.assertIn(b"2 lines of no exposure", self.succeed("info", "lines.cli").out)
+
     def test_slice_files(self):
         self.box()
         for name in ["box.cli", "box.svg"]:
