@@ -45,19 +45,17 @@ std::string error_of(std::string_view document, const XmlRules& rules = {}) {
 }
 
 TEST(Xml, AnElementDeclaresNoMoreNamespacesThanItMayHaveAttributes) {
-    const auto declared = [](int count) {
+    const auto declare = [](int count) {
         std::string document = "<a><b";
         for (int i = 0; i < count; ++i)
             document += fmt::format(" xmlns:p{0}='u{0}'", i);
         Told told;
         told.handlers.declare = [](std::string_view, std::string_view) {
         };
-        return [document = document + "/><c xmlns='d'/></a>", handlers = told.handlers] {
-            parse_xml(document, "x.xml", handlers, {.namespaces = true});
-        };
+        parse_xml(document + "/><c xmlns='d'/></a>", "x.xml", told.handlers, {.namespaces = true});
     };
-    EXPECT_NO_THROW(declared(1000)());
-    EXPECT_THROW(declared(1001)(), Error);
+    EXPECT_NO_THROW(declare(1000));
+    EXPECT_THROW(declare(1001), Error);
 }
 
 TEST(Xml, NamesAreAsWrittenUnlessNamespacesAreResolved) {
