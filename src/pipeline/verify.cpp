@@ -124,11 +124,12 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
                                               layers.size() - compared == 1 ? "was" : "were"));
     if (differing > 0) {
         result.areas_agree = false;
-        result.findings.push_back(fmt::format("{} layer{} of another area than the mesh's section, the first "
-                                              "is {}: {:.7g} mm2 instead of {:.7g} mm2",
-                                              differing, differing == 1 ? " is" : "s are",
-                                              where(layers[first]), checks[first].measure.area_mm2,
-                                              sections[first].front().area_mm2));
+        result.findings.push_back(
+            fmt::format("{} layer{} of another area than the mesh's section, the first "
+                        "is {}: {:.7g} mm2 instead of {:.7g} mm2, {:.2g} mm2 off",
+                        differing, differing == 1 ? " is" : "s are", where(layers[first]),
+                        checks[first].measure.area_mm2, sections[first].front().area_mm2,
+                        std::abs(checks[first].measure.area_mm2 - sections[first].front().area_mm2)));
     }
     if (result.displaced > 0) {
         const auto centre = [&](const AreaMoments& section) -> std::string {

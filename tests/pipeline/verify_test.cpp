@@ -140,7 +140,7 @@ TEST(Verify, ComparesAreasWithTheMesh) {
     EXPECT_EQ(differing.findings,
               std::vector<std::string>{
                   "1 layer is of another area than the mesh's section, the first is layer 1 (z "
-                  "1.5 mm): 16.25 mm2 instead of 16 mm2"});
+                  "1.5 mm): 16.25 mm2 instead of 16 mm2, 0.25 mm2 off"});
 }
 
 TEST(Verify, MissesLayersThatAreNotThere) {
