@@ -1,5 +1,5 @@
-// Does the cost stay flat? Time per triangle and point from 10^4 to 10^7 triangles, and from 30 to 3,000
-// planes.
+// Does the cost stay flat? Time per triangle and point, and memory, from 10^4 to 10^7 triangles, and from 30
+// to 3,000 planes. Layers are dropped when they are done.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <iostream>
+#include <vector>
 
 namespace lamella::bench {
 
@@ -20,25 +23,55 @@ struct Run {
     double worst_area_error;
 };
 
-/// From a soup in memory to layers in memory, checked.
+/// From a soup in memory to layers, checked.
 Run slice_soup(const TriangleSoup& soup, unsigned planes, unsigned threads) {
     const Execution execution{.threads = threads};
     const Box3 box = bounding_box(soup, execution);
     const Plan plan = plan_uniform(box.min.z, box.max.z,
                                    {.layer_height = (box.max.z - box.min.z) / static_cast<double>(planes)});
     SliceReport report;
+    std::vector<double> found(plan.layers.size());
+    const auto sink = [&](Layer&& layer) -> std::function<void()> {
+        found[layer.index] = measure(layer).area_mm2;
+        return {};
+    };
     const auto start = Clock::now();
-    const LayerStack layers = slice(soup, plan, execution, &report);
+    slice_to(sink, soup, plan, execution, &report);
     Run run{seconds_since(start), soup.size(), report.points, report.open_chains, 0};
     const std::vector<double> areas = section_areas(soup, plan, execution);
     double largest = 0;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
+    for (std::size_t i = 0; i < areas.size(); ++i) {
         largest = std::max(largest, std::abs(areas[i]));
-        run.worst_area_error =
-            std::max(run.worst_area_error, std::abs(measure(layers[i]).area_mm2 - areas[i]));
+        run.worst_area_error = std::max(run.worst_area_error, std::abs(found[i] - areas[i]));
     }
     run.worst_area_error /= largest;
     return run;
+}
+
+/// Upright pins beside a torus with as many corners on a plane as they have together: contours that nothing
+/// ever happens to, beside one that changes on every plane.
+TriangleSoup make_pins_and_torus() {
+    constexpr unsigned side = 64;
+    const TriangleSoup pin = make_box(1, 1, 100);
+    std::vector<Triangle3f> triangles;
+    for (unsigned i = 0; i < side * side; ++i) {
+        const auto x = static_cast<float>(2 * (i % side));
+        const auto y = static_cast<float>(2 * (i / side));
+        for (std::size_t k = 0; k < pin.size(); ++k) {
+            Triangle3f t = pin.stored(k);
+            for (Point3f& p : t)
+                p = {p.x + x, p.y + y, p.z};
+            triangles.push_back(t);
+        }
+    }
+    const TriangleSoup torus = make_torus(100, 50, 12000, 50);
+    for (std::size_t k = 0; k < torus.size(); ++k) {
+        Triangle3f t = torus.stored(k);
+        for (Point3f& p : t)
+            p = {p.x - 200, p.y, p.z + 50};
+        triangles.push_back(t);
+    }
+    return TriangleSoup(triangles);
 }
 
 class Report {
@@ -47,16 +80,20 @@ class Report {
 
     void add(const std::string& part, const std::function<TriangleSoup()>& make, unsigned planes) {
         std::vector<double> seconds;
+        std::vector<double> peaks;
         Run last{};
         for (int round = 0; round < rounds_; ++round) {
-            last = measure_in_child<Run>([&] { return slice_soup(make(), planes, threads_); }).result;
+            const auto measured = measure_in_child<Run>([&] { return slice_soup(make(), planes, threads_); });
+            last = measured.result;
             seconds.push_back(last.seconds);
+            peaks.push_back(static_cast<double>(measured.peak_bytes));
             right_ = right_ && last.open_chains == 0 && last.worst_area_error < 1e-9;
         }
         const double work = static_cast<double>(last.triangles + last.points);
         table_.add({part, fmt::format("{}", last.triangles), fmt::format("{}", planes),
                     fmt::format("{}", last.points), fmt::format("{:.5f}", median(seconds)),
-                    fmt::format("{:.2f}", median(seconds) / work * 1e9)});
+                    fmt::format("{:.2f}", median(seconds) / work * 1e9),
+                    fmt::format("{:.0f}", median(peaks) / 1e6)});
     }
 
     int finish() const {
@@ -70,7 +107,7 @@ class Report {
     int rounds_;
     unsigned threads_;
     bool right_ = true;
-    Table table_{{"part", "triangles", "planes", "points", "seconds", "ns per triangle + point"}};
+    Table table_{{"part", "triangles", "planes", "points", "seconds", "ns per triangle + point", "peak MB"}};
 };
 
 } // namespace
@@ -98,5 +135,8 @@ int main(int argc, char** argv) {
     for (const unsigned planes : {30U, 100U, 300U, 1000U, 3000U})
         report.add(
             "sheet 100", [] { return make_sheet({.holes = 100}); }, planes);
+    // Contours that last, beside others that change.
+    for (const unsigned planes : {100U, 300U, 1000U})
+        report.add("pins and torus", make_pins_and_torus, planes);
     return report.finish();
 }
