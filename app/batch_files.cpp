@@ -5,7 +5,6 @@
 
 #include "names.hpp"
 #include "numbers.hpp"
-#include "options.hpp"
 #include "standard_streams.hpp"
 #include "text_file.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "layer_file_info.hpp"
+#include "layer_file.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"

@@ -10,7 +10,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
-#include "layer_file_info.hpp"
+#include "layer_file.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
@@ -23,7 +23,6 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>

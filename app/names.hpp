@@ -25,4 +25,8 @@ template <class Range>
     return extension;
 }
 
+/// The only name of a file, which need not exist: where links to it lead. Where the system does not tell,
+/// such as in a folder that may not be searched, the name as it is, without "." and "..".
+[[nodiscard]] std::filesystem::path place_of(const std::string& name);
+
 } // namespace lamella::app

@@ -361,18 +361,6 @@ const std::vector<std::string>& slice_at_names() {
     return names;
 }
 
-std::filesystem::path place_of(const std::string& name) {
-    constexpr int most_links = 40; // what Linux allows
-    std::error_code error;
-    std::filesystem::path path = std::filesystem::absolute(name, error);
-    if (error)
-        path = name;
-    for (int i = 0; i < most_links && std::filesystem::is_symlink(path, error); ++i)
-        path = path.parent_path() / std::filesystem::read_symlink(path, error);
-    const std::filesystem::path place = std::filesystem::weakly_canonical(path, error);
-    return error ? path.lexically_normal() : place;
-}
-
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason) {
     if (first && second)
         throw Error(ErrorKind::usage, fmt::format("{} contradict each other: {}", names, reason));

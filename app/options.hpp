@@ -15,7 +15,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -130,10 +129,6 @@ struct LayerStepOptions {
 
 /// Throws Error{usage} that names two options, where both are given and cannot go together.
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason);
-
-/// The only name of a file, which need not exist: where links to it lead. Where the system does not tell,
-/// such as in a folder that may not be searched, the name as it is, without "." and "..".
-[[nodiscard]] std::filesystem::path place_of(const std::string& name);
 
 /// Throws Error{usage} when a result would overwrite a file that it is made from, or another result. `more`
 /// are results that no option names.

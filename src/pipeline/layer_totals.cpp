@@ -140,8 +140,8 @@ void LayerTotals::tell(FileResult& result) const {
         result.thin.add(row.thin_rings, row.z);
     }
     for (std::size_t i = 0; i < closed_.size(); ++i) {
-        if (closed_[i].closed > 0 && result.gaps.layers++ == 0)
-            result.gaps.first_z = rows_[i].z;
+        if (closed_[i].closed > 0)
+            result.gaps.add(rows_[i].z);
         result.gaps.closed += closed_[i].closed;
         result.gaps.longest_mm = std::max(result.gaps.longest_mm, closed_[i].longest_mm);
         result.gaps.total_mm += closed_[i].total_mm;

@@ -2,17 +2,14 @@
 
 #include "lamella/contour/measure.hpp"
 
+#include "core/counted.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
-#include <string_view>
 
 namespace lamella {
 namespace {
-
-std::string counted(std::uint64_t n, std::string_view noun) {
-    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
 
 /// "in 3 of 20 layers, first at z = 0.25 mm".
 std::string where(const AffectedLayers& affected, std::uint64_t layers) {

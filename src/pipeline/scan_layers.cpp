@@ -19,8 +19,8 @@ namespace lamella {
 
 void ThinRings::add(std::uint64_t count, double z) noexcept {
     rings += count;
-    if (count > 0 && layers++ == 0)
-        first_z = z;
+    if (count > 0)
+        AffectedLayers::add(z);
 }
 
 std::string ThinRings::text() const {

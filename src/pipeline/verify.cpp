@@ -4,9 +4,10 @@
 
 #include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
+#include "core/counted.hpp"
 #include "core/executor.hpp"
-#include "pipeline/covered_heights.hpp"
 #include "pipeline/layer_check.hpp"
+#include "pipeline/layer_heights.hpp"
 #include "pipeline/moved_cuts.hpp"
 #include "slicing/section_moments.hpp"
 
@@ -64,7 +65,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     const Point2 origin =
         box.empty() ? Point2{} : Point2{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
     const LayerSteps steps = steps_to_repeat(options.steps);
-    const auto sections = at_moved_cuts(layers, options.rounding, options.rule, [&](const Plan& plan) {
+    const auto sections = at_moved_cuts(layers, options.granted(), options.rule, [&](const Plan& plan) {
         if (!steps.any())
             return section_moments(*options.mesh, plan, origin, execution);
         std::vector<AreaMoments> made;
@@ -82,7 +83,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         const LayerMeasure& measure = checks[i].measure;
         own[i] = {area_moments(layers[i], origin),
-                  area_tolerance(layers[i], measure, options.rounding, extent) +
+                  area_tolerance(layers[i], measure, options.granted(), extent) +
                       2 * options.steps.simplify_mm * measure.perimeter_mm,
                   extent / 2};
         for (const Point2& p : layers[i].points)
@@ -169,7 +170,7 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        checks[i] = check_layer(layers[i], options.rounding);
+        checks[i] = check_layer(layers[i], options.granted());
         progress.add(1);
     });
     progress.finish();
@@ -200,14 +201,15 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
          {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
           "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
          result.findings);
-    result.height_overlaps = overlapping_heights(layers, options.rounding, result.findings);
+    result.height_overlaps = overlapping_heights(layers, options.granted(), result.findings);
     if (result.hatches > 0)
-        result.findings.push_back(fmt::format("{} hatch line{} not checked: nothing tells what {} to fill",
-                                              result.hatches, result.hatches == 1 ? " was" : "s were",
-                                              result.hatches == 1 ? "it is" : "they are"));
+        result.findings.push_back(
+            counted(result.hatches, "hatch line was not checked: nothing tells what it is to fill",
+                    "hatch lines were not checked: nothing tells what they are to fill"));
     if (options.mesh) {
         compare_areas(layers, checks, options, execution, result);
-        result.heights = covered_heights(layers, *options.mesh, options.rounding, execution, result.findings);
+        result.heights =
+            covered_heights(layers, *options.mesh, options.granted(), execution, result.findings);
     }
     return result;
 }

@@ -6,8 +6,8 @@
 
 #include "contour/distance.hpp"
 #include "core/executor.hpp"
-#include "pipeline/covered_heights.hpp"
 #include "pipeline/layer_check.hpp"
+#include "pipeline/layer_heights.hpp"
 #include "pipeline/length_around.hpp"
 #include "pipeline/moved_cuts.hpp"
 #include "polygon/edge_tree.hpp"
@@ -314,7 +314,7 @@ class VectorCheck {
 
     /// Contours of one number neither cross nor lie within one another's material.
     [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
-        ContourFindings found = check_layer(vectors, options_.rounding).found;
+        ContourFindings found = check_layer(vectors, options_.granted()).found;
         if (exposure.contour > 0)
             found.misoriented.add(found.overlapping);
         return found;
@@ -525,7 +525,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     result.layers = planes.size();
     std::vector<std::vector<Layer>> sections;
     if (options.mesh)
-        sections = at_moved_cuts(planes, options.rounding, options.rule, [&](const Plan& plan) {
+        sections = at_moved_cuts(planes, options.granted(), options.rule, [&](const Plan& plan) {
             return layers_of(*options.mesh, plan, steps_to_repeat(options.steps), execution);
         });
 
@@ -536,7 +536,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
                 largest = std::max({largest, largest_coordinate(layer.points.span()),
                                     largest_coordinate(layer.hatches.span())});
     // Ends of lines and points of contours, each moved along both axes; and what arithmetic moves.
-    const double rounding = std::sqrt(2.0) * options.rounding.step_at(largest) + 0x1p-34 * largest;
+    const double rounding = std::sqrt(2.0) * options.granted().step_at(largest) + 0x1p-34 * largest;
 
     Executor executor(execution);
     const VectorCheck vectors(
@@ -589,9 +589,10 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         result.wrong_contours += row.second.missing.total + row.second.elsewhere.total;
         tell_row(row.first, row.second, result.findings);
     }
-    result.height_overlaps = overlapping_heights(planes, options.rounding, result.findings);
+    result.height_overlaps = overlapping_heights(planes, options.granted(), result.findings);
     if (options.mesh)
-        result.heights = covered_heights(planes, *options.mesh, options.rounding, execution, result.findings);
+        result.heights =
+            covered_heights(planes, *options.mesh, options.granted(), execution, result.findings);
     if (result.unbounded > 0)
         result.findings.push_back(fmt::format(
             "of {} vector{} nothing tells where the material is: no closed contour is around them",

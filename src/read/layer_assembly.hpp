@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/read/layer_file.hpp"
 
+#include "core/counted.hpp"
 #include "core/distinct_names.hpp"
 #include "read/read_limits.hpp"
 
@@ -205,10 +206,8 @@ void sort_by_height(std::vector<T>& layers, std::vector<std::string>& warnings, 
     }
     if (joined != 0) {
         layers.resize(kept + 1);
-        warnings.push_back(joined == 1 ? "1 layer has the height of the one before; they were joined"
-                                       : fmt::format("{} layers have the height of the one before; they were "
-                                                     "joined",
-                                                     joined));
+        warnings.push_back(counted(joined, "layer has the height of the one before; it was joined with that",
+                                   "layers have the height of the one before; they were joined"));
     }
 }
 void sort_by_height(std::vector<RawLayer>& layers, std::vector<std::string>& warnings);

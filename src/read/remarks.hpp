@@ -4,6 +4,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/counted.hpp"
+
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -14,11 +16,6 @@
 #include <vector>
 
 namespace lamella {
-
-/// "1 object has no triangle", "2 objects have no triangle".
-[[nodiscard]] inline std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-}
 
 /// How often something odd occurs in a file, and where first.
 struct Occurrences {

@@ -13,16 +13,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <string>
-#include <system_error>
 #include <utility>
 
 namespace lamella {
@@ -243,21 +239,6 @@ class Sl1Writer final : public OrderedWriter {
 };
 
 } // namespace
-
-std::int64_t source_date() {
-    const char* const name = "SOURCE_DATE_EPOCH";
-    const char* const text = std::getenv(name);
-    if (text == nullptr || *text == '\0')
-        return 0;
-    constexpr std::int64_t last = 253402300799; // of the year 9999
-    std::int64_t seconds = 0;
-    const char* const end = text + std::strlen(text);
-    const auto [read_to, failure] = std::from_chars(text, end, seconds);
-    if (failure != std::errc() || read_to != end || seconds < 0 || seconds > last)
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} is \"{}\", and not a number of seconds since 1970", name, text));
-    return seconds;
-}
 
 std::unique_ptr<LayerWriter> open_sl1(const std::string& path, const LayerFileInfo& info,
                                       const LayerWriteOptions& options) {

@@ -213,6 +213,8 @@ TEST(Verify, FindsLayersThatOverlapInHeight) {
         std::string::npos)
         << found.findings[0];
     EXPECT_TRUE(verify(layers, {.rounding = {.step_mm = 0.001}}).ok());
+    EXPECT_TRUE(verify(layers, {.tolerance_mm = 0.0005}).ok());
+    EXPECT_FALSE(verify(layers, {.tolerance_mm = 0.0004}).ok());
     for (const std::vector<double>& tops : {std::vector<double>{2, 1, 1}, {1, 1, 2}}) {
         for (std::size_t i = 0; i < tops.size(); ++i) {
             layers[i].bottom = 0;

@@ -90,7 +90,7 @@ TEST(ReadLayeredSvg, GroupsOfOneHeightAreOneLayer) {
     EXPECT_EQ(layers[0].rings, 2U);
     EXPECT_DOUBLE_EQ(layers[0].bottom, 0);
     EXPECT_EQ(file.warnings,
-              std::vector<std::string>{"1 layer has the height of the one before; they were joined"});
+              std::vector<std::string>{"1 layer has the height of the one before; it was joined with that"});
     EXPECT_EQ(groups(" slic3r:slice-z=\"0.9\"").parts.at(0).layers.size(), 3U); // another cut
 }
 

@@ -15,7 +15,7 @@ namespace LAMELLA_API lamella {
 /// Layers of one kind, and where the lowest of them was cut.
 struct AffectedLayers {
     std::uint64_t layers = 0;
-    double first_z = 0;
+    double first_z = 0; ///< mm
 
     /// The next one above.
     void add(double z) noexcept;
@@ -43,7 +43,7 @@ struct ScanLosses {
     std::uint64_t open_chains = 0;
     AffectedLayers inside_out; ///< closed, and nothing but holes: they bound no material
 
-    /// The layers of all parts on the next plane above.
+    /// The layers of all parts on the next plane above, of one at least. O(points).
     void add(std::span<const Layer> parts);
     /// A line for each kind.
     [[nodiscard]] std::vector<std::string> texts() const;

@@ -6,6 +6,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -28,10 +29,8 @@ struct ExposureResult {
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
 /// Rings of layers that are thinner than the beam's offsets: nothing is left of them for vectors.
-struct ThinRings {
+struct ThinRings : AffectedLayers {
     std::uint64_t rings = 0;
-    std::uint64_t layers = 0; ///< with any
-    double first_z = 0;       ///< of the lowest of them
 
     /// Of the next layer above.
     void add(std::uint64_t count, double z) noexcept;

@@ -134,12 +134,10 @@ struct FileResult {
     };
     std::vector<MeshRepair> repairs;
     /// Ends of contours that were joined.
-    struct Gaps {
+    struct Gaps : AffectedLayers {
         std::uint64_t closed = 0;
         double longest_mm = 0;
         double total_mm = 0;
-        std::uint64_t layers = 0; ///< with any
-        double first_z = 0;       ///< of the lowest of them
     } gaps;
 
     std::string engine;

@@ -32,10 +32,18 @@ struct VerifyOptions {
     /// How the format rounds coordinates and heights. The area tolerance grows with it and the layer's
     /// perimeter; and rings so thin that it can turn them over are not held to an orientation.
     Rounding rounding = {};
+    /// How far points, ends of lines and cuts may be off beside that, in mm: for what was rounded before.
+    double tolerance_mm = 0;
     /// Of scan vectors: by which they were made. With it they are to be as far from the edges of the material
     /// as it says, each of its contours there and at its depth, no hatch line shorter than `shortest`, all of
     /// them turned and apart as it says, and lines times their distance are to be the area that they fill.
     std::optional<ScanStrategy> strategy = {};
+
+    /// Rounding and tolerance together.
+    [[nodiscard]] Rounding granted() const noexcept {
+        return {.step_mm = rounding.step_mm + 2 * tolerance_mm,
+                .single_precision = rounding.single_precision};
+    }
 };
 
 /// Where layers were cut, whose file keeps bottom and top only and is read as if that were in the middle:
@@ -119,9 +127,9 @@ struct VectorVerification {
     std::uint64_t outside = 0;
     std::uint64_t too_short = 0; ///< hatch lines
     /// Hatch lines that have another direction than those of their layer and region, or do not lie at a
-    /// multiple of the distance; with a strategy also all those of contours, and of skins that it has not.
-    /// Where a file begins with a later layer of its plan, it does not say with
-    /// which: with that by which most of the lowest layers are right.
+    /// multiple of the distance; all those of contours, and of skins that the strategy has not. Where a file
+    /// begins with a later layer of its plan, it does not say with which: with that by which most of the
+    /// lowest layers are right.
     std::uint64_t misplaced = 0;
     /// Planes of a part, of all parts with a mesh, whose lines cover more or less than they are to fill. What
     /// may be off: along the edges of that, and of skins, half a distance and as wide a strip as the shortest

@@ -56,10 +56,12 @@ void check_steps(const LayerSteps& steps);
 [[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes);
 
 /// The same for the layers of all parts on one plane. However many of them change, they count as one layer.
+/// Throws what the steps throw.
 [[nodiscard]] std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
                                                      LayerChanges& changes);
 
-/// The same for parts on the same planes, in parallel; `planes` are the changes of every plane.
+/// The same for parts on the same planes, in parallel, each with as many layers as the first; `planes` are
+/// the changes of every plane. Throws Error{cancelled}, too.
 [[nodiscard]] std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
                                                  std::vector<LayerChanges>& planes,
                                                  const Execution& execution = {});

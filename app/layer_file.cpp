@@ -1,4 +1,4 @@
-#include "layer_file_info.hpp"
+#include "layer_file.hpp"
 
 #include "lamella/core/error.hpp"
 

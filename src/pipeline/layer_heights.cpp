@@ -1,6 +1,7 @@
-#include "pipeline/covered_heights.hpp"
+#include "pipeline/layer_heights.hpp"
 
 #include "contour/same_height.hpp"
+#include "core/counted.hpp"
 #include "pipeline/layer_check.hpp"
 
 #include <fmt/format.h>
@@ -47,9 +48,9 @@ std::uint64_t overlapping_heights(std::span<const Layer> layers, const Rounding&
             below = above;
     }
     if (overlaps > 0)
-        findings.push_back(fmt::format("{} begin{} within the height of another one, the first: {}",
-                                       overlaps == 1 ? "a layer" : fmt::format("{} layers", overlaps),
-                                       overlaps == 1 ? "s" : "", first));
+        findings.push_back(counted(overlaps, "layer begins within the height of another one: ",
+                                   "layers begin within the height of another one, the first: ") +
+                           first);
     return overlaps;
 }
 

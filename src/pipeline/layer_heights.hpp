@@ -1,6 +1,6 @@
 #pragma once
 
-// What layers cover of the height of a mesh.
+// How layers lie on one another, and what they cover of the height of a mesh.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
