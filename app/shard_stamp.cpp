@@ -175,10 +175,11 @@ void check_stamps(const std::vector<std::string>& paths, const Execution& execut
     const Stamped& first = files.front();
     std::uint64_t next = 0;
     const auto missing = [&](std::uint64_t end) {
-        throw Error(ErrorKind::input,
-                    fmt::format("layers {} to {} of {} are in none of the files: a shard is "
-                                "missing",
-                                next, end - 1, first.stamp["of"].get<std::uint64_t>()));
+        throw Error(
+            ErrorKind::input,
+            fmt::format("layers {} to {} of {} are in none of the files: a shard is missing; name it, "
+                        "too, or slice it again",
+                        next, end - 1, first.stamp["of"].get<std::uint64_t>()));
     };
     for (const Stamped& file : files) {
         for (const char* key : {"lamella", "format", "shards", "inputs", "options"})

@@ -2,7 +2,11 @@
 
 // What the reader and the writer of the Common Layer Interface both know of its geometry.
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string_view>
 
 namespace lamella {
 
@@ -15,6 +19,41 @@ enum class CommonLayerCommand : std::uint16_t {
     hatches_short = 131,
     hatches_long = 132,
 };
+
+/// How many bytes the command that begins here takes, where 16-bit numbers have two each; none where it is no
+/// command, or is cut off.
+[[nodiscard]] inline std::optional<std::uint64_t> common_layer_command_size(std::string_view bytes) noexcept {
+    const auto number = [&]<class T>(std::size_t at, T value) -> std::uint64_t {
+        if (bytes.size() < at + sizeof value)
+            return bytes.size(); // more than that is not there
+        std::memcpy(&value, bytes.data() + at, sizeof value);
+        return value;
+    };
+    std::uint64_t size = 0;
+    switch (static_cast<CommonLayerCommand>(number(0, std::uint16_t{}))) {
+    case CommonLayerCommand::layer_long:
+        size = 6;
+        break;
+    case CommonLayerCommand::layer_short:
+        size = 4;
+        break;
+    case CommonLayerCommand::polyline_long:
+        size = 14 + 8 * number(10, std::uint32_t{});
+        break;
+    case CommonLayerCommand::polyline_short:
+        size = 8 + 4 * number(6, std::uint16_t{});
+        break;
+    case CommonLayerCommand::hatches_long:
+        size = 10 + 16 * number(6, std::uint32_t{});
+        break;
+    case CommonLayerCommand::hatches_short:
+        size = 6 + 8 * number(4, std::uint16_t{});
+        break;
+    default:
+        return std::nullopt;
+    }
+    return size <= bytes.size() ? std::optional(size) : std::nullopt;
+}
 
 /// Of a polyline, by its numbers in both forms.
 enum class CommonLayerDirection : std::uint8_t { clockwise = 0, counter_clockwise = 1, open = 2 };

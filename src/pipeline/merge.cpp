@@ -72,13 +72,8 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .rounded_heights =
                         moved_cut(layers.front(), file.rounding) + moved_cut(layers.back(), file.rounding),
                     .warnings = file.warnings};
-    for (const LayerPart& part : file.parts) {
-        Box3& box = shard.parts.emplace_back(PartInfo{part.label, {}, part.exposure, part.support}).box;
-        for (const Layer& layer : part.layers)
-            for (const PointArray* points : {&layer.points, &layer.hatches})
-                for (const Point2& p : *points)
-                    box.add(Point3{p.x, p.y, layer.z});
-    }
+    for (const LayerPart& part : file.parts)
+        shard.parts.push_back({part.label, part_box(part.layers), part.exposure, part.support});
     return shard;
 }
 
@@ -96,6 +91,13 @@ bool may_lack_parts(const ShardFile& shard) {
                        [](const PartInfo& part) { return part.exposure.has_value(); });
 }
 
+/// How far the end of one file may be from the beginning of the next one. A hundredth of a layer is what
+/// programs round heights by that do not say so.
+double slack_between(const ShardFile& below, const ShardFile& above) {
+    return below.rounded_heights + above.rounded_heights +
+           std::min(below.thinnest_mm, above.thinnest_mm) / 100 + same_height_mm;
+}
+
 void check_neighbours(const ShardFile& below, const ShardFile& above) {
     const auto refuse = [&](const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{} and {}: {}", below.path, above.path, what));
@@ -110,9 +112,7 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
     if (const auto one = labels_of(below), other = labels_of(above);
         one != other && !(may_lack_parts(below) && may_lack_parts(above)))
         refuse(fmt::format("hold different parts ({} and {})", fmt::join(one, ", "), fmt::join(other, ", ")));
-    // A hundredth of a layer is what programs round heights by that do not say so.
-    const double slack = below.rounded_heights + above.rounded_heights +
-                         std::min(below.thinnest_mm, above.thinnest_mm) / 100 + same_height_mm;
+    const double slack = slack_between(below, above);
     if (above.bottom > below.top + slack)
         refuse(
             fmt::format("between them is a gap: the layers of one end at z = {:.6g} mm, those of the other "
@@ -139,6 +139,32 @@ std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const Lay
     return shards;
 }
 
+/// The output is named first. Where it is forgotten, that is the first of the files, and lies on the others
+/// or below them; an earlier result does not.
+void check_output(const std::string& output, std::span<const ShardFile> shards,
+                  const LayerReadOptions& reading, const Execution& execution) {
+    std::error_code error;
+    if (output == "-" || !std::filesystem::is_regular_file(output, error))
+        return;
+    const auto adjoins = [](const ShardFile& below, const ShardFile& above) {
+        return std::abs(above.bottom - below.top) <= slack_between(below, above);
+    };
+    std::optional<ShardFile> other;
+    try {
+        other = look_at(output, reading, execution);
+    } catch (const Error& unread) {
+        if (unread.kind() == ErrorKind::cancelled)
+            throw;
+        return; // it holds no layers
+    }
+    const bool above = adjoins(shards.back(), *other);
+    if (above || adjoins(*other, shards.front()))
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: is to be written, but holds layers that adjoin those of {}; name the "
+                                "output first and all files behind it, or remove it",
+                                output, above ? shards.back().path : shards.front().path));
+}
+
 // ------------------------------------------------------------------------------- Common Layer Interface
 
 /// A file as our writer lays it out: a head that counts the layers, a layer without contours that says where
@@ -158,49 +184,25 @@ struct CommonLayerFile {
                             path));
 }
 
-/// Where the first command of the binary form ends, which has to be a layer. The last one has to end where
-/// the file does.
+/// Where the layer ends that the binary form has to begin with. Its last command has to end where the file
+/// does.
 std::size_t end_of_first_layer(std::string_view text, std::size_t begin, const std::string& path) {
-    const auto number = [&]<class T>(std::size_t at, T value) -> std::uint64_t {
-        if (text.size() - begin < at + sizeof value)
+    const auto size_at = [&](std::size_t at) {
+        const std::optional<std::uint64_t> size = common_layer_command_size(text.substr(at));
+        if (!size)
             refuse_layout(path);
-        std::memcpy(&value, text.data() + begin + at, sizeof value);
-        return value;
+        return *size;
     };
-    std::size_t first = 0;
-    while (begin < text.size()) {
-        const auto command = static_cast<CommonLayerCommand>(number(0, std::uint16_t{}));
-        std::uint64_t size = 0;
-        switch (command) {
-        case CommonLayerCommand::layer_long:
-            size = 6;
-            break;
-        case CommonLayerCommand::layer_short:
-            size = 4;
-            break;
-        case CommonLayerCommand::polyline_long:
-            size = 14 + 8 * number(10, std::uint32_t{});
-            break;
-        case CommonLayerCommand::polyline_short:
-            size = 8 + 4 * number(6, std::uint16_t{});
-            break;
-        case CommonLayerCommand::hatches_long:
-            size = 10 + 16 * number(6, std::uint32_t{});
-            break;
-        case CommonLayerCommand::hatches_short:
-            size = 6 + 8 * number(4, std::uint16_t{});
-            break;
-        }
-        const bool layer =
-            command == CommonLayerCommand::layer_long || command == CommonLayerCommand::layer_short;
-        if (size == 0 || size > text.size() - begin || (first == 0 && !layer))
-            refuse_layout(path);
-        begin += size;
-        first = first == 0 ? begin : first;
-    }
-    if (first == 0)
+    const std::string_view rest = text.substr(begin);
+    std::uint16_t command = 0;
+    std::memcpy(&command, rest.data(), std::min(rest.size(), sizeof command));
+    if (command != static_cast<std::uint16_t>(CommonLayerCommand::layer_long) &&
+        command != static_cast<std::uint16_t>(CommonLayerCommand::layer_short))
         refuse_layout(path);
-    return first;
+    const std::size_t end = begin + size_at(begin);
+    for (std::size_t at = end; at < text.size();)
+        at += size_at(at);
+    return end;
 }
 
 CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& reading,
@@ -456,6 +458,7 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                               const LayerReadOptions& reading, const Execution& execution) {
     const LayerFormat& to = layer_format(format, output);
     const std::vector<ShardFile> shards = look_at_all(paths, reading, execution);
+    check_output(output, shards, reading, execution);
     MergeResult result{.format = shards.front().format,
                        .layers = 0,
                        .bottom = shards.front().bottom,

@@ -251,6 +251,19 @@ class Shard(ProgramTest):
                 self.fail_with(3, "b-other.cli: is not laid out as Lamella writes it", *merged)
                 self.succeed("merge", "m.json", first, "b-other.cli")
 
+    def test_an_output_that_was_forgotten_is_no_reason_to_lose_a_file(self):
+        self.lattice()
+        for name, layers in [("a", ":50"), ("b", "50:90"), ("c", "90:")]:
+            self.succeed("slice", "part.stl", "-o", f"{name}.cli", "--layers", layers)
+        before = self.bytes_of("a.cli"), self.bytes_of("c.cli")
+        self.fail_with(2, "a.cli: is to be written, but holds layers that adjoin those of b.cli", "merge", "a.cli", "b.cli", "c.cli")
+        self.fail_with(2, "c.cli: is to be written, but holds layers that adjoin those of b.cli", "merge", "c.cli", "a.cli", "b.cli")
+        self.assertEqual((self.bytes_of("a.cli"), self.bytes_of("c.cli")), before)
+        for _ in range(2):  # an earlier result may be replaced, and so may what is no slice file
+            self.succeed("merge", "merged.cli", "a.cli", "b.cli", "c.cli")
+        self.write("notes.cli", "nothing")
+        self.succeed("merge", "notes.cli", "a.cli", "b.cli", "c.cli")
+
     def test_merged_layers_are_numbered_through(self):
         self.lattice()
         shards = self.slice_all(2, "cli")

@@ -33,7 +33,8 @@ struct MergeResult {
 /// parts (but formats of scan vectors know only parts that have something), the parameters of a part, their
 /// units or their head, when one begins above the end of the one below it (a layer gap) or below it (an
 /// overlap), naming both; for files that are put together as they are and whose reading met anything odd;
-/// Error{usage} for what can be read once only, such as pipes; and what reading and writing throw.
+/// Error{usage} for what can be read once only, such as pipes, and where `output` is there and holds layers
+/// that adjoin those of the files: it is one of them; and what reading and writing throw.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format = {}, const LayerWriteOptions& options = {},
                               const LayerReadOptions& reading = {}, const Execution& execution = {});
