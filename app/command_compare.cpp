@@ -291,9 +291,7 @@ Command compare_command() {
                          "how far contours, ends of hatch lines and cuts may be apart; what the rounding of "
                          "both formats explains unless given",
                          [arguments](const std::string& text) {
-                             arguments->tolerance = parse_number(text);
-                             if (*arguments->tolerance < 0)
-                                 throw Error(ErrorKind::usage, "it cannot be negative");
+                             arguments->tolerance = parse_not_negative(text);
                          }),
                      flag("area-difference",
                           "tell the area that one file has and the other has not, plane by plane and in all",

@@ -63,7 +63,8 @@ Json verification_json(const Verification& found) {
                 {"misoriented", found.misoriented}, {"overlapping", found.overlapping},
                 {"volume_mm3", found.volume_mm3},   {"max_area_error_mm2", nullptr},
                 {"displaced", found.displaced},     {"height_overlaps", found.height_overlaps},
-                {"hatches", found.hatches},         {"heights", heights_json(found.heights)}};
+                {"hatches", found.hatches},         {"heights", heights_json(found.heights)},
+                {"findings", found.findings}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
@@ -87,6 +88,8 @@ std::string verification_text(const std::string& mesh, const Verification& found
         text +=
             fmt::format("  areas differ from the sections of {} by at most {} mm2{}\n", one_line(mesh),
                         brief(*found.max_area_error_mm2), found.areas_agree ? ", as rounding allows" : "");
+    if (!found.areas_agree)
+        text += "  layers that were rounded before may be off by more: say by how much with --tolerance MM\n";
     text += heights_text(found.heights);
     if (found.ok())
         text += fmt::format(
@@ -110,7 +113,8 @@ Json vectors_json(const VectorVerification& found) {
             {"height_overlaps", found.height_overlaps},
             {"unbounded", found.unbounded},
             {"cover", found.cover ? Json(*found.cover) : Json()},
-            {"heights", heights_json(found.heights)}};
+            {"heights", heights_json(found.heights)},
+            {"findings", found.findings}};
 }
 
 std::string vectors_text(const std::string& mesh, bool strategy, const VectorVerification& found) {
@@ -155,7 +159,6 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     context.messages.warn_of(file.path, file.warnings);
-    file.rounding.step_mm += 2 * arguments.tolerance;
     std::optional<ScanStrategy> strategy;
     if (arguments.scan || arguments.scanning.given())
         strategy = arguments.scanning.strategy();
@@ -183,19 +186,30 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     bool ok = !arguments.strict || file.warnings.empty();
     Json object{{"path", arguments.input}, {"ok", ok}, {"warnings", file.warnings}};
     std::string text;
+    if (arguments.strict)
+        for (const std::string& warning : file.warnings)
+            text += fmt::format("  {}\n", one_line(warning));
     if (!plain.parts.empty()) {
-        const Verification found =
-            verify(plain.merged(), {.mesh = mesh, .rule = rule, .steps = steps, .rounding = file.rounding},
-                   execution);
+        const Verification found = verify(plain.merged(),
+                                          {.mesh = mesh,
+                                           .rule = rule,
+                                           .steps = steps,
+                                           .rounding = file.rounding,
+                                           .tolerance_mm = arguments.tolerance},
+                                          execution);
         ok = ok && found.ok();
         object.update(verification_json(found));
         text += verification_text(arguments.mesh, found);
     }
     if (!vectors.parts.empty()) {
-        const VectorVerification found = verify_vectors(
-            vectors.parts,
-            {.mesh = mesh, .rule = rule, .steps = steps, .rounding = file.rounding, .strategy = strategy},
-            execution);
+        const VectorVerification found = verify_vectors(vectors.parts,
+                                                        {.mesh = mesh,
+                                                         .rule = rule,
+                                                         .steps = steps,
+                                                         .rounding = file.rounding,
+                                                         .tolerance_mm = arguments.tolerance,
+                                                         .strategy = strategy},
+                                                        execution);
         ok = ok && found.ok();
         object["vectors"] = vectors_json(found);
         text += vectors_text(arguments.mesh, strategy.has_value(), found);
@@ -243,9 +257,7 @@ Command verify_command() {
                          "how far points, ends of lines and cuts may be off, beside what the format rounds; "
                          "for layers that were rounded before [0]",
                          [arguments](const std::string& text) {
-                             arguments->tolerance = parse_number(text);
-                             if (!(arguments->tolerance >= 0))
-                                 throw Error(ErrorKind::usage, "it cannot be negative");
+                             arguments->tolerance = parse_not_negative(text);
                          }),
                      flag("strict", "make a failed check of whatever is warned of when the file is read, too",
                           arguments->strict),

@@ -28,6 +28,7 @@ struct FieldOption {
 constexpr std::array field_options{
     FieldOption{"`adaptive`", "--adaptive"},
     FieldOption{"`drop_duplicates`", "--drop-duplicates"},
+    FieldOption{"`format`", "--format"},
     FieldOption{"`inspect`", "--inspect"},
     FieldOption{"`max_memory`", "--max-memory"},
     FieldOption{"`max_triangles`", "--max-triangles"},

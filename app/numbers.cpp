@@ -94,6 +94,13 @@ double parse_positive(std::string_view text) {
     return value;
 }
 
+double parse_not_negative(std::string_view text) {
+    const double value = parse_number(text);
+    if (!(value >= 0))
+        refuse(text, "a number that is not negative");
+    return value;
+}
+
 std::uint64_t parse_count(std::string_view text) {
     std::uint64_t value = 0;
     if (!read(text, value)) {

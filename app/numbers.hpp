@@ -15,6 +15,7 @@ namespace lamella::app {
 /// notation and exponents; finite numbers only.
 [[nodiscard]] double parse_number(std::string_view text);
 [[nodiscard]] double parse_positive(std::string_view text);
+[[nodiscard]] double parse_not_negative(std::string_view text);
 [[nodiscard]] std::uint64_t parse_count(std::string_view text);
 /// Both ends included.
 [[nodiscard]] std::uint32_t parse_count_within(std::string_view text, std::uint32_t least,

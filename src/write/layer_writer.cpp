@@ -237,11 +237,12 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
     if (!name.empty())
         throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
     if (path == "-")
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("standard output has no extension to tell the format; name one of {}", names()));
+        throw Error(ErrorKind::usage,
+                    fmt::format("standard output has no extension to tell the format; choose a `format`: {}",
+                                names()));
     throw Error(ErrorKind::usage,
-                fmt::format("the extension of '{}' tells no format; name one of {}", path, names()));
+                fmt::format("the extension of '{}' tells no format; choose another, or a `format`: {}", path,
+                            names()));
 }
 
 std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const LayerFormat& format,
@@ -287,11 +288,7 @@ std::vector<std::string> write_layers(const std::string& path, std::span<const L
                                       const LayerWriteOptions& options, const Execution& execution) {
     if (layers.empty())
         throw Error(ErrorKind::usage, "there are no layers to write");
-    LayerFileInfo info{.layers = layers.size(), .bottom = layers.front().bottom};
-    for (const Layer& layer : layers)
-        for (const PointArray* points : {&layer.points, &layer.hatches})
-            for (const Point2& p : *points)
-                info.box.add(Point3{p.x, p.y, layer.z});
+    LayerFileInfo info{.box = part_box(layers), .layers = layers.size(), .bottom = layers.front().bottom};
     if (info.box.empty())
         info.box.add(Point3{});
     info.box.min.z = info.bottom;

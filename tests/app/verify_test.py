@@ -5,7 +5,7 @@ import json
 from program import ProgramTest, main
 
 KEYS = ["path", "ok", "warnings", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
-        "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches", "heights"]
+        "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches", "heights", "findings"]
 
 
 def ascii_cli(*polylines):
@@ -218,14 +218,18 @@ class Verify(ProgramTest):
         for mesh in ([], ["--mesh", "box.stl"]):
             result = self.run_program("verify", "wrong.json", *mesh)
             self.assertEqual(result.code, 4, result.err)
-            self.assertIn(b"a layer begins within the height of another one, the first: layer 4 (z 0.45 mm) begins at "
+            self.assertIn(b"1 layer begins within the height of another one: layer 4 (z 0.45 mm) begins at "
                           b"z = 0.4 mm, layer 3 (z 0.35 mm) ends at 0.43 mm", result.out)
 
     def test_layers_that_were_rounded_before_need_a_tolerance(self):
         self.succeed("make", "sphere", "--size", "3", "-o", "ball.stl")
         self.succeed("slice", "ball.stl", "-o", "ball.cli")
         self.succeed("convert", "ball.cli", "ball.json")
-        self.assertEqual(self.run_program("verify", "ball.json", "--mesh", "ball.stl").code, 4)
+        wrong = self.run_program("verify", "ball.json", "--mesh", "ball.stl")
+        self.assertEqual(wrong.code, 4)
+        self.assertIn(b"say by how much with --tolerance", wrong.out)
+        self.assertRegex(self.run_program("verify", "ball.json", "--mesh", "ball.stl", "--json").json()["findings"][0],
+                         "^30 layers are of another area .* mm2 off$")
         self.succeed("verify", "ball.json", "--mesh", "ball.stl", "--tolerance", "0.0005")
         self.succeed("make", "sphere", "--size", "3.1", "-o", "larger.stl")
         self.assertEqual(
@@ -238,7 +242,9 @@ class Verify(ProgramTest):
         found = self.run_program("verify", "--json", "odd.cli")
         self.assertEqual(found.code, 0, found.err)
         self.assertRegex(found.json()["warnings"][0], "announces 3 layers")
-        self.assertEqual(self.run_program("verify", "--strict", "odd.cli").code, 4)
+        strict = self.run_program("verify", "--strict", "odd.cli")
+        self.assertEqual(strict.code, 4)
+        self.assertIn(b"announces 3 layers", strict.out)
         self.write("even.cli", ascii_cli((1, SQUARE)))
         self.succeed("verify", "--strict", "even.cli")
 

