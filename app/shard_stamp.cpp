@@ -51,7 +51,7 @@ Json read_stamp(const std::string& output) {
     const std::string path = stamp_path(output);
     Json stamp = Json::parse(read_text_file(path), nullptr, false);
     if (!stamp.is_object() || !stamp.contains("output") || !stamp.value("origin", Json()).is_object())
-        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard", path));
+        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard; slice this shard again", path));
     return stamp;
 }
 
@@ -84,7 +84,7 @@ Stamped stamped(const std::string& path, const Execution& execution) {
         file.end = file.stamp.at("layers").at(1).get<std::uint64_t>();
         all = file.stamp.at("of").get<std::uint64_t>();
     } catch (const Json::exception&) {
-        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard", stamp_path(path)));
+        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard; slice this shard again", stamp_path(path)));
     }
     std::error_code ignored;
     if (std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found)
@@ -98,6 +98,23 @@ Stamped stamped(const std::string& path, const Execution& execution) {
                     fmt::format("{}: is not as it was when its stamp {} was written; slice this shard again",
                                 path, stamp_path(path)));
     return file;
+}
+
+/// Of one job.
+void check_origins(const Stamped& a, const Stamped& b) {
+    const Json& of_a = a.stamp["origin"];
+    const Json& of_b = b.stamp["origin"];
+    const Json changes = Json::diff(of_a, of_b);
+    if (changes.empty())
+        return;
+    const Json::json_pointer first(changes[0]["path"].get<std::string>());
+    const auto told = [&](const Json& origin) {
+        return origin.contains(first) ? origin[first].dump() : "nothing";
+    };
+    throw Error(ErrorKind::input,
+                fmt::format("{} and {} are not shards of one job: by their stamps {} is {} in the one and {} "
+                            "in the other",
+                            a.path, b.path, first.to_string().substr(1), told(of_a), told(of_b)));
 }
 
 } // namespace
@@ -181,19 +198,18 @@ void check_stamps(const std::vector<std::string>& paths, const Execution& execut
                         "too, or slice it again",
                         next, end - 1, first.stamp["of"].get<std::uint64_t>()));
     };
+    const Stamped* last = &first;
     for (const Stamped& file : files) {
-        for (const char* key : {"lamella", "format", "shards", "inputs", "options"})
-            if (file.stamp["origin"].value(key, Json()) != first.stamp["origin"].value(key, Json()))
-                throw Error(ErrorKind::input,
-                            fmt::format("{} and {} are not shards of one job: their stamps differ in \"{}\"",
-                                        first.path, file.path, key));
+        check_origins(first, file);
         if (file.begin > next)
             missing(file.begin);
         if (file.begin < next)
-            throw Error(ErrorKind::input, fmt::format("{}: holds layers from {} on, and another file holds "
-                                                      "those up to {}",
-                                                      file.path, file.begin, next - 1));
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: holds layers from {} on, and {} holds those up to {}; name each "
+                                    "shard once",
+                                    file.path, file.begin, last->path, next - 1));
         next = file.end;
+        last = &file;
     }
     if (const auto all = first.stamp["of"].get<std::uint64_t>(); next < all)
         missing(all);
