@@ -51,7 +51,8 @@ Json read_stamp(const std::string& output) {
     const std::string path = stamp_path(output);
     Json stamp = Json::parse(read_text_file(path), nullptr, false);
     if (!stamp.is_object() || !stamp.contains("output") || !stamp.value("origin", Json()).is_object())
-        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard; slice this shard again", path));
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: is no stamp of a shard; slice this shard again", path));
     return stamp;
 }
 
@@ -84,7 +85,8 @@ Stamped stamped(const std::string& path, const Execution& execution) {
         file.end = file.stamp.at("layers").at(1).get<std::uint64_t>();
         all = file.stamp.at("of").get<std::uint64_t>();
     } catch (const Json::exception&) {
-        throw Error(ErrorKind::input, fmt::format("{}: is no stamp of a shard; slice this shard again", stamp_path(path)));
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: is no stamp of a shard; slice this shard again", stamp_path(path)));
     }
     std::error_code ignored;
     if (std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found)

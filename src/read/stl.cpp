@@ -73,7 +73,8 @@ bool is_binary(const ByteSource& source) {
         if (begins_with_solid(text))
             return false; // its reader names the line where it goes wrong
         const std::string_view line = begin.substr(0, begin.find_first_of("\r\n"));
-        fail(fmt::format("line {}: is a text, but no mesh file: found '{}', expected 'solid'",
+        fail(fmt::format("line {}: is a text, but no mesh file: found '{}', expected 'solid' of an "
+                         "ASCII STL file, or the beginning of another mesh format",
                          line_at(text, text.size() - begin.size()), printable(line, 40)));
     }
     if (size < stl_head_bytes)

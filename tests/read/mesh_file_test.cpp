@@ -46,7 +46,8 @@ TEST(MeshFile, IsReadByItsNameWhereTheContentDoesNotTell) {
     EXPECT_EQ(read(off.substr(4), "PART.OFF").format, "off");
     EXPECT_EQ(read("s off\nxyz\n" + obj, "part.Obj").format, "obj");
     EXPECT_EQ(error_of("1 2 3\n", "folder.obj/part"),
-              "folder.obj/part: line 1: is a text, but no mesh file: found '1 2 3', expected 'solid'");
+              "folder.obj/part: line 1: is a text, but no mesh file: found '1 2 3', expected 'solid' of an "
+              "ASCII STL file, or the beginning of another mesh format");
 }
 
 TEST(MeshFile, RefusesOtherKindsOfFilesByWhatTheyAre) {

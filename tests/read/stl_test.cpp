@@ -97,12 +97,16 @@ TEST(Stl, ReadsABinaryFileWhoseHeaderLooksForeign) {
 TEST(Stl, NeverTakesTextForBinaryTriangles) {
     const std::string points = "# a point cloud\n" + replaced(std::string(300, 'x'), "x", "1 2 3\n");
     EXPECT_EQ(error_of(points),
-              "part.stl: line 1: is a text, but no mesh file: found '# a point cloud', expected 'solid'");
+              "part.stl: line 1: is a text, but no mesh file: found '# a point cloud', expected 'solid' of "
+              "an ASCII STL file, or the beginning of another mesh format");
     EXPECT_EQ(error_of("\n\n  ply\nformat ascii 1.0\n"),
-              "part.stl: line 3: is a text, but no mesh file: found 'ply', expected 'solid'");
+              "part.stl: line 3: is a text, but no mesh file: found 'ply', expected 'solid' of an ASCII STL "
+              "file, or the beginning of another mesh format");
     EXPECT_EQ(error_of("solidpart\n" + facet(one[0])),
-              "part.stl: line 1: is a text, but no mesh file: found 'solidpart', expected 'solid'");
-    EXPECT_EQ(error_of(" \n "), "part.stl: line 2: is a text, but no mesh file: found '', expected 'solid'");
+              "part.stl: line 1: is a text, but no mesh file: found 'solidpart', expected 'solid' of an "
+              "ASCII STL file, or the beginning of another mesh format");
+    EXPECT_EQ(error_of(" \n "), "part.stl: line 2: is a text, but no mesh file: found '', expected 'solid' "
+                                "of an ASCII STL file, or the beginning of another mesh format");
 }
 
 TEST(Stl, RefusesWhatIsTooShortToBeAnything) {
