@@ -229,13 +229,13 @@ std::vector<std::string> write_mesh(const std::string& path, const std::string& 
     return {};
 }
 
-py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, unsigned threads,
-                  const py::object& progress) {
+py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, double tolerance,
+                  unsigned threads, const py::object& progress) {
     if (holds_scan_vectors(stack))
         throw Error(ErrorKind::usage,
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
-        VerifyOptions options{.mesh = {}, .rule = stack.rule, .rounding = stack.rounding};
+        VerifyOptions options{.rule = stack.rule, .rounding = stack.rounding, .tolerance_mm = tolerance};
         if (mesh)
             options.mesh = mesh->mesh();
         LayerStack layers = plain(stack.layers);
@@ -265,14 +265,14 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
 /// What is found, and the warnings of the file.
 std::pair<py::dict, py::list> vectors_verified(const std::string& path, const MeshPointer& mesh,
                                                const std::optional<ScanStrategy>& strategy,
-                                               const std::string& at, unsigned threads,
+                                               const std::string& at, double tolerance, unsigned threads,
                                                const py::object& progress) {
     std::vector<std::string> warnings;
     const VectorVerification found = result_of(threads, progress, [&](const Execution& execution) {
         LayerFile file = read_layers(path, {}, execution);
         if (!holds_scan_vectors(file))
             throw Error(ErrorKind::usage, path + " holds no scan vectors; lamella.verify checks layers");
-        VerifyOptions options{.mesh = {}, .rule = file.rule, .rounding = file.rounding};
+        VerifyOptions options{.rule = file.rule, .rounding = file.rounding, .tolerance_mm = tolerance};
         if (mesh)
             options.mesh = mesh->mesh();
         options.strategy = strategy;

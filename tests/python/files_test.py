@@ -400,6 +400,9 @@ def test_verification_finds_what_is_wrong(program, rook, tmp_path):
                            for layer in moved])
     found = lamella.verify(grown, box_arrays())
     assert not found.ok and not found.areas_agree and found.findings
+    back = lamella.read(tmp_path / "rook.cli")
+    formerly_rounded = lamella.Stack(list(back))
+    assert not lamella.verify(formerly_rounded, rook).ok and lamella.verify(formerly_rounded, rook, tolerance=5e-4).ok
     bow_tie = lamella.Stack([lamella.Layer([[(0, 0), (1, 1), (1, 0), (0, 1)]], z=0)])
     assert lamella.verify(bow_tie).crossings == 1
 

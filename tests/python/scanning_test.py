@@ -198,6 +198,7 @@ def test_files_of_vectors_are_verified(tmp_path):
     assert found.cover == pytest.approx(1, abs=0.1)
     assert lamella.verify_vectors(path).cover is None
     assert lamella.verify_vectors(path, (corners * 0.9, faces)).outside > 0
+    assert lamella.verify_vectors(path, (corners * 0.9999, faces), tolerance=0.01).outside == 0
     assert not lamella.verify_vectors(path, cube, strategy={"contours": {"beam_offset": 0.2}}).ok
     with pytest.raises(lamella.UsageError, match="job.cli holds scan vectors, which lamella.verify_vectors checks"):
         lamella.verify(path)
