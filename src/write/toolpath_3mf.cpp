@@ -49,21 +49,6 @@ std::string uuid_of(std::string_view text) {
                        high & 0xFFFFU, low >> 48U, low & 0xFFFFFFFFFFFFU);
 }
 
-/// All that the head of a file says, for identifiers of which no two files should have the same.
-std::string head_text(const LayerFileInfo& info) {
-    std::string text = fmt::format("{} {}", info.layers, info.bottom);
-    const auto add_box = [&](const Box3& box) {
-        for (const Point3& p : {box.min, box.max})
-            text += fmt::format(" {} {} {}", p.x, p.y, p.z);
-    };
-    add_box(info.box);
-    for (const PartInfo& part : info.parts) {
-        text += fmt::format(" \"{}\"", part.label);
-        add_box(part.box);
-    }
-    return text;
-}
-
 std::string attribute(std::string_view name, double value) {
     return fmt::format(" {}=\"{}\"", name, exact_decimal_text(value));
 }
@@ -87,6 +72,23 @@ std::string profile_text(const std::string& uuid, const std::string& name, const
         attribute("l:markdelay", set.mark_delay_us), attribute("l:jumpdelay", set.jump_delay_us));
 }
 
+/// All that the head of a file says, for identifiers of which no two files should have the same.
+std::string head_text(const LayerFileInfo& info) {
+    std::string text = fmt::format("{} {}", info.layers, info.bottom);
+    const auto add_box = [&](const Box3& box) {
+        for (const Point3& p : {box.min, box.max})
+            text += fmt::format(" {} {} {}", p.x, p.y, p.z);
+    };
+    add_box(info.box);
+    for (const PartInfo& part : info.parts) {
+        text += fmt::format(" \"{}\"", part.label);
+        add_box(part.box);
+        if (part.exposure)
+            text += profile_text("", part.exposure->part, *part.exposure);
+    }
+    return text;
+}
+
 class Toolpath3mfWriter final : public package_3mf::PackageWriter {
   public:
     Toolpath3mfWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
@@ -104,7 +106,6 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
                                           [](const PartInfo& part) { return !part.exposure; });
         for (std::size_t i = 0; i < keys_.exposures.size() + (any_bare ? 1 : 0); ++i)
             profile_uuids_.push_back(uuid_of(fmt::format("profile {} {}", i, uuid_)));
-        layer_begin_ = layer_begin();
     }
 
   private:
@@ -145,26 +146,37 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         return static_cast<std::int64_t>(units);
     }
 
-    /// What stands before the vectors of each layer, which count parts and profiles from 1.
-    [[nodiscard]] std::string layer_begin() const {
-        std::string text = fmt::format("{}<layer xmlns=\"{}\">\n<parts>\n", xml_begin, toolpath_3mf::space);
-        for (std::size_t i = 0; i < item_uuids_.size(); ++i)
-            text += fmt::format("<part id=\"{}\" uuid=\"{}\"/>\n", i + 1, item_uuids_[i]);
-        text += "</parts>\n<profiles>\n";
-        for (std::size_t i = 0; i < profile_uuids_.size(); ++i)
-            text += fmt::format("<profile id=\"{}\" uuid=\"{}\"/>\n", i + 1, profile_uuids_[i]);
-        return text + "</profiles>\n";
+    /// Of a part of ours, its profile, counted from 0; the last one has no parameters.
+    [[nodiscard]] std::size_t profile_of(std::size_t part) const {
+        return keys_.keys[part].exposure.value_or(keys_.exposures.size());
+    }
+
+    /// The parts and profiles of vectors on a layer, which counts them from 1.
+    void put_head(std::span<const Layer> parts, ByteBuffer& out) const {
+        std::set<std::size_t> of_parts;
+        std::set<std::size_t> profiles;
+        for (std::size_t part = 0; part < parts.size(); ++part)
+            if (parts[part].contours() > 0 || parts[part].hatches.size() > 0) {
+                of_parts.insert(keys_.keys[part].part);
+                profiles.insert(profile_of(part));
+            }
+        out.append(fmt::format("{}<layer xmlns=\"{}\">\n<parts>\n", xml_begin, toolpath_3mf::space));
+        for (const std::size_t i : of_parts)
+            out.append(fmt::format("<part id=\"{}\" uuid=\"{}\"/>\n", i + 1, item_uuids_[i]));
+        out.append("</parts>\n<profiles>\n");
+        for (const std::size_t i : profiles)
+            out.append(fmt::format("<profile id=\"{}\" uuid=\"{}\"/>\n", i + 1, profile_uuids_[i]));
+        out.append("</profiles>\n");
     }
 
     void put_layer(std::span<const Layer> parts, ByteBuffer& out) const {
-        out.append(layer_begin_);
+        put_head(parts, out);
         out.append("<segments>\n");
         std::vector<GridPoint> scratch;
         for (std::size_t part = 0; part < parts.size(); ++part) {
             const Layer& layer = parts[part];
-            const auto& [of_part, exposure] = keys_.keys[part];
-            const std::string refers = fmt::format(
-                "profileid=\"{}\" partid=\"{}\"", exposure.value_or(keys_.exposures.size()) + 1, of_part + 1);
+            const std::string refers = fmt::format("profileid=\"{}\" partid=\"{}\"", profile_of(part) + 1,
+                                                   keys_.keys[part].part + 1);
             for (std::size_t i = 0; i < layer.contours(); ++i) {
                 const bool closed = layer.closed(i);
                 const auto points = grid_.snap(
@@ -262,9 +274,8 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     std::string uuid_;
     std::vector<std::string> item_uuids_;    ///< of the parts of keys_
     std::vector<std::string> profile_uuids_; ///< of its exposures, then of what has no parameters
-    std::string layer_begin_;
-    std::string layers_;    ///< of the model
-    std::string relations_; ///< likewise
+    std::string layers_;                     ///< of the model
+    std::string relations_;                  ///< likewise
     std::int64_t bottom_;
     WrittenHeights heights_;
 };

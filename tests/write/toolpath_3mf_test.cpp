@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lamella::toolpath_3mf_writer_cases {
 namespace {
@@ -50,6 +51,48 @@ TEST(Toolpath3mf, IdentifiersAreHashesOfTheWholeHead) {
         EXPECT_TRUE(contains(model, "p:UUID=\"" + identifier(fmt::format("item {} {}", i, all)) + "\"/>"))
             << i;
     EXPECT_TRUE(contains(model, "profile uuid=\"" + identifier("profile 0 " + all) + "\""));
+}
+
+TEST(Toolpath3mf, JobsOfOtherParametersHaveOtherIdentifiers) {
+    const TemporaryFolder folder;
+    const LayerStack stack = square_with_hole();
+    const auto identifiers = [&](double power_w) {
+        LayerFileInfo info = info_of(stack);
+        info.parts.front().exposure = Exposure{};
+        info.parts.front().exposure->parameters.power_w = power_w;
+        write_layers(folder.file("out"), layer_format("3mf-toolpath", ""), std::vector<LayerStack>{stack},
+                     info);
+        const ZipReader zip(open_bytes(folder.file("out")), 0);
+        const std::string model(zip.read(*zip.find("3D/3dmodel.model")).text());
+        constexpr std::size_t length = 36;
+        std::vector<std::string> found;
+        for (const std::string_view before : {"toolpathresource id=\"1\" uuid=\"", "profile uuid=\""})
+            found.push_back(model.substr(model.find(before) + before.size(), length));
+        return found;
+    };
+    const std::vector<std::string> some = identifiers(200);
+    const std::vector<std::string> others = identifiers(350);
+    EXPECT_EQ(some, identifiers(200));
+    EXPECT_NE(some[0], others[0]);
+    EXPECT_NE(some[1], others[1]);
+}
+
+TEST(Toolpath3mf, LayersListTheirPartsOnly) {
+    const TemporaryFolder folder;
+    const LayerStack both = square_with_hole();
+    LayerStack second = both;
+    second[0] = {.index = both[0].index, .z = both[0].z, .bottom = both[0].bottom, .top = both[0].top};
+    LayerFileInfo info = info_of(both);
+    info.parts.push_back(info.parts.front());
+    info.parts.back().label = "second";
+    write_layers(folder.file("out"), layer_format("3mf-toolpath", ""), std::vector<LayerStack>{both, second},
+                 info);
+    const ZipReader zip(open_bytes(folder.file("out")), 0);
+    const auto layer = [&](int number) {
+        return std::string(zip.read(*zip.find(fmt::format("Toolpath/Layers/layer{:05}.xml", number))).text());
+    };
+    EXPECT_TRUE(contains(layer(1), "<part id=\"1\"") && !contains(layer(1), "<part id=\"2\""));
+    EXPECT_TRUE(contains(layer(2), "<part id=\"1\"") && contains(layer(2), "<part id=\"2\""));
 }
 
 } // namespace
