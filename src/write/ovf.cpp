@@ -2,6 +2,8 @@
 // has what all of them share, and a table of where work planes lie. The file's first bytes tell where that
 // is; they are written last.
 
+#include "lamella/core/error.hpp"
+
 #include "container/ovf_format.hpp"
 #include "container/protobuf.hpp"
 #include "core/atomic_file.hpp"
@@ -37,12 +39,20 @@ std::string name_of_parameters(const Exposure& exposure) {
 ProtobufMessage marking_params(const Exposure& exposure) {
     const ParameterSet& parameters = exposure.parameters;
     ProtobufMessage message;
-    message.real(ovf::marking::power_w, parameters.power_w);
-    message.real(ovf::marking::speed_mm_s, parameters.speed_mm_s);
-    message.real(ovf::marking::focus_mm, parameters.focus_mm);
-    message.real(ovf::marking::jump_speed_mm_s, parameters.jump_speed_mm_s);
-    message.real(ovf::marking::jump_delay_us, parameters.jump_delay_us);
-    message.real(ovf::marking::mark_delay_us, parameters.mark_delay_us);
+    const auto put = [&](std::uint32_t field, std::string_view name, double value) {
+        constexpr double most = std::numeric_limits<float>::max();
+        if (std::abs(value) > most)
+            throw Error(ErrorKind::usage,
+                        fmt::format("{} of parameters \"{}\" is {:g}; numbers of ovf reach to {:.2g}", name,
+                                    parameters.name, value, most));
+        message.real(field, value);
+    };
+    put(ovf::marking::power_w, "power_w", parameters.power_w);
+    put(ovf::marking::speed_mm_s, "speed_mm_s", parameters.speed_mm_s);
+    put(ovf::marking::focus_mm, "focus_mm", parameters.focus_mm);
+    put(ovf::marking::jump_speed_mm_s, "jump_speed_mm_s", parameters.jump_speed_mm_s);
+    put(ovf::marking::jump_delay_us, "jump_delay_us", parameters.jump_delay_us);
+    put(ovf::marking::mark_delay_us, "mark_delay_us", parameters.mark_delay_us);
     message.text(ovf::marking::name, printable_label(name_of_parameters(exposure)));
     return message;
 }

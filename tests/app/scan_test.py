@@ -114,6 +114,10 @@ class Scan(ProgramTest):
         for name in ("back.ilt", "back.ovf"):
             result = self.succeed("convert", "job.cli", name)
             self.assertRegex(result.err, r"^lamella: warning: \S+: \d parts have no parameters of scan vectors, such as power")
+        self.write("strong.toml", "[parameters.hatch]\npower_w = 1e300\n")
+        self.fail_with(2, r'power_w of parameters "hatch" is 1e\+300; numbers of ovf reach to 3\.4e\+38', "slice", "part.stl",
+                       "--layer-height", "1", "--strategy", "strong.toml", "-o", "x.ovf")
+        self.assertNotIn("x.ovf", self.listing())
 
     def test_a_job_of_vectors_is_read_back(self):
         result = self.succeed("slice", "part.stl", "--label", "bracket", "--layer-height", "1", "-o", "job.cli", "--scan", *HATCHED)
