@@ -12,7 +12,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -74,12 +73,6 @@ std::string follow_links(const std::string& path) {
         current = current.parent_path() / next; // an absolute link replaces the folder
     }
     throw ELOOP;
-}
-
-std::string temporary_folder() {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody here changes the environment
-    const char* const wished = std::getenv("TMPDIR");
-    return wished != nullptr && *wished != '\0' ? wished : "/tmp";
 }
 
 } // namespace
@@ -181,7 +174,7 @@ void AtomicFile::open_in_place() {
 }
 
 void AtomicFile::spool() {
-    spool_ = create_scratch(temporary_folder());
+    spool_ = create_scratch(scratch_folder());
     if (spool_ < 0)
         fail_spool(errno);
 }
@@ -192,7 +185,7 @@ void AtomicFile::fail_spool(int system_error) {
                 fmt::format("cannot write a temporary file in the folder '{}', where this output waits for "
                             "its end: {}; set the environment variable TMPDIR to a folder that can be "
                             "written and has room",
-                            temporary_folder(), std::generic_category().message(system_error)));
+                            scratch_folder(), std::generic_category().message(system_error)));
 }
 
 void AtomicFile::open_unfinished() {

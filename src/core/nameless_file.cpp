@@ -63,6 +63,14 @@ bool name_file(int descriptor, const char* name) {
     return ::linkat(AT_FDCWD, path_of(descriptor).c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
 }
 
+std::string scratch_folder() {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody here changes the environment
+    const char* const wished = std::getenv("TMPDIR");
+    if (wished != nullptr && *wished != '\0')
+        return wished;
+    return ::access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
+}
+
 int create_scratch(const std::string& folder) {
     constexpr mode_t only_mine = 0600;
     const int nameless = open_nameless(folder, only_mine);

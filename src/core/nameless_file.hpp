@@ -24,6 +24,10 @@ namespace lamella {
 /// use.
 [[nodiscard]] bool name_file(int descriptor, const char* name);
 
+/// Where scratch files lie: the folder that TMPDIR names, else /var/tmp, which is on a disk where /tmp may be
+/// memory.
+[[nodiscard]] std::string scratch_folder();
+
 /// Like create_nameless, for what nobody else is to read and never gets a name: where the file system has no
 /// files without one, it loses its own at once.
 [[nodiscard]] int create_scratch(const std::string& folder);

@@ -12,25 +12,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <system_error>
 
 namespace lamella {
 
-namespace {
-
-std::string spill_folder() {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody here changes the environment
-    const char* const wished = std::getenv("TMPDIR");
-    if (wished != nullptr && *wished != '\0')
-        return wished;
-    return access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
-}
-
-} // namespace
-
 SpillFile::SpillFile(std::uint64_t bytes, std::uint64_t of_all)
-    : folder_(spill_folder()), bytes_(std::max(bytes, of_all)) {
+    : folder_(scratch_folder()), bytes_(std::max(bytes, of_all)) {
     descriptor_ = create_scratch(folder_);
     if (descriptor_ < 0)
         fail(errno);

@@ -41,7 +41,7 @@ struct RasterOptions {
     /// to the whole pixel. Makes no difference without anti-aliasing. Writers of pictures find it out by
     /// themselves.
     bool winds_once = false;
-    /// A pixel's value is 255 coverage^gamma, rounded.
+    /// A pixel's value is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
     double gamma = 1;
 };
 

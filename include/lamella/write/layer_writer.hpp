@@ -125,7 +125,8 @@ struct LayerFormat {
 [[nodiscard]] const LayerFormat& layer_format(std::string_view name, const std::string& path);
 
 /// Writes one slice file. Layers must arrive in ascending z. Nothing appears at the path before `finish`:
-/// data go to a temporary name in the same folder, which is removed when the writer is destroyed unfinished.
+/// data wait in the same folder, in a file without a name or, where the file system has none, of a hidden one,
+/// of which nothing is left when the writer is destroyed unfinished.
 /// "-" writes standard output.
 class LayerWriter {
   public:
