@@ -19,7 +19,8 @@ namespace lamella {
 class ByteStore {
   public:
     /// Keeps about `most_in_memory` bytes in memory, whole blocks of 8 MiB, and a block more.
-    explicit ByteStore(std::uint64_t most_in_memory) : most_blocks_(most_in_memory / block_bytes) {}
+    explicit ByteStore(std::uint64_t most_in_memory = std::uint64_t{32} << 20)
+        : most_blocks_(most_in_memory / block_bytes) {}
 
     /// Throws Error{output} where there is no room for the file.
     void add(std::string_view bytes);

@@ -21,8 +21,6 @@ namespace lamella {
 
 namespace {
 
-constexpr std::uint64_t most_in_memory = std::uint64_t{64} << 20;
-
 /// What the name of a file says of its vectors, in German initials: st (Stuetze) is support, s1 a shell,
 /// which is the whole part where there is one beam only; v volume, u (unten) below, s (Schraffur) hatch, k
 /// (Kontur) contour, kv (Versatz) contours further inwards. Of upskin there is but one name.
@@ -225,7 +223,7 @@ class IltWriter final : public OrderedWriter {
     ZipWriter zip_;
     std::vector<Section> sections_;
     std::vector<Entry> entries_; ///< of sections_; their pieces stay where they are
-    ByteStore store_{most_in_memory};
+    ByteStore store_;
     std::uint64_t waiting_ = 0; ///< bytes in it that are not in the archive
 };
 

@@ -1,7 +1,8 @@
-// The points of all layers are one array and go to the file as they come; what they are the points of is
-// small and kept until the end. An array begins with its shape, so the first bytes of the points are written
-// last.
+// The points of all layers are one array and go to the file as they come; hatch lines are another one and
+// wait in a store; what they are the points of is small and kept until the end. An array begins with its
+// shape, so the first bytes of the points are written last.
 
+#include "container/byte_store.hpp"
 #include "container/inflate.hpp"
 #include "container/zip_writer.hpp"
 #include "write/layer_writers.hpp"
@@ -59,8 +60,10 @@ std::u32string characters(std::string_view text) {
 
 /// In the tables: end, layer, part, and whether it is closed.
 constexpr std::uint64_t bytes_of_contour = 3 * sizeof(std::int64_t) + 1;
-/// Four coordinates, layer and part.
-constexpr std::uint64_t bytes_of_hatch = 4 * sizeof(double) + 2 * sizeof(std::int64_t);
+/// Two points.
+constexpr std::uint64_t bytes_of_line = 4 * sizeof(double);
+/// With layer and part.
+constexpr std::uint64_t bytes_of_hatch = bytes_of_line + 2 * sizeof(std::int64_t);
 
 class NpzWriter final : public OrderedWriter {
   public:
@@ -85,8 +88,10 @@ class NpzWriter final : public OrderedWriter {
                 for (std::size_t i = 1; i < layer.offsets.size(); ++i)
                     offsets_.push_back(points_ + static_cast<std::int64_t>(layer.offsets[i]));
                 points_ += static_cast<std::int64_t>(layer.points.size());
-                waiting_ += layer.contours() * bytes_of_contour + layer.hatches.size() / 2 * bytes_of_hatch;
-                counts_.push_back({layer.contours(), layer.rings, layer.hatches});
+                const std::uint64_t lines = layer.hatches.size() / 2;
+                hatches_.add(bytes_in(layer.hatches.span()));
+                waiting_ += layer.contours() * bytes_of_contour + lines * bytes_of_hatch;
+                counts_.push_back({layer.contours(), layer.rings, lines});
             }
         };
     }
@@ -114,7 +119,7 @@ class NpzWriter final : public OrderedWriter {
     struct PartPlane {
         std::uint64_t contours;
         std::uint64_t rings;
-        PointArray hatches;
+        std::uint64_t hatches;
     };
     struct Contour {
         std::int64_t layer;
@@ -203,21 +208,30 @@ class NpzWriter final : public OrderedWriter {
 
     // Only where there are any.
     void add_hatches() {
-        std::vector<std::int64_t> layers;
-        std::vector<std::int64_t> parts;
-        for (std::size_t i = 0; i < counts_.size(); ++i) {
-            layers.insert(layers.end(), counts_[i].hatches.size() / 2, layer_of(i));
-            parts.insert(parts.end(), counts_[i].hatches.size() / 2, part_of(i));
-        }
-        if (layers.empty())
+        const std::uint64_t lines = hatches_.size() / bytes_of_line;
+        if (lines == 0)
             return;
-        Array array(zip_, "hatches", "<f8", fmt::format("{}, 2, 2", layers.size()),
-                    std::uint64_t{layers.size()} * 4 * sizeof(double));
-        for (const PartPlane& counts : counts_)
-            array.add(bytes_in(counts.hatches.span()));
+        Array array(zip_, "hatches", "<f8", fmt::format("{}, 2, 2", lines), hatches_.size());
+        std::string piece;
+        for (std::uint64_t at = 0; at < hatches_.size(); at += piece.size()) {
+            piece.resize(std::min<std::uint64_t>(std::size_t{1} << 18, hatches_.size() - at));
+            hatches_.read(at, piece);
+            array.add(piece);
+        }
         array.end();
-        add_numbers<std::int64_t>("hatch_layer", "<i8", layers);
-        add_numbers<std::int64_t>("hatch_part", "<i8", parts);
+        add_hatch_numbers("hatch_layer", lines, [this](std::size_t i) { return layer_of(i); });
+        add_hatch_numbers("hatch_part", lines, [this](std::size_t i) { return part_of(i); });
+    }
+
+    template <class Value>
+    void add_hatch_numbers(std::string_view name, std::uint64_t lines, const Value& value) {
+        Array array(zip_, name, "<i8", fmt::format("{},", lines), lines * sizeof(std::int64_t));
+        for (std::size_t i = 0; i < counts_.size(); ++i) {
+            const std::int64_t number = value(i);
+            for (std::uint64_t k = 0; k < counts_[i].hatches; ++k)
+                array.add(bytes_in(std::span(&number, 1)));
+        }
+        array.end();
     }
 
     [[nodiscard]] std::int64_t layer_of(std::size_t count) const {
@@ -232,6 +246,7 @@ class NpzWriter final : public OrderedWriter {
     ZipWriter zip_;
     std::vector<PlanePlace> planes_;
     std::vector<PartPlane> counts_; ///< of all parts of the first plane, then of the second ...
+    ByteStore hatches_;
     std::vector<std::int64_t> offsets_{0};
     std::int64_t points_ = 0;
     std::uint64_t waiting_ = 0; ///< bytes that contours and hatches take at the end

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/measure.hpp"
 
+#include "container/byte_store.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
@@ -94,6 +95,14 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     std::uint64_t bytes() const noexcept override { return PackageWriter::bytes() + waiting_; }
 
   private:
+    /// A piece of a stack in store_.
+    struct Later {
+        std::uint64_t place;
+        std::size_t bytes;
+        std::uint64_t size; ///< as text
+        std::uint32_t crc;
+    };
+
     /// A height as nine decimals tell it.
     static double in_text(double mm) { return std::nearbyint(mm * 1e9); }
 
@@ -111,8 +120,10 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
             heights_.add(in_text(place.top), place.top, "top", place.index);
             zip().append(pieces->front().in_zip());
             for (std::size_t part = 1; part < pieces->size(); ++part) {
-                waiting_ += (*pieces)[part].bytes.size();
-                later_[part - 1].push_back(std::move((*pieces)[part]));
+                const package_3mf::Piece& piece = (*pieces)[part];
+                later_[part - 1].push_back({store_.size(), piece.bytes.size(), piece.size, piece.crc});
+                store_.add(piece.bytes);
+                waiting_ += piece.bytes.size();
             }
         };
     }
@@ -120,10 +131,14 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     void end_file() override {
         waiting_ = 0;
         append(stack_end);
+        std::string bytes;
         for (std::size_t part = 1; part <= later_.size(); ++part) {
             append(stack_begin(part));
-            for (const package_3mf::Piece& piece : later_[part - 1])
-                zip().append(piece.in_zip());
+            for (const Later& piece : later_[part - 1]) {
+                bytes.resize(piece.bytes);
+                store_.read(piece.place, bytes);
+                zip().append({bytes, piece.size, piece.crc});
+            }
             append(stack_end);
         }
         std::string items;
@@ -152,8 +167,9 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
 
     LayerFileInfo info_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
+    ByteStore store_;
     /// The stacks of all parts but the first, which wait for the end of the first one.
-    std::vector<std::vector<package_3mf::Piece>> later_;
+    std::vector<std::vector<Later>> later_;
     std::uint64_t waiting_ = 0; ///< bytes of these
     WrittenHeights heights_{"billionths of a millimetre"};
 };

@@ -130,6 +130,16 @@ class Memory(ProgramTest):
         self.assertGreater(16 * whole["parts"][0]["points"], 1.5 * 140e6)
         self.assertLess(windows["peak_rss_bytes"], 1.1 * 140e6)
 
+    def test_what_a_file_has_at_its_end_does_not_wait_in_memory(self):
+        self.succeed("make", "box", "--size", "60,60,10", "-o", "box.stl")
+        hatched = self.slice("box.stl", "--scan", "--layer-height", 0.025, "-o", "box.npz")
+        self.assertGreater(self.path("box.npz").stat().st_size, 110e6)
+        self.assertLess(hatched["peak_rss_bytes"], 90e6)
+        self.succeed("make", "sheet", "--holes", 100, "-o", "sheet.stl")
+        plate = self.slice("sheet.stl", "--copies", 5, "--layer-height", 0.01, "--max-memory", "150M", "-o", "plate.3mf")
+        self.assertGreater(self.path("plate.3mf").stat().st_size, 80e6)
+        self.assertLess(plate["peak_rss_bytes"], 1.1 * 150e6)
+
     def test_layers_where_nothing_is(self):
         self.succeed("make", "sphere", "--detail", 7, "-o", "low.stl")
         self.succeed("make", "sphere", "--detail", 7, "--translate", "0,0,40", "-o", "high.stl")
