@@ -75,6 +75,10 @@ std::string job_name(const std::string& path) {
         const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
         c = plain || c == '-' || c == '.' ? c : '_';
     }
+    // Programs that read jobs pass over pictures that have this word in their names.
+    constexpr std::string_view passed_over = "thumbnail";
+    for (std::size_t at = name.find(passed_over); at != std::string::npos; at = name.find(passed_over, at))
+        name.replace(at, passed_over.size(), "thumb_nail");
     return name.empty() ? "layers" : name;
 }
 
@@ -145,17 +149,18 @@ class Sl1Writer final : public OrderedWriter {
             first_thickness_ = thickness;
         if (place.position <= 1)
             thickness_ = thickness;
-        if (std::abs(thickness - thickness_) > same_height_mm)
+        const double slack = thickness_ / 100 + same_height_mm; // heights may have been rounded before
+        if (std::abs(thickness - thickness_) > slack)
             throw Error(
                 ErrorKind::usage,
                 fmt::format("an SL1 job has one layer height, but for the first layer: layer {} is {:.6g} "
                             "mm thick, the one before {:.6g} mm",
-                            place.position, thickness, thickness_));
-        if (place.position > 0 && std::abs(place.bottom - top_) > same_height_mm)
+                            place.index, thickness, thickness_));
+        if (place.position > 0 && std::abs(place.bottom - top_) > slack)
             throw Error(ErrorKind::usage,
                         fmt::format("layers of an SL1 job lie on one another: layer {} begins at {:.6g} mm, "
                                     "the one before ends at {:.6g} mm",
-                                    place.position, place.bottom, top_));
+                                    place.index, place.bottom, top_));
         top_ = place.top;
         volume_mm3_ += area_mm2 * thickness;
         const bool large = area_mm2 > printer_.large_area * display_.width_mm() * display_.height_mm();

@@ -46,6 +46,8 @@ std::string refusal(const LayerStack& layers, const LayerWriteOptions& options =
 TEST(Sl1, AllowsAnotherHeightForTheFirstLayerOnly) {
     EXPECT_EQ(refusal(stack_of({0.3, 0.1, 0.1, 0.1})), "");
     EXPECT_EQ(refusal(stack_of({0.3})), "");
+    EXPECT_EQ(refusal(stack_of({0.05, 0.049998, 0.0500011, 0.05})), "")
+        << "heights of a file that rounds them";
     EXPECT_NE(refusal(stack_of({0.1, 0.1, 0.2})).find("layer 2 is 0.2 mm thick, the one before 0.1 mm"),
               std::string::npos);
 }
