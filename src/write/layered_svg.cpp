@@ -60,6 +60,8 @@ class LayeredSvgWriter final : public SequentialWriter {
     LayeredSvgWriter(const std::string& path, const LayerFileInfo& info)
         : SequentialWriter(path, info, head(info), {.written_label = quotable}),
           origin_(steps_below(info.box.min)) {
+        for (const PartInfo& part : info.parts)
+            exposed_.push_back(part.exposure.has_value());
         if (info.parts.size() == 1 && info.parts.front().label == PartInfo{}.label)
             return;
         for (const PartInfo& part : info.parts)
@@ -99,21 +101,23 @@ class LayeredSvgWriter final : public SequentialWriter {
         for (std::size_t part = 0; part < parts.size(); ++part) {
             if (!part_heads_.empty())
                 out.append(part_heads_[part]);
-            format_part(parts[part], out);
+            format_part(parts[part], exposed_[part], out);
             if (!part_heads_.empty())
                 out.append("    </g>\n");
         }
         out.append("  </g>\n");
     }
 
-    void format_part(const Layer& layer, ByteBuffer& out) const {
-        // Painted one after the other, each ring must come after those around it, which are larger.
+    void format_part(const Layer& layer, bool exposed, ByteBuffer& out) const {
+        // Painted one after the other, each ring must come after those around it, which are larger. What a
+        // beam follows is in its order.
         std::vector<MeasuredRing> rings;
         for (std::size_t i = 0; i < layer.rings; ++i)
             rings.push_back({i, ring_area(layer.contour(i))});
-        std::stable_sort(rings.begin(), rings.end(), [](const MeasuredRing& a, const MeasuredRing& b) {
-            return std::abs(a.area) > std::abs(b.area);
-        });
+        if (!exposed)
+            std::stable_sort(rings.begin(), rings.end(), [](const MeasuredRing& a, const MeasuredRing& b) {
+                return std::abs(a.area) > std::abs(b.area);
+            });
         std::vector<GridPoint> scratch;
         for (const MeasuredRing& ring : rings) {
             const auto points =
@@ -143,6 +147,7 @@ class LayeredSvgWriter final : public SequentialWriter {
     std::string tail() override { return "</svg>\n"; }
 
     GridPoint origin_;
+    std::vector<bool> exposed_; ///< parts of scan vectors
     /// Empty for a single part that nobody gave a name: then it needs no group of its own.
     std::vector<std::string> part_heads_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};

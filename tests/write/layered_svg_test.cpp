@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lamella::layered_svg_cases {
 namespace {
@@ -60,6 +61,21 @@ TEST(LayeredSvg, PaintsEachRingAfterThoseAroundIt) {
     EXPECT_LT(outer, hole);
     EXPECT_LT(hole, island);
     EXPECT_LT(island, text.size());
+}
+
+TEST(LayeredSvg, KeepsTheOrderInWhichABeamFollowsRings) {
+    Layer layer{.z = 0.5, .bottom = 0, .top = 1};
+    layer.points =
+        PointArray(std::vector<Point2>{{4, 4}, {6, 4}, {6, 6}, {4, 6}, {0, 0}, {10, 0}, {10, 10}, {0, 10}});
+    layer.offsets = {0, 4, 8};
+    layer.rings = 2;
+    const LayerStack layers{layer};
+    LayerFileInfo info = info_of(layers);
+    info.parts.front().exposure = Exposure{};
+    const TemporaryFolder folder;
+    write_layers(folder.file("out.svg"), layer_format("svg", ""), layers, info);
+    const std::string text = file_bytes(folder.file("out.svg"));
+    EXPECT_LT(text.find("points=\"4,4"), text.find("points=\"0,0"));
 }
 
 TEST(LayeredSvg, KeepsOpenChainsWithoutPaintingThem) {
