@@ -30,6 +30,9 @@ TEST(Printable, ShowsWhatIsNotTextAsBytes) {
     EXPECT_EQ(printable("St\xFC\x63k", 100), "St\\xfcck");
     EXPECT_EQ(printable("\xC2\x85", 100), "\\xc2\\x85") << "a control character in two bytes";
     EXPECT_EQ(printable("\xE2\x82", 100), "\\xe2\\x82") << "cut in the middle of a character";
+    EXPECT_EQ(printable("a\xEF\xBF\xBF\xEF\xBF\xBE\xEF\xBF\xBD", 100),
+              "a\\xef\\xbf\\xbf\\xef\\xbf\\xbe\xEF\xBF\xBD")
+        << "no characters, of which XML must have none";
     EXPECT_EQ(printable("\xC0\xAF\xED\xA0\x80", 100), "\\xc0\\xaf\\xed\\xa0\\x80") << "overlong, surrogate";
 }
 
