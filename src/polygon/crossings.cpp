@@ -187,8 +187,7 @@ class CrossingSearch {
             return along.x * (p.y - t.lo.y) - along.y * (p.x - t.lo.x);
         };
         double share = height(s.lo) / (height(s.lo) - height(s.hi));
-        if (!(share >= 0 && share <= 1))
-            share = 0.5;
+        share = share == share ? std::clamp(share, 0.0, 1.0) : 0.5; // it is not a number for 0 / 0
         // Where the two are all but parallel the share means little, but then they are all but the same as
         // far as they run side by side, which is as far as their boxes overlap.
         const auto within = [](double value, double a, double b, double c, double d) {

@@ -63,15 +63,20 @@ double width_across_longest_side(std::span<const Point2> ring) noexcept {
 /// The boundaries of a layer's material, without walls, and what they bound.
 class Boundaries {
   public:
-    explicit Boundaries(const Layer& layer)
-        : layer_(without_straight_points(layer, ClippingGrid(layer.points.span()).unit())) {
-        const Overlay overlay(layer_);
+    // Bodies that fit in one another are united first: of each ring other points may be straight.
+    explicit Boundaries(const Layer& layer) {
+        const Overlay overlay(layer);
+        const auto set = [this](const Layer& material, const Nesting& nest) {
+            layer_ = without_straight_points(material, ClippingGrid(material.points.span()).unit());
+            polygons_ = polygons(nest);
+        };
         if (overlay.clean()) {
-            polygons_ = polygons(overlay.nest());
-            return;
+            set(layer, overlay.nest());
+        } else {
+            const Layer material =
+                overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
+            set(material, nesting(material));
         }
-        layer_ = overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
-        polygons_ = polygons(nesting(layer_));
     }
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }

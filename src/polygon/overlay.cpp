@@ -195,4 +195,10 @@ Overlaid Overlay::filled(const Material& material, Walls walls) const {
     return Filler(layer_, turns_, material, walls, contacts_, nest_).run();
 }
 
+Layer united(const Layer& layer) {
+    const Overlay overlay(layer);
+    return overlay.clean() ? layer
+                           : overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
+}
+
 } // namespace lamella

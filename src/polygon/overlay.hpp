@@ -61,4 +61,8 @@ class Overlay {
     WoundNesting nest_;
 };
 
+/// The material of a layer (FillRule::positive), walls dissolved. A layer that is that already is passed
+/// through.
+[[nodiscard]] Layer united(const Layer& layer);
+
 } // namespace lamella

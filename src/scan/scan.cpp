@@ -50,14 +50,6 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
     return distances;
 }
 
-/// The material of a layer, with bodies that touch united, as `offset` does it.
-Layer material_of(const Layer& layer) {
-    const Overlay overlay(layer);
-    if (overlay.clean())
-        return layer;
-    return overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
-}
-
 } // namespace
 
 /// The material of a layer, moved inwards by several distances; each is computed once.
@@ -66,7 +58,7 @@ struct ScanMemory::Insets {
         : layer(std::move(of)), distances(std::move(by)), moved(offsets(layer, distances, {}, &thin_rings)) {
         for (std::size_t i = 0; i < distances.size(); ++i)
             if (distances[i] == 0) // not looked at
-                moved[i] = material_of(layer);
+                moved[i] = united(layer);
     }
 
     /// Whether these are those of another layer, too.
@@ -112,10 +104,13 @@ std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const Sc
 
 } // namespace
 
-// A point may have moved by so much, and the way between its neighbours by as much to the other side.
+// A point may have moved by so much, and the way between its neighbours by as much to the other side. Bodies
+// that fit in one another are united first: of each ring other points may be straight.
 ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding)
-    : layer_(without_straight_points(layer, std::max(ClippingGrid(layer.points.span()).unit(),
-                                                     2 * moved_point(layer.points.span(), rounding)))) {}
+    : layer_(normal_form(
+          without_straight_points(united(layer), std::max(ClippingGrid(layer.points.span()).unit(),
+                                                          2 * moved_point(layer.points.span(), rounding))))) {
+}
 
 void ScanLayer::share_points(const ScanLayer& other) {
     if (same_contours(layer_, other.layer_))

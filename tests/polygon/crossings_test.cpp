@@ -1,6 +1,7 @@
 #include "lamella/polygon/crossings.hpp"
 
 #include "fixtures/layers.hpp"
+#include "polygon/orientation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -143,6 +144,31 @@ TEST(Crossings, ArePairsNotPlaces) {
         star.push_back({{-x, -y}, {x, y}});
     }
     EXPECT_EQ(find_crossings(layer_of({}, star)).count, 28U);
+}
+
+// Segments that are all but parallel, whose computed crossing lies beyond the end of one of them.
+TEST(Crossings, NearCornersAreFoundInTheCellOfTheCorner) {
+    Random random(17);
+    for (int round = 0; round < 2000; ++round) {
+        const Contour around = test::regular_polygon(41, 10);
+        const auto corner = static_cast<std::size_t>(random.integer(0, 40));
+        const Point2& a = around[corner];
+        const Point2& b = around[(corner + 1) % around.size()];
+        const double share = std::ldexp(1, -static_cast<int>(random.integer(1, 60)));
+        const Point2 touching{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+        const auto anywhere = [&random] {
+            return random.real(-9, 9);
+        };
+        const Contour within{touching, {anywhere(), anywhere()}, {anywhere(), anywhere()}};
+        std::uint64_t expected = 0;
+        for (std::size_t i = 0; i < around.size(); ++i)
+            for (std::size_t k = 0; k < within.size(); ++k)
+                expected += cross(segment_between(around[i], around[(i + 1) % around.size()]),
+                                  segment_between(within[k], within[(k + 1) % within.size()]))
+                                ? 1U
+                                : 0U;
+        ASSERT_EQ(find_crossings(layer_of({around, within})).count, expected) << round;
+    }
 }
 
 TEST(Crossings, AreThoseOfAllPairsOnRandomIntegers) {

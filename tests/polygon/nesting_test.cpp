@@ -230,6 +230,14 @@ TEST(Nesting, IgnoresFoldsOfNoWidth) {
               (Numbers{2, 2, none}));
 }
 
+// Heights of rounded numbers put three edges that cross near one point in a circle.
+TEST(Nesting, OfRingsThatCrossNearOnePointIsFound) {
+    const std::vector<Contour> rings{{{-100, -100}, {0, 0}, {-3, -3}, {0, -1}},
+                                     {{-1, 0}, {0, -1e-12}, {0, 0}, {0, -1e-12}},
+                                     {{-1e-12, 0}, {1, 5}, {0, 5}}};
+    EXPECT_EQ(kinds(rings).size(), rings.size());
+}
+
 TEST(Nesting, OfOpenChainsIsNone) {
     const Nesting nest = nesting(layer_of({diamond(5, 5, 1)}, {rectangle(0, 0, 9, 9)}));
     EXPECT_EQ(nest.rings(), 1U);

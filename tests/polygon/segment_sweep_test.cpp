@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace lamella::sweep_line_cases {
@@ -60,15 +61,44 @@ TEST(SegmentSweep, KeepsWhatItMeetsInTheOrderOfTheirHeights) {
             ASSERT_EQ(std::set(found.begin(), found.end()), expected);
             most = std::max(most, found.size());
             // What is vertical is on the line with all of its points.
-            std::vector<double> heights;
+            std::vector<Segment> upwards;
             for (const std::uint32_t i : found)
                 if (segments[i].lo.x < segments[i].hi.x)
-                    heights.push_back(height_at(segments[i], at.x));
-            ASSERT_TRUE(std::is_sorted(heights.begin(), heights.end())) << round;
+                    upwards.push_back(segments[i]);
+            const auto lower = [x = at.x](const Segment& s, const Segment& t) {
+                return compare_heights(x, s, t) < 0;
+            };
+            ASSERT_TRUE(std::is_sorted(upwards.begin(), upwards.end(), lower)) << round;
         }
         ASSERT_TRUE(status.empty());
     }
     EXPECT_GT(most, 5U);
+}
+
+// Rounded heights of long segments that cross near one point put some of them in a circle.
+TEST(SegmentSweep, ComparesHeightsOfSegmentsThatCrossInOneOrder) {
+    Random random(5);
+    for (int round = 0; round < 300; ++round) {
+        const double scale = std::ldexp(1, static_cast<int>(random.integer(-600, 600)));
+        std::vector<Segment> segments;
+        for (int i = 0; i < 8; ++i) {
+            const auto x = static_cast<double>(random.integer(1, 100));
+            const auto y = static_cast<double>(random.integer(-100, 100));
+            const double off = static_cast<double>(random.integer(-2, 2)) * 1e-14;
+            segments.push_back({{-x * scale, (off - y) * scale}, {x * scale, (y + off) * scale}});
+        }
+        for (const Segment& a : segments)
+            for (const Segment& b : segments) {
+                const int order = compare_right_of(0, a, b);
+                ASSERT_EQ(order, -compare_right_of(0, b, a));
+                for (const Segment& c : segments) {
+                    const int next = compare_right_of(0, b, c);
+                    if (order <= 0 && next <= 0) {
+                        ASSERT_EQ(compare_right_of(0, a, c), std::min(order, next));
+                    }
+                }
+            }
+    }
 }
 
 TEST(SegmentSweep, OrdersWhatBeginsInOnePointBySlope) {

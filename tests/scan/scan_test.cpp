@@ -1,7 +1,9 @@
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/boolean.hpp"
+#include "lamella/polygon/offset.hpp"
 #include "lamella/scan/scan.hpp"
 
 #include "fixtures/layers.hpp"
@@ -22,6 +24,7 @@
 namespace lamella::scan_cases {
 namespace {
 
+using test::Contour;
 using test::contours;
 using test::layer_of;
 using test::normal_layer;
@@ -125,6 +128,62 @@ TEST(Scan, HatchesTheOutlineItselfWhereNothingLiesBetween) {
     // Bodies that overlap count once.
     const Layer layer = normal_layer({rectangle(0, 0, 6, 4), rectangle(3, 0, 9, 4)});
     EXPECT_NEAR(marked(scan(layer, {}, {}, strategy).front()), 4 * 9, 1e-6);
+}
+
+/// A pin in its bore, with the same points on either side, rounded to thousandths.
+Layer pin_in_bore() {
+    Contour pin;
+    for (const Point2& p : test::regular_polygon(256, 2))
+        pin.push_back({std::round(p.x * 1000) / 1000 + 0.0, std::round(p.y * 1000) / 1000 + 0.0});
+    return normal_layer({rectangle(-5, -5, 5, 5), reversed(pin), pin});
+}
+
+// Of the bore other points are straight than of the pin, which begins elsewhere.
+TEST(Scan, UnitesBodiesThatFitInOneAnotherWhateverPointsAreStraight) {
+    ScanStrategy strategy;
+    strategy.contours.count = 1;
+    EXPECT_EQ(scan({pin_in_bore(), {.step_mm = 0.001}}, {}, {}, strategy).back().rings, 1U);
+    EXPECT_EQ(offset(pin_in_bore(), -0.05).rings, 1U);
+}
+
+TEST(Scan, FindsSkinsUnderBodiesThatOverlapAlsoWhereNoneIsTooNarrow) {
+    ScanStrategy strategy;
+    strategy.downskin.layers = 2;
+    const auto at = [](Layer layer, double bottom) {
+        layer.bottom = bottom;
+        layer.top = bottom + 1;
+        return layer;
+    };
+    const Layer layer = at(normal_layer({rectangle(0, 0, 10, 10)}), 2);
+    const std::vector<ScanLayer> below{
+        at(normal_layer({rectangle(-1, -1, 11, 11), rectangle(-2, -2, 12, 12)}), 1),
+        at(normal_layer({rectangle(100, 100, 110, 110)}), 0)};
+    std::vector<double> lengths;
+    for (const double narrowest : {0.1, 0.0}) {
+        strategy.downskin.narrowest = narrowest;
+        const std::vector<Exposure> kinds = exposures(strategy, {});
+        const std::vector<Layer> vectors = scan(layer, below, {}, strategy);
+        double length = 0;
+        for (std::size_t i = 0; i < kinds.size(); ++i)
+            if (kinds[i].region == ScanRegion::downskin)
+                length += marked(vectors[i]);
+        lengths.push_back(length);
+    }
+    EXPECT_GT(lengths[0], 100);
+    EXPECT_NEAR(lengths[0], lengths[1], 1);
+}
+
+TEST(Scan, DoesNotDependOnTheOrderOfTheRings) {
+    ScanStrategy strategy;
+    strategy.contours.beam_offset = 0;
+    std::vector<Contour> rings;
+    for (int i = 0; i < 6; ++i)
+        rings.push_back(rectangle(20 * i, 0, 20 * i + 10, 10));
+    const std::vector<Layer> expected = scan(layer_of(rings), {}, {}, strategy);
+    std::reverse(rings.begin(), rings.end());
+    const std::vector<Layer> found = scan(layer_of(rings), {}, {}, strategy);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_TRUE(same_contours(found[i], expected[i])) << i;
 }
 
 TEST(Scan, KnowsNoWallsBetweenBodiesThatTouch) {
