@@ -179,13 +179,19 @@ class Thinned {
 
 /// Puts points back where segments cross. False when none do that did not cross before.
 bool refine_crossings(Thinned& thinned, const Layer& layer) {
+    const auto refine = [&](const Crossings& crossings) {
+        bool any = false;
+        for (const Crossing& crossing : crossings.first) {
+            any = thinned.refine(layer, crossing.contour_a, crossing.segment_a) || any;
+            any = thinned.refine(layer, crossing.contour_b, crossing.segment_b) || any;
+        }
+        return any;
+    };
     constexpr std::size_t at_once = 4096;
-    bool any = false;
-    for (const Crossing& crossing : find_crossings(layer, at_once).first) {
-        any = thinned.refine(layer, crossing.contour_a, crossing.segment_a) || any;
-        any = thinned.refine(layer, crossing.contour_b, crossing.segment_b) || any;
-    }
-    return any;
+    const Crossings some = find_crossings(layer, at_once);
+    if (refine(some))
+        return true;
+    return some.count > at_once && refine(find_crossings(layer, some.count)); // those may all be old ones
 }
 
 /// Puts points back in rings that have turned over, vanished or moved past others, and around those.

@@ -22,6 +22,7 @@ namespace {
 using test::Contour;
 using test::distance_from_segment;
 using test::layer_of;
+using test::normal_layer;
 using test::Random;
 using test::rectangle;
 using test::reversed;
@@ -201,6 +202,19 @@ TEST(Simplify, KeepsARingThatIsSmallerThanTheTolerance) {
 TEST(Simplify, ByWhatIsNoDistanceIsRefused) {
     EXPECT_THROW(static_cast<void>(simplify(Layer{}, -1)), Error);
     EXPECT_THROW(static_cast<void>(simplify(Layer{}, std::nan(""))), Error);
+}
+
+TEST(Simplify, MakesNoCrossingsBesideThousandsOfOldOnes) {
+    std::vector<Contour> rings;
+    for (int i = 0; i < 70; ++i) {
+        rings.push_back(rectangle(i, -1, i + 0.5, 71));
+        rings.push_back(rectangle(-1, i, 71, i + 0.5));
+    }
+    const std::uint64_t before = find_crossings(normal_layer(rings)).count;
+    ASSERT_GT(before, 4096U);
+    rings.push_back({{200, 0}, {210, 0}, {210, 10}, {205.2, 10}, {205.1, 9.9}, {205, 10}, {200, 10}});
+    rings.push_back({{205.05, 9.97}, {205.15, 9.97}, {205.1, 10.2}}); // in its dent
+    EXPECT_EQ(find_crossings(simplify(normal_layer(rings), 0.15)).count, before);
 }
 
 } // namespace
