@@ -148,9 +148,15 @@ void check_path(const std::string& path) {
         refuse("the name of a file is empty");
 }
 
-/// What the system calls standard output is "-" here, so that nothing else is written between its bytes.
-std::string output_of(const std::string& text) {
-    return text == "/dev/stdout" || text == "/dev/fd/1" || text == "/proc/self/fd/1" ? "-" : text;
+/// What the system calls standard input or output is "-" here: only one file is read from the one, and
+/// nothing else is written between the bytes of the other.
+std::string file_name(const std::string& text, bool written) {
+    const std::string_view name = written ? "stdout" : "stdin";
+    const std::string_view number = written ? "1" : "0";
+    return text == fmt::format("/dev/{}", name) || text == fmt::format("/dev/fd/{}", number) ||
+                   text == fmt::format("/proc/self/fd/{}", number)
+               ? "-"
+               : text;
 }
 
 /// Gives a command its options and operands, one after the other.
@@ -160,7 +166,8 @@ class Assignment {
 
     /// `origin` says where the text came from, in case it is wrong.
     void set(Option& option, const std::string& origin, const std::string& given) {
-        const std::string text = option.kind == ValueKind::output ? output_of(given) : given;
+        const std::string text =
+            is_file(option.kind) ? file_name(given, option.kind == ValueKind::output) : given;
         try {
             if (option.kind == ValueKind::flag && text != "true" && text != "false")
                 refuse(fmt::format("\"{}\" is neither true nor false", text));
@@ -190,7 +197,7 @@ class Assignment {
                                                       : fmt::format("{} arguments", operands.size()),
                                given, command_.name));
         Operand& operand = operands[std::min(taken_, operands.size() - 1)];
-        const std::string text = operand.written ? output_of(given) : given;
+        const std::string text = operand.choices.empty() ? file_name(given, operand.written) : given;
         ++taken_;
         try {
             check_choice(operand.choices, text);

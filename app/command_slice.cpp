@@ -225,11 +225,10 @@ void check_shard(const SliceArguments& arguments) {
     if (arguments.output.empty())
         return;
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
-    if (format.directory || format.picture)
+    if (format.one_way)
         throw Error(
             ErrorKind::usage,
-            fmt::format("--shard goes with files of contours, which lamella merge puts together; {} is none",
-                        format.name));
+            fmt::format("--shard goes with files that lamella merge can read; {} is none", format.name));
 }
 
 FileJob make_job(const SliceArguments& arguments) {
@@ -405,6 +404,25 @@ std::string stamp_of(const SliceArguments& arguments) {
                : std::string();
 }
 
+void check_files_of_team(const Command& command) {
+    for (const NamedFile& input : files_of(command, ValueKind::input))
+        if (input.path == "-")
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: standard input reaches one of the processes only; give the name of a file",
+                            input.name));
+}
+
+/// All processes fail together.
+void check_job_of_team(const Command& command, const FileJob& job, Communicator& processes) {
+    const std::vector<std::string> all = processes.gather(job_parameters(command, job).dump());
+    for (const std::string& other : all)
+        if (other != all.front())
+            throw Error(ErrorKind::usage,
+                        fmt::format("the processes were not given one job: {}",
+                                    first_difference(Json::parse(all.front()), Json::parse(other))));
+}
+
 /// The statistics and the stamp are written when all else is done, so nobody shall slice for hours what
 /// cannot be told then. All processes fail together.
 void check_places(const SliceArguments& arguments, Communicator& processes) {
@@ -423,6 +441,8 @@ void check_places(const SliceArguments& arguments, Communicator& processes) {
 }
 
 int run_slice(SliceArguments& arguments, const Context& context) {
+    if (arguments.team != nullptr)
+        check_files_of_team(context.command);
     if (!arguments.batch.source.empty())
         return slice_batch(arguments, context);
     if (arguments.inputs.empty())
@@ -446,6 +466,8 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             if (arguments.resume && is_finished_shard(job, arguments.stats, origin, run))
                 return std::nullopt;
         }
+        if (arguments.team != nullptr)
+            check_job_of_team(context.command, job, processes);
         check_places(arguments, processes);
         return slice_file(job, run, processes);
     };

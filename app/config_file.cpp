@@ -157,7 +157,7 @@ std::string text_for_all(const Command& command, const Option& option) {
     if (!given(option) && !option.goes_with.empty() && !given(*find_option(command, option.goes_with)))
         return {};
     const std::string text = given(option).value_or(option.preset);
-    return text == "false" ? std::string() : text;
+    return option.kind == ValueKind::flag && text == "false" ? std::string() : text;
 }
 
 /// Of several values the last one counts.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
@@ -28,18 +29,17 @@ std::string hash_text(const std::string& path, const Execution& execution) {
 }
 
 /// Options that leave the bytes of the slice file alone, or that the origin has in another form.
-constexpr std::array<std::string_view, 13> not_of_the_origin{
-    "shard",    "resume", "output",     "report",        "stats",      "inspect", "threads",
-    "progress", "config", "max-memory", "max-triangles", "max-output", "timeout"};
+constexpr std::array<std::string_view, 15> not_of_the_origin{
+    "shard",   "resume",   "output", "format",     "report",        "stats",      "engine", "inspect",
+    "threads", "progress", "config", "max-memory", "max-triangles", "max-output", "timeout"};
 
-Json input_json(const PlateInput& input, const Execution& execution) {
+Json input_json(const PlateInput& input) {
     Json placement = Json::array();
     for (const auto& row : input.placement.linear)
         placement.insert(placement.end(), {row[0], row[1], row[2]});
     placement.insert(placement.end(),
                      {input.placement.offset[0], input.placement.offset[1], input.placement.offset[2]});
-    return {{"hash", hash_text(input.path, execution)},
-            {"unit_mm", input.unit_mm.value_or(0)},
+    return {{"unit_mm", input.unit_mm.value_or(0)},
             {"placement", std::move(placement)},
             {"copies", input.copies},
             {"spacing", input.spacing_mm},
@@ -106,17 +106,9 @@ Stamped stamped(const std::string& path, const Execution& execution) {
 void check_origins(const Stamped& a, const Stamped& b) {
     const Json& of_a = a.stamp["origin"];
     const Json& of_b = b.stamp["origin"];
-    const Json changes = Json::diff(of_a, of_b);
-    if (changes.empty())
-        return;
-    const Json::json_pointer first(changes[0]["path"].get<std::string>());
-    const auto told = [&](const Json& origin) {
-        return origin.contains(first) ? origin[first].dump() : "nothing";
-    };
-    throw Error(ErrorKind::input,
-                fmt::format("{} and {} are not shards of one job: by their stamps {} is {} in the one and {} "
-                            "in the other",
-                            a.path, b.path, first.to_string().substr(1), told(of_a), told(of_b)));
+    if (of_a != of_b)
+        throw Error(ErrorKind::input, fmt::format("{} and {} are not shards of one job: by their stamps {}",
+                                                  a.path, b.path, first_difference(of_a, of_b)));
 }
 
 } // namespace
@@ -125,22 +117,47 @@ std::string stamp_path(const std::string& output) {
     return output + ".shard";
 }
 
-Json shard_origin(const Command& command, const FileJob& job, const Execution& execution) {
+std::string first_difference(const Json& one, const Json& other) {
+    const Json::json_pointer first(Json::diff(one, other).at(0).at("path").get<std::string>());
+    const auto told = [&](const Json& object) {
+        return object.contains(first) ? object[first].dump() : "nothing";
+    };
+    return fmt::format("{} is {} in the one and {} in the other", first.to_string().substr(1), told(one),
+                       told(other));
+}
+
+Json job_parameters(const Command& command, const FileJob& job) {
     Json options = options_in_effect(command);
     for (const std::string_view name : not_of_the_origin)
         options.erase(std::string(name));
+    for (const OptionGroup& group : command.groups)
+        for (const Option& option : group.options)
+            if (option.of_each_file)
+                options.erase(option.name);
+    // Given or not, they stand in one place: the order counts.
+    for (const std::string_view name : {"units-mm", "short"})
+        options.erase(std::string(name));
+    options["units-mm"] = job.write.units_mm;
+    options["short"] = job.write.short_form;
     if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
         options["z-list"] = listed->z;
     if (job.scan)
         options["strategy"] = strategy_json(*job.scan);
     Json inputs = Json::array();
     for (const PlateInput& input : job.inputs)
-        inputs.push_back(input_json(input, execution));
+        inputs.push_back(input_json(input));
     return {{"lamella", version()},
-            {"format", layer_format(job.format, job.output).name},
-            {"shards", job.shard->count},
+            {"format", job.output.empty() ? "" : layer_format(job.format, job.output).name},
             {"inputs", std::move(inputs)},
             {"options", std::move(options)}};
+}
+
+Json shard_origin(const Command& command, const FileJob& job, const Execution& execution) {
+    Json origin = job_parameters(command, job);
+    origin["shards"] = job.shard->count;
+    for (std::size_t i = 0; i < job.inputs.size(); ++i)
+        origin["inputs"][i]["hash"] = hash_text(job.inputs[i].path, execution);
+    return origin;
 }
 
 bool is_finished_shard(const FileJob& job, const std::string& stats, const Json& origin,

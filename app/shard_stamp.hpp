@@ -21,7 +21,12 @@ namespace lamella::app {
 /// "part.cli.shard" beside "part.cli".
 [[nodiscard]] std::string stamp_path(const std::string& output);
 
-/// What decides the bytes of the shard: version, options, the content of all inputs. Reads the inputs once.
+/// What decides the bytes of a job's output, but for the content of its inputs: version, format, options.
+[[nodiscard]] Json job_parameters(const Command& command, const FileJob& job);
+/// What two such objects, or two origins, that are not the same differ in first, and how.
+[[nodiscard]] std::string first_difference(const Json& one, const Json& other);
+
+/// What decides the bytes of the shard: the same, and the content of all inputs. Reads the inputs once.
 [[nodiscard]] Json shard_origin(const Command& command, const FileJob& job, const Execution& execution);
 
 /// Whether the job's output is there, with a stamp that has this origin and the content that it had then, and

@@ -5,6 +5,7 @@
 #include "core/file_piece.hpp"
 #include "pipeline/agreement.hpp"
 #include "pipeline/packed.hpp"
+#include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -195,12 +196,7 @@ std::uint64_t JobOutput::write_shared() {
             place = total;
         total += sizes[p];
     }
-    if (most_bytes_ != 0 && total > most_bytes_)
-        throw Error(
-            ErrorKind::limit,
-            fmt::format("'{}' would take {} bytes, more than the {} that it may; choose higher layers, "
-                        "another format or a larger limit",
-                        path_, total, most_bytes_));
+    check_bytes(path_, total, most_bytes_);
     in_agreement(processes_, [&] { write_at(working_path_, place, waiting_, path_); });
     in_agreement(processes_, [&] {
         if (file_)

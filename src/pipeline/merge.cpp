@@ -10,6 +10,7 @@
 #include "contour/same_height.hpp"
 #include "core/atomic_file.hpp"
 #include "core/byte_source.hpp"
+#include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -260,8 +261,8 @@ void check_heads(const std::string& one, std::string_view head, const std::strin
 }
 
 std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint64_t layers,
-                                 const std::string& output, const LayerReadOptions& reading,
-                                 const Execution& execution) {
+                                 const std::string& output, const LayerWriteOptions& options,
+                                 const LayerReadOptions& reading, const Execution& execution) {
     AtomicFile out(output);
     std::string head;
     for (std::size_t i = 0; i < shards.size(); ++i) {
@@ -283,6 +284,7 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
                 throw Error(ErrorKind::cancelled, "cancelled");
             const std::string_view piece = file.layers.substr(at, at_once);
             out.append(piece);
+            check_bytes(output, out.bytes(), options.most_bytes);
             release(file.source, std::as_bytes(std::span(piece)));
         }
         check_length(file.source);
@@ -467,8 +469,10 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                        .warnings = {}};
     for (const ShardFile& shard : shards)
         result.layers += shard.layers;
-    if (to.joins && to.name == result.format)
-        result.bytes = join_common_layers(shards, result.layers, output, reading, execution);
+    const bool as_they_are = !options.short_form && (options.units_mm == LayerWriteOptions::usual_units_mm ||
+                                                     options.units_mm == shards.front().units_mm);
+    if (to.joins && to.name == result.format && as_they_are)
+        result.bytes = join_common_layers(shards, result.layers, output, options, reading, execution);
     else
         write_anew(shards, output, to, options, reading, result, execution);
     return result;

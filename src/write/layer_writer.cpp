@@ -71,12 +71,14 @@ constexpr std::array formats{
                 .summary = "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm",
                 .open = open_dxf,
                 .pieces = true,
+                .one_way = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "geojson",
                 .extension = ".geojson",
                 .summary = "GeoJSON, one feature per layer; coordinates to 0.001 mm",
                 .open = open_geojson,
                 .pieces = true,
+                .one_way = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "json",
                 .extension = ".json",
@@ -115,34 +117,40 @@ constexpr std::array formats{
     LayerFormat{.name = "html",
                 .extension = ".html",
                 .summary = "a page to look at the layers with any browser; see docs/viewer.md",
-                .open = open_page},
+                .open = open_page,
+                .one_way = true},
     LayerFormat{.name = "svg-layers",
                 .extension = "",
                 .summary = "a folder with one SVG picture per layer; coordinates to 0.001 mm",
                 .open = open_svg_layers,
                 .directory = true,
+                .one_way = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "png",
                 .extension = "",
                 .summary = "a folder with one PNG picture per layer; as fine as its pixels",
                 .open = open_picture_folder,
                 .directory = true,
+                .one_way = true,
                 .picture = true},
     LayerFormat{.name = "png-zip",
                 .extension = ".zip",
                 .summary = "the same pictures in a zip archive",
                 .open = open_picture_archive,
+                .one_way = true,
                 .picture = true},
     LayerFormat{.name = "sl1",
                 .extension = ".sl1",
                 .summary = "a job for the resin printer Original Prusa SL1; as fine as its pixels",
                 .open = open_sl1,
+                .one_way = true,
                 .picture = true,
                 .exposure = true},
     LayerFormat{.name = "sl1s",
                 .extension = ".sl1s",
                 .summary = "the same for the SL1S",
                 .open = open_sl1s,
+                .one_way = true,
                 .picture = true,
                 .exposure = true},
 };
@@ -177,14 +185,14 @@ class HeldWriter final : public LayerWriter {
     std::function<void()> prepare(std::span<const Layer> parts) override {
         return [this, write = writer_->prepare(parts)] {
             write();
-            check_size();
+            check_bytes(path_, bytes(), most_bytes_);
         };
     }
 
     void finish() override {
         if (const std::vector<std::string> losses = warnings(); strict_ && !losses.empty())
             throw Error(ErrorKind::defect, fmt::format("{}: {}", path_, losses.front()));
-        check_size();
+        check_bytes(path_, bytes(), most_bytes_);
         writer_->finish();
     }
 
@@ -192,15 +200,6 @@ class HeldWriter final : public LayerWriter {
     std::vector<std::string> warnings() const override { return writer_->warnings(); }
 
   private:
-    void check_size() const {
-        if (most_bytes_ != 0 && bytes() > most_bytes_)
-            throw Error(
-                ErrorKind::limit,
-                fmt::format("'{}' would take more than the {} bytes that it may; choose higher layers, "
-                            "another format or a larger limit",
-                            path_, most_bytes_));
-    }
-
     std::unique_ptr<LayerWriter> writer_;
     std::string path_;
     std::uint64_t most_bytes_;
@@ -208,6 +207,15 @@ class HeldWriter final : public LayerWriter {
 };
 
 } // namespace
+
+void check_bytes(const std::string& path, std::uint64_t bytes, std::uint64_t most) {
+    if (most != 0 && bytes > most)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("'{}' would take more than the {} bytes that it may; choose higher layers, another "
+                        "format or a larger limit",
+                        path, most));
+}
 
 Box3 part_box(std::span<const Layer> layers) noexcept {
     Box3 box;

@@ -4,6 +4,7 @@
 
 #include "lamella/write/layer_writer.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -47,5 +48,8 @@ OpenLayerWriter open_slc;
 OpenLayerWriter open_slices_3mf;
 /// 3MF with toolpaths (3MF Toolpath Extension 1.0, a release candidate).
 OpenLayerWriter open_toolpath_3mf;
+
+/// Throws Error{limit} where a file takes more than LayerWriteOptions::most_bytes.
+void check_bytes(const std::string& path, std::uint64_t bytes, std::uint64_t most);
 
 } // namespace lamella

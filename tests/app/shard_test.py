@@ -188,6 +188,32 @@ class Shard(ProgramTest):
         self.assertEqual(result.code, 3)
         self.assertIn("no permission", result.err)
 
+    def test_shards_of_one_job_may_be_asked_for_in_other_words(self):
+        self.lattice()
+        self.succeed("slice", "part.stl", "-o", "a.cli", "--shard", "1/2", "--translate", "1,2,3")
+        self.write("moved.toml", 'format = "cli"\nunits-mm = 0.001\n[[input]]\npath = "part.stl"\ntranslate = [1, 2, 3]\n')
+        self.succeed("slice", "-o", "b.cli", "--shard", "2/2", "--config", "moved.toml", "--engine", "eecc")
+        self.succeed("merge", "m.cli", "a.cli", "b.cli")
+        self.succeed("slice", "part.stl", "-o", "whole.cli", "--translate", "1,2,3")
+        self.assertEqual(self.bytes_of("m.cli"), self.bytes_of("whole.cli"))
+
+    def test_merge_obeys_options_of_the_output_also_where_files_could_be_joined(self):
+        self.lattice()
+        files = self.slice_all(2, "cli")
+        self.succeed("merge", "short.cli", *files, "--short")
+        self.succeed("slice", "part.stl", "-o", "whole.cli", "--short")
+        self.succeed("compare", "short.cli", "whole.cli")
+        self.assertEqual(len(self.bytes_of("short.cli")), len(self.bytes_of("whole.cli")))
+        self.succeed("merge", "units.cli", *files, "--units-mm", "0.01")
+        self.assertIn(b"$$UNITS/0.01", self.bytes_of("units.cli"))
+        self.fail_with(5, "'m.cli' would take more than the 1000 bytes that it may", "merge", "m.cli", *files, "--max-output", "1000")
+        self.assertFalse(self.path("m.cli").exists())
+
+    def test_shards_are_files_that_merge_can_read(self):
+        self.lattice()
+        for name in ["a.html", "a.dxf", "a.geojson", "a.sl1"]:
+            self.fail_with(2, "files that lamella merge can read", "slice", "part.stl", "-o", name, "--shard", "1/2")
+
     def test_merge_refuses_what_does_not_belong_together(self):
         self.lattice()
         a, b, c, d = self.slice_all(4, "cli")
@@ -198,7 +224,7 @@ class Shard(ProgramTest):
         self.fail_with(3, f"{b} holds those up to .*; name each shard once", "merge", "m.cli", a, b, b, c, d)
         self.fail_with(2, "overwrite", "merge", a, a, b)
         self.succeed("slice", "part.stl", "-o", "other.cli", "--shard", "4/4", "--units-mm", "0.01")
-        self.fail_with(3, 'not shards of one job: by their stamps options/units-mm is nothing in the one and 0.01 in the other', "merge", "m.cli", a, b, c, "other.cli")
+        self.fail_with(3, 'not shards of one job: by their stamps options/units-mm is 0.001 in the one and 0.01 in the other', "merge", "m.cli", a, b, c, "other.cli")
         self.succeed("make", "lattice", "--cells", 3, "-o", "part.stl")
         self.succeed("slice", "part.stl", "-o", "other.cli", "--shard", "4/4")
         self.fail_with(3, 'not shards of one job.*inputs/0/hash is "', "merge", "m.cli", a, b, c, "other.cli")

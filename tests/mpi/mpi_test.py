@@ -24,11 +24,13 @@ class MpiTest(ProgramTest):
     def command(self, processes, *arguments):
         return [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(processes), *map(str, arguments)]
 
-    def by(self, processes, *arguments):
+    def run_command(self, command):
         # Tests may run beside each other, and processes of MPI wait busily unless told not to.
         environment = dict(os.environ, OMPI_MCA_mpi_yield_when_idle="1")
-        return Result(subprocess.run(self.command(processes, MPI_PROGRAM, *arguments), cwd=self.folder, capture_output=True,
-                                     timeout=240, env=environment))
+        return Result(subprocess.run(command, cwd=self.folder, capture_output=True, timeout=240, env=environment))
+
+    def by(self, processes, *arguments):
+        return self.run_command(self.command(processes, MPI_PROGRAM, *arguments))
 
     def all_of(self, path):
         path = self.path(path)
@@ -121,12 +123,23 @@ class Failures(MpiTest):
         self.write("noise.stl", b"no mesh")
         self.fail_together(2, "--layer-hight", "slice", "box.stl", "-o", "out.cli", "--layer-hight", "1")
         self.fail_together(2, "standard input", "slice", "-", "-o", "out.cli")
+        for option in ["--strategy", "--config", "--z-list"]:
+            for path in ["-", "/dev/stdin"]:
+                self.fail_together(2, f"{option} -: standard input reaches one of the processes", "slice", "box.stl", "-o", "out.cli", option, path)
         self.fail_together(2, "--batch is for lamella", "slice", "--batch", ".", "-o", "out", "--format", "cli")
         self.fail_together(3, "no such file", "slice", "missing.stl", "-o", "out.cli")
         self.fail_together(3, "noise.stl", "slice", "noise.stl", "-o", "out.cli")
         self.fail_together(4, "open.stl", "slice", "open.stl", "-o", "out.cli", "--strict")
-        self.fail_together(5, "more than the 100 that it may", "slice", "box.stl", "-o", "out.cli", "--max-output", "100")
+        self.fail_together(5, "more than the 100 bytes that it may", "slice", "box.stl", "-o", "out.cli", "--max-output", "100")
         self.fail_together(6, "does not exist", "slice", "box.stl", "-o", "nowhere/out.cli")
+
+    def test_processes_of_different_jobs_are_told_so(self):
+        self.box()
+        one = [MPI_PROGRAM, "slice", "box.stl", "-o", "out.cli", "--layer-height"]
+        result = self.run_command(self.command(1, *one, "0.1", ":", "-n", "1", *one, "0.2"))
+        self.assertEqual(result.code, 2, result.err)
+        self.assertIn("not given one job: options/layer-height is 0.1 in the one and 0.2 in the other", result.err)
+        self.assertFalse(self.path("out.cli").exists())
 
     def processes_of(self, process):
         """The processes of the program: whose command it is."""

@@ -107,6 +107,7 @@ struct LayerFormat {
     bool directory = false;    ///< writes one file per layer into a directory
     bool pieces = false;       ///< can be written piece by piece
     bool joins = false;        ///< files of consecutive layers can be put together as they are
+    bool one_way = false;      ///< layers cannot be read back
     bool filled_parts = false; ///< files know only those parts that have something in them
     /// Of coordinates, with the options as they are by default; none where contours are not kept as such.
     std::optional<Rounding> rounding = {};
