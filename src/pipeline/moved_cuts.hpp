@@ -50,6 +50,15 @@ inline LayerSteps steps_to_repeat(LayerSteps steps) {
     return steps;
 }
 
+/// The limit of mitres, and where the format rounds, one below and one above it: at corners of that very
+/// angle, 60 degrees by default, rounding decides whether they are cut off.
+inline std::vector<double> limits_of_mitres(double limit, const Rounding& rounding) {
+    constexpr double share = 0.01;
+    return rounding == Rounding{}
+               ? std::vector{limit}
+               : std::vector{limit, std::max(1.0, (1 - share) * limit), (1 + share) * limit};
+}
+
 /// The layers of a mesh, after these steps.
 inline LayerStack layers_of(const Mesh& mesh, const Plan& plan, const LayerSteps& steps,
                             const Execution& execution) {

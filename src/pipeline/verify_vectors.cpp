@@ -290,16 +290,23 @@ class VectorCheck {
             }
             double least = std::numeric_limits<double>::infinity();
             double greatest = -least;
-            for (const Layer& section : bounds.sections) {
-                const LayerMeasure expected =
-                    measure(moved_inwards(section, contour_depth(rule, number) - bounds.depth));
-                const double slack = 4 * tolerance_ * (expected.perimeter_mm + row.perimeter_mm);
-                least = std::min(least, expected.area_mm2 - slack);
-                greatest = std::max(greatest, expected.area_mm2 + slack);
-                if (row.contours == 0 && !section.points.empty())
-                    at = section.points[0];
+            const auto agrees = [&] {
+                return least <= row.area_mm2 && row.area_mm2 <= greatest;
+            };
+            for (const double limit : limits_of_mitres(OffsetCorners{}.mitre_limit, options_.granted())) {
+                for (const Layer& section : bounds.sections) {
+                    const LayerMeasure expected = measure(moved_inwards(
+                        section, contour_depth(rule, number) - bounds.depth, {.mitre_limit = limit}));
+                    const double slack = 4 * tolerance_ * (expected.perimeter_mm + row.perimeter_mm);
+                    least = std::min(least, expected.area_mm2 - slack);
+                    greatest = std::max(greatest, expected.area_mm2 + slack);
+                    if (row.contours == 0 && !section.points.empty())
+                        at = section.points[0];
+                }
+                if (agrees())
+                    break;
             }
-            if (least <= row.area_mm2 && row.area_mm2 <= greatest)
+            if (agrees())
                 continue;
             ContourRow& wrong = found.rows[number];
             (row.contours == 0 ? wrong.missing : wrong.elsewhere).add(head, at);
@@ -308,8 +315,8 @@ class VectorCheck {
 
   private:
     /// As `scan` does it: at a depth of 0, too, bodies that overlap are united.
-    static Layer moved_inwards(const Layer& section, double depth) {
-        return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth);
+    static Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners = {}) {
+        return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth, corners);
     }
 
     /// Contours of one number neither cross nor lie within one another's material.

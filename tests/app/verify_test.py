@@ -1,8 +1,9 @@
 """lamella verify: a right file passes, each kind of wrong file does not."""
 
 import json
+import math
 
-from program import ProgramTest, main
+from program import ProgramTest, binary_stl, main
 
 KEYS = ["path", "ok", "warnings", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
         "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches", "heights", "findings"]
@@ -16,6 +17,20 @@ def ascii_cli(*polylines):
         numbers = ",".join(f"{float(c)}" for p in points for c in p)
         lines.append(f"$$POLYLINE/1,{direction},{len(points)},{numbers}")
     return "\n".join(lines + ["$$GEOMETRYEND", ""])
+
+
+def walls(points, height):
+    """Of a body around these points, or of a hole where they run clockwise: no floors, which cuts do not need."""
+    for (ax, ay), (bx, by) in zip(points, points[1:] + points[:1]):
+        yield (ax, ay, 0), (bx, by, 0), (bx, by, height)
+        yield (ax, ay, 0), (bx, by, height), (ax, ay, height)
+
+
+def even_triangles(n):
+    """Of sides of some 8.7 mm, each turned a little more, side by side."""
+    for k in range(n):
+        angles = [0.3 + 0.1 * k + i * math.tau / 3 for i in range(3)]
+        yield [(20 * k + 5 * math.cos(a), 5 * math.sin(a)) for a in angles]
 
 
 SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)]
@@ -55,6 +70,17 @@ class Vectors(ProgramTest):
                 options = ["--pattern", pattern, "--skin-layers", "2"]
                 self.succeed("slice", "rook.stl", "--layer-height", "1", "--scan", *options, "-o", "job.cli")
                 self.verify("job.cli", "--mesh", "rook.stl", "--scan", *options)
+
+    def test_holes_with_corners_of_60_degrees_that_were_rounded_are_right(self):
+        # At the limit of mitres the last digit decides whether a tip is cut off.
+        triangles = list(walls([(-10, -10), (240, -10), (240, 10), (-10, 10)], 1))
+        for hole in even_triangles(12):
+            triangles += walls(hole[::-1], 1)
+        self.write("plate.stl", binary_stl(triangles))
+        self.succeed("slice", "plate.stl", "-o", "plate.svg")
+        options = ["--scan", "--contours", "3", "--contour-distance", "0.5"]
+        self.succeed("scan", "plate.svg", "-o", "job.cli", *options[1:])
+        self.verify("job.cli", "--mesh", "plate.stl", "--tolerance", "0.001", *options)
 
     def test_another_strategy_or_mesh_is_noticed(self):
         self.succeed("slice", "rook.stl", "--scan", *self.OPTIONS, "-o", "job.ilt")
@@ -160,6 +186,13 @@ class Verify(ProgramTest):
                     found = self.verify(name, "--mesh", "torus.stl", *arguments)
                     self.assertIsNotNone(found["max_area_error_mm2"])
                     self.assertIsNone(self.verify(name)["max_area_error_mm2"])
+
+    def test_corners_of_60_degrees_that_were_rounded_before_they_were_moved_are_right(self):
+        self.write("part.stl", binary_stl([t for triangle in even_triangles(12) for t in walls(triangle, 1)]))
+        self.succeed("slice", "part.stl", "-o", "part.svg")
+        for offset, code in [("0.3", 0), ("0.29", 4)]:
+            self.succeed("convert", "part.svg", "moved.svg", "--offset", offset)
+            self.verify("moved.svg", "--mesh", "part.stl", "--offset", "0.3", code=code)
 
     def test_cuts_at_the_bottom_and_at_the_top(self):
         self.succeed("make", "sphere", "-o", "ball.stl")
