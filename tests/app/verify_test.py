@@ -78,7 +78,7 @@ class Vectors(ProgramTest):
             triangles += walls(hole[::-1], 1)
         self.write("plate.stl", binary_stl(triangles))
         self.succeed("slice", "plate.stl", "-o", "plate.svg")
-        options = ["--scan", "--contours", "3", "--contour-distance", "0.5"]
+        options = ["--scan", "--contours", "3", "--contour-distance", "1"]
         self.succeed("scan", "plate.svg", "-o", "job.cli", *options[1:])
         self.verify("job.cli", "--mesh", "plate.stl", "--tolerance", "0.001", *options)
 
