@@ -104,16 +104,24 @@ struct Seen {
     Point3f first_corner; ///< where there is any
 };
 
-/// Of a mesh that cannot be sliced in pieces.
-void check_size(const std::string& path, const Mesh& mesh, const JobMemory& memory, unsigned threads) {
-    const std::uint64_t bytes = memory.of_mesh(mesh, threads);
-    if (bytes > memory.limit)
+/// Of files that cannot be sliced in pieces; the last of them has been read just now.
+void check_size(const std::string& path, std::span<const MeshFile> files, const JobMemory& memory,
+                unsigned threads) {
+    std::vector<const Mesh*> meshes;
+    std::uint64_t triangles = 0;
+    for (const MeshFile& file : files)
+        for (const MeshObject& object : file.objects) {
+            meshes.push_back(&object.mesh);
+            triangles += object.mesh.size();
+        }
+    if (const std::uint64_t bytes = memory.of_meshes(meshes, threads); bytes > memory.limit)
         throw Error(
             ErrorKind::limit,
-            fmt::format("{}: to slice its {} triangles takes up to {} of memory, above the {} of "
+            fmt::format("{}: to slice {} triangles{} takes up to {} of memory, above the {} of "
                         "`max_memory`; only STL files that are not packed are sliced in pieces: write "
                         "the mesh as one, or allow more",
-                        path, mesh.size(), byte_amount(bytes), byte_amount(memory.limit)));
+                        path, triangles, files.size() > 1 ? ", those of the files before it among them," : "",
+                        byte_amount(bytes), byte_amount(memory.limit)));
 }
 
 Error changed_while_read(const std::string& path) {
@@ -191,8 +199,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
         const bool stl = input.can_stream();
         meshes.push_back(input.read(reading_, execution));
         if (memory_.asked && !stl)
-            for (const MeshObject& object : meshes.back().objects)
-                check_size(input.path(), object.mesh, memory_, threads);
+            check_size(input.path(), meshes, memory_, threads);
     }
     plate_ = build_plate(job.inputs, std::move(meshes), execution);
 }

@@ -66,15 +66,18 @@ std::uint64_t JobMemory::besides_meshes(unsigned threads) const noexcept {
     return overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
 }
 
-std::uint64_t JobMemory::of_mesh(const Mesh& mesh, unsigned threads) const noexcept {
-    std::uint64_t bytes = besides_meshes(threads);
-    if (const IndexedMesh* const indexed = mesh.indexed()) {
-        bytes += indexed->vertices.size() * sizeof indexed->vertices.front();
-        bytes += indexed->triangles.size() * sizeof indexed->triangles.front();
-    } else {
-        bytes += mesh.size() * mesh.soup()->stride();
+std::uint64_t JobMemory::of_meshes(std::span<const Mesh* const> meshes, unsigned threads) const noexcept {
+    std::uint64_t stored = 0;
+    std::uint64_t most = 0;
+    for (const Mesh* const mesh : meshes) {
+        if (const IndexedMesh* const indexed = mesh->indexed())
+            stored += indexed->vertices.size() * sizeof indexed->vertices.front() +
+                      indexed->triangles.size() * sizeof indexed->triangles.front();
+        else
+            stored += mesh->size() * mesh->soup()->stride();
+        most = std::max<std::uint64_t>(most, mesh->size());
     }
-    return bytes + mesh.size() * triangle_bytes(false, threads);
+    return besides_meshes(threads) + stored + most * triangle_bytes(false, threads);
 }
 
 std::uint64_t JobMemory::of_whole(const MeshInput& file, bool placed, unsigned threads) const {

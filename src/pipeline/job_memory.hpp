@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace lamella {
 
@@ -37,8 +38,9 @@ struct JobMemory {
     /// How many bytes of standard input to keep in memory: no more than could be sliced there.
     [[nodiscard]] std::uint64_t of_input(unsigned threads) const noexcept;
 
-    /// What slicing a mesh in memory takes at most, all else included.
-    [[nodiscard]] std::uint64_t of_mesh(const Mesh& mesh, unsigned threads) const noexcept;
+    /// What slicing meshes in memory, one after the other, takes at most, all else included.
+    [[nodiscard]] std::uint64_t of_meshes(std::span<const Mesh* const> meshes,
+                                          unsigned threads) const noexcept;
 
     /// What slicing takes whatever the meshes: `overhead`, and points on their way.
     [[nodiscard]] std::uint64_t besides_meshes(unsigned threads) const noexcept;

@@ -120,15 +120,31 @@ Execution without_slicing(const Execution& execution) {
     return run;
 }
 
+/// The next planes of a run whose parts together have no more points than that (0: any number), or one plane.
+PlaneRange next_planes(PlaneRange left, std::uint32_t most, std::uint64_t most_points, const Plate& plate,
+                       const std::vector<ShapeLayers>& shapes) {
+    PlaneRange next{left.begin, left.begin};
+    for (std::uint64_t points = 0; next.end < left.end && next.size() < most; ++next.end) {
+        for (const PlatePart& part : plate.parts)
+            if (const auto& [planes, layers] = shapes[part.shape];
+                planes.begin <= next.end && next.end < planes.end)
+                points += layers[next.end - planes.begin].points.size();
+        if (most_points != 0 && points > most_points && next.size() > 0)
+            break;
+    }
+    return next;
+}
+
 /// The layers of all parts on a run of planes, formatted in parallel, written in order. Empties the shapes.
 void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRange run,
-          std::vector<ShapeLayers>& shapes, Executor& executor, ProgressMeter* progress) {
+          std::uint64_t points_in_flight, std::vector<ShapeLayers>& shapes, Executor& executor,
+          ProgressMeter* progress) {
     const std::uint32_t at_once = 4 * executor.workers(); // so that all workers have some
     std::vector<std::function<void()>> actions(at_once);
-    for (std::uint32_t first = run.begin; first < run.end; first += at_once) {
-        const PlaneRange now{first, std::min(first + at_once, run.end)};
+    for (PlaneRange now{run.begin, run.begin}; now.end < run.end;) {
+        now = next_planes({now.end, run.end}, at_once, points_in_flight, plate, shapes);
         executor.for_chunks(now.size(), 1, [&](std::size_t i, std::size_t, unsigned) {
-            const auto plane = static_cast<std::uint32_t>(first + i);
+            const auto plane = static_cast<std::uint32_t>(now.begin + i);
             const PlannedLayer& planned = plan.layers[plane];
             const Layer none{
                 .index = planned.index, .z = planned.z, .bottom = planned.bottom, .top = planned.top};
@@ -188,7 +204,7 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
         if (sink_counts && !emitted)
             emitted.emplace(execution, Stage::slice, all);
         const Stopwatch emitting;
-        emit(sink, plate, plan, run, shapes, executor, emitted ? &*emitted : nullptr);
+        emit(sink, plate, plan, run, points_in_flight, shapes, executor, emitted ? &*emitted : nullptr);
         report.slice_seconds += emitting.seconds();
     }
     if (emitted)

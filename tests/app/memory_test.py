@@ -187,6 +187,20 @@ class Memory(ProgramTest):
             self.succeed("slice", name, "-o", "a.cli", "--max-memory", "200M", "--threads", 2)
             self.path("a.cli").unlink()
 
+    def test_files_of_other_formats_are_held_together(self):
+        names = [f"{i}.ply" for i in range(4)]
+        for name in names:
+            self.lattice(name)
+        self.succeed("slice", names[0], "-o", "one.cli", "--max-memory", "110M", "--threads", 2)
+        self.fail_with(5, "2.ply: to slice .* triangles, those of the files before it among them, takes up to",
+                       "slice", *names, "-o", "all.cli", "--max-memory", "110M", "--threads", 2)
+
+    def test_planes_of_many_copies_wait_by_their_points(self):
+        self.succeed("make", "torus", "--segments", 200, "-o", "ring.stl")
+        stats = self.slice("ring.stl", "--copies", 1000, "--layer-height", "0.5", "-o", "rings.cli", "--threads", 2,
+                           "--max-memory", "120M")
+        self.assertLess(stats["peak_rss_bytes"], 120e6)
+
     def test_a_disk_that_is_full(self):
         self.lattice("shuffled.stl", "--shuffle", 5)
 

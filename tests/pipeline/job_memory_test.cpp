@@ -71,6 +71,10 @@ TEST(JobMemory, KeepsMessagesAndOutputOfSeveralProcessesWithinAQuarter) {
     });
 }
 
+std::uint64_t of_meshes(const JobMemory& memory, const std::vector<const Mesh*>& meshes, unsigned threads) {
+    return memory.of_meshes(meshes, threads);
+}
+
 TEST(JobMemory, AsksForMoreWithMoreThreadsPlanesAndTriangles) {
     EXPECT_LT(JobMemory::overhead(1, 0), JobMemory::overhead(2, 0));
     EXPECT_LT(JobMemory::overhead(1, 0), JobMemory::overhead(1, 1));
@@ -79,8 +83,9 @@ TEST(JobMemory, AsksForMoreWithMoreThreadsPlanesAndTriangles) {
     const JobMemory memory = limited_to(1024 * mib);
     const Mesh small = make_sphere(1, 2);
     const Mesh large = make_sphere(1, 3);
-    EXPECT_LT(memory.of_mesh(small, 1), memory.of_mesh(large, 1));
-    EXPECT_LT(memory.of_mesh(large, 1), memory.of_mesh(large, 2));
+    EXPECT_LT(of_meshes(memory, {&small}, 1), of_meshes(memory, {&large}, 1));
+    EXPECT_LT(of_meshes(memory, {&large}, 1), of_meshes(memory, {&large}, 2));
+    EXPECT_LT(of_meshes(memory, {&large}, 1), of_meshes(memory, {&large, &small}, 1));
 }
 
 TEST(JobMemory, CountsTheMeshAsItIsStored) {
@@ -89,8 +94,10 @@ TEST(JobMemory, CountsTheMeshAsItIsStored) {
     const IndexedMesh indexed = weld(soup);
     const std::uint64_t stored = indexed.vertices.size() * sizeof indexed.vertices.front() +
                                  indexed.triangles.size() * sizeof indexed.triangles.front();
-    EXPECT_EQ(memory.of_mesh(soup, 2) - soup.size() * sizeof(Triangle3f),
-              memory.of_mesh(indexed, 2) - stored);
+    const Mesh as_soup = soup;
+    const Mesh as_indexed = indexed;
+    EXPECT_EQ(of_meshes(memory, {&as_soup}, 2) - soup.size() * sizeof(Triangle3f),
+              of_meshes(memory, {&as_indexed}, 2) - stored);
 }
 
 TEST(JobMemory, AsksForEachRecordOfABinaryFileAndNoLessForATextOfTheSamePart) {
