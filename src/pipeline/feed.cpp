@@ -11,6 +11,7 @@
 #include "pipeline/packed.hpp"
 #include "pipeline/plate_builder.hpp"
 #include "pipeline/stream_sums.hpp"
+#include "read/stl_binary.hpp"
 
 #include <fmt/format.h>
 
@@ -101,7 +102,8 @@ std::uint64_t most_points(const SlabSurvey& survey, std::uint32_t planes) {
 struct Seen {
     Box3 box;
     std::uint64_t unusable = 0;
-    Point3f first_corner; ///< where there is any
+    std::uint64_t first_unusable = 0; ///< where there is any
+    Point3f first_corner;             ///< where there is any
 };
 
 /// Of files that cannot be sliced in pieces; the last of them has been read just now.
@@ -227,16 +229,26 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
             read = stream(
                 file, [&](const TriangleSoup& batch, std::uint64_t number) { extent.add(batch, number); },
                 execution, file.part);
-            mine = {extent.box(), read.nonfinite_triangles, extent.first_corner()};
+            mine = {extent.box(), read.nonfinite_triangles, read.first_nonfinite, extent.first_corner()};
         });
         Box3 box;
-        file.triangles = read.stored_triangles;
+        std::uint64_t unusable = 0;
+        std::uint64_t first_unusable = read.stored_triangles;
         for (const std::string& message : among_->gather(Packer().put(mine).take())) {
             const Seen seen = Unpacker(message).get<Seen>();
-            file.triangles -= seen.unusable;
+            if (seen.unusable > 0)
+                first_unusable = std::min(first_unusable, seen.first_unusable);
+            unusable += seen.unusable;
             if (box.empty())
                 file.first_corner = seen.first_corner;
             box.add(seen.box);
+        }
+        file.triangles = read.stored_triangles - unusable;
+        if (file.part) { // of which the process has seen its own share
+            Remarks remarks(file.input.path(), reading_.strict);
+            judge_nonfinite(unusable, first_unusable, read.stored_triangles, remarks);
+            for (std::string& remark : remarks.take())
+                read.warnings.push_back(std::move(remark));
         }
         if (box.empty())
             throw Error(ErrorKind::input, file.input.path() + ": no triangle of the file is usable");

@@ -229,30 +229,15 @@ std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& option
     return stored;
 }
 
-/// Of `stored` triangles, those of the file or of a share of it, `count` are not finite; `first` is the first
-/// of those.
-void judge_nonfinite(const ByteSource& source, std::uint64_t count, std::uint64_t first, std::uint64_t stored,
-                     bool is_share, Remarks& remarks) {
-    if (count == 0)
-        return;
-    const std::string where = fmt::format("the first is triangle {} at byte {}", first + 1,
-                                          stl_head_bytes + stl_record_bytes * first);
-    if (count == stored && !is_share)
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: holds no usable triangle: each of the {} has a corner that is NaN or "
-                                "infinite ({})",
-                                source.name, stored, where));
-    remarks.add(fmt::format("left out {} of {} triangles, which have a corner that is NaN or infinite ({})",
-                            count, stored, where));
-}
-
 /// Without its triangles.
-MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t nonfinite, Remarks& remarks) {
+MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t nonfinite,
+                  std::uint64_t first_nonfinite, Remarks& remarks) {
     MeshFile file;
     file.format = "stl-binary";
     file.name = header_text(source.bytes);
     file.stored_triangles = stored;
     file.nonfinite_triangles = nonfinite;
+    file.first_nonfinite = first_nonfinite;
     file.objects.push_back({file.name, Mesh()});
     file.instances.push_back({});
     file.warnings = remarks.take();
@@ -261,6 +246,20 @@ MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t 
 
 } // namespace
 
+void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t stored, Remarks& remarks) {
+    if (count == 0)
+        return;
+    const std::string where = fmt::format("the first is triangle {} at byte {}", first + 1,
+                                          stl_head_bytes + stl_record_bytes * first);
+    if (count == stored)
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: holds no usable triangle: each of the {} has a corner that is NaN or "
+                                "infinite ({})",
+                                remarks.file_name(), stored, where));
+    remarks.add(fmt::format("left out {} of {} triangles, which have a corner that is NaN or infinite ({})",
+                            count, stored, where));
+}
+
 MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
                          const Execution& execution) {
     Remarks remarks(source.name, options.strict);
@@ -268,11 +267,11 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
     const auto [owner, corners, nonfinite] = read_records(source, stored, options, executor, progress);
-    judge_nonfinite(source, nonfinite.total, nonfinite.first, stored, false, remarks);
+    judge_nonfinite(nonfinite.total, nonfinite.first, stored, remarks);
     if (nonfinite.total != 0) // the others are copied
         ReadLimits(source.name, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
 
-    MeshFile file = describe(source, stored, nonfinite.total, remarks);
+    MeshFile file = describe(source, stored, nonfinite.total, nonfinite.first, remarks);
     file.objects.front().mesh =
         nonfinite.total == 0 ? Mesh(TriangleSoup(owner, corners, stl_record_bytes, stored, nonfinite.box))
                              : Mesh(copy_finite(corners, stored, nonfinite, executor));
@@ -325,9 +324,10 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
         progress.add((end - begin) * stl_record_bytes);
     });
     executor.check_cancelled();
-    judge_nonfinite(source, nonfinite, first_nonfinite, count, share.has_value(), remarks);
+    if (!share)
+        judge_nonfinite(nonfinite, first_nonfinite, stored, remarks);
     progress.finish();
-    return describe(source, stored, nonfinite, remarks);
+    return describe(source, stored, nonfinite, first_nonfinite, remarks);
 }
 
 } // namespace lamella

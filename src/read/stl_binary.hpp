@@ -8,6 +8,7 @@
 #include "lamella/read/mesh_input.hpp"
 
 #include "core/byte_source.hpp"
+#include "read/remarks.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,10 @@ struct StlExtent {
 /// Reads a file of at least stl_head_bytes that is taken for binary.
 [[nodiscard]] MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
                                        const Execution& execution);
+
+/// Tells that `count` of the file's triangles are not finite, `first` the first of them (from 0), if any are.
+/// Throws Error{input} where no other is left.
+void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t stored, Remarks& remarks);
 
 /// Hands the same triangles to the sink; see MeshInput::stream.
 [[nodiscard]] MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink,

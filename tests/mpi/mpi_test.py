@@ -1,6 +1,7 @@
 """lamella-mpi: the same bytes and statistics as by one process, and no output when a process dies."""
 
 import json
+import math
 import os
 import shutil
 import signal
@@ -72,6 +73,16 @@ class Results(MpiTest):
         self.assertEqual(result.code, 0, result.err)
         self.assertEqual(self.bytes_of("many.cli"), self.bytes_of("one.cli"))
 
+    def test_triangles_that_are_left_out_are_told_of_all_shares(self):
+        triangles = box_triangles(10, 20, 30)
+        self.write("holes.stl", binary_stl(triangles[:5] + [((math.nan, 0, 0), (1, 0, 0), (0, 1, 0))] + triangles[5:]))
+        one = self.succeed("slice", "holes.stl", "-o", "one.cli")
+        many = self.by(3, "slice", "holes.stl", "-o", "many.cli")
+        self.assertEqual(many.code, 0, many.err)
+        warning = "holes.stl: left out 1 of 13 triangles, which have a corner that is NaN or infinite (the first is triangle 6 at byte 334)"
+        for result in [one, many]:
+            self.assertEqual(result.err.count(warning), 1, result.err)
+
     def peak_of(self, processes, *arguments):
         """Bytes that the largest of all processes of a job took."""
         watch = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); "
@@ -131,6 +142,11 @@ class Failures(MpiTest):
         self.fail_together(3, "noise.stl", "slice", "noise.stl", "-o", "out.cli")
         self.fail_together(4, "open.stl", "slice", "open.stl", "-o", "out.cli", "--strict")
         self.fail_together(5, "more than the 100 bytes that it may", "slice", "box.stl", "-o", "out.cli", "--max-output", "100")
+        nothing = (math.nan, 0, 0), (1, 0, 0), (0, 1, 0)
+        self.write("none.stl", binary_stl([nothing] * 5))
+        self.fail_together(3, "holds no usable triangle: each of the 5", "slice", "none.stl", "-o", "out.cli")
+        self.write("holes.stl", binary_stl([nothing, *box_triangles(1, 2, 3)]))
+        self.fail_together(4, "left out 1 of 13", "slice", "holes.stl", "-o", "out.cli", "--strict")
         self.fail_together(6, "does not exist", "slice", "box.stl", "-o", "nowhere/out.cli")
 
     def test_processes_of_different_jobs_are_told_so(self):

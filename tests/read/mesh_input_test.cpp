@@ -165,9 +165,8 @@ TEST(MeshInput, CountsWhatIsUnusableInAShareAndWhatIsStoredInTheWhole) {
     const MeshFile file = stream(input, {.max_triangles = 20}, 1, RecordRange{10, 15}).file;
     EXPECT_EQ(file.stored_triangles, 20U);
     EXPECT_EQ(file.nonfinite_triangles, 2U);
-    ASSERT_EQ(file.warnings.size(), 1U);
-    EXPECT_NE(file.warnings.front().find("left out 2 of 5 triangles"), std::string::npos);
-    EXPECT_NE(file.warnings.front().find("triangle 13 at byte"), std::string::npos);
+    EXPECT_EQ(file.first_nonfinite, 12U);
+    EXPECT_TRUE(file.warnings.empty()) << "left to whoever knows all shares";
     EXPECT_EQ(stream(input, {}, 1, RecordRange{12, 14}).file.nonfinite_triangles, 2U) << "all of it";
     EXPECT_NE(error_text([&] {
                   stream(input, {.max_triangles = 19}, 1, RecordRange{10, 15});

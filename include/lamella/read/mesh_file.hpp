@@ -68,7 +68,8 @@ struct MeshFile {
     std::optional<double> unit_mm;
     std::uint64_t stored_triangles = 0;    ///< including those that were dropped
     std::uint64_t nonfinite_triangles = 0; ///< dropped, because a corner was NaN or infinite
-    std::vector<std::string> warnings;     ///< one line each: what was odd and what was made of it
+    std::uint64_t first_nonfinite = 0; ///< of binary STL: the index of the first of those, if there are any
+    std::vector<std::string> warnings; ///< one line each: what was odd and what was made of it
 
     /// Instance i, placed.
     [[nodiscard]] Mesh placed(std::size_t i) const;

@@ -58,10 +58,11 @@ class MeshInput {
     /// is. The same checks, errors and warnings as in `read`; the result is the same but for the mesh of its
     /// only object, which is empty. May be called any number of times. Progress counts bytes.
     ///
-    /// `share`: only these triangles of a binary file; `nonfinite_triangles` and its warning are of those,
-    /// and it is no error when none of them is usable. `stored_triangles` and `max_triangles` are of the
-    /// whole file, in which the head counts them. Throws Error{usage} when the file has fewer, for a share of
-    /// an ASCII file, and for a file that cannot be streamed.
+    /// `share`: only these triangles of a binary file; `nonfinite_triangles` and `first_nonfinite` are of
+    /// those. To warn of them, or that none of the file is usable, is left to whoever knows all shares.
+    /// `stored_triangles` and `max_triangles` are of the whole file, in which the head counts them. Throws
+    /// Error{usage} when the file has fewer, for a share of an ASCII file, and for a file that cannot be
+    /// streamed.
     MeshFile stream(const TriangleSink& sink, const MeshReadOptions& options = {},
                     const Execution& execution = {}, const std::optional<RecordRange>& share = {}) const;
 
