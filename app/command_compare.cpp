@@ -194,7 +194,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
     const LayerFile second = read_layers(arguments.inputs[1], arguments.limits.of_layers(), execution);
     for (const LayerFile* file : {&first, &second})
-        context.messages.warn_of(file->path, file->warnings);
+        context.messages.warn_of(input_name(file->path), file->warnings);
 
     const FileComparison files = compare_files(first, second, arguments.tolerance, execution);
     const StackComparison& found = files.layers;

@@ -51,18 +51,9 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
-    if (arguments.strict)
-        check_warnings(file);
-    context.messages.warn_of(file.path, file.warnings);
-    check_no_vectors(file, arguments.making.steps());
-    LayerChanges changes;
-    for (const LayerChanges& plane : take_steps(arguments.making.steps(), file, execution))
-        changes += plane;
-    if (const std::string lost = lost_hatches(file, changes); !lost.empty()) {
-        if (arguments.strict)
-            throw Error(ErrorKind::defect, lost);
-        context.messages.warn(lost);
-    }
+    tell(file, file.warnings, arguments.strict, context.messages);
+    const LayerChanges changes =
+        take_steps(arguments.making.steps(), file, arguments.strict, context.messages, execution).all;
     LayerFileInfo info = info_of(file);
     if (!arguments.label.empty()) {
         if (file.parts.size() > 1)
@@ -73,9 +64,8 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     std::vector<LayerStack> stacks;
     for (const LayerPart& part : file.parts)
         stacks.push_back(part.layers);
-    for (const std::string& warning :
-         write_layers(arguments.output, format, stacks, info, options, execution))
-        context.messages.warn(fmt::format("{}: {}", output_name(arguments.output), warning));
+    context.messages.warn_of(output_name(arguments.output),
+                             write_layers(arguments.output, format, stacks, info, options, execution));
 
     std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(output_name(arguments.output)),

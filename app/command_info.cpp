@@ -48,7 +48,7 @@ struct InfoArguments {
 
 int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
               const Execution& execution) {
-    context.messages.warn_of(file.path, file.warnings);
+    context.messages.warn_of(input_name(file.path), file.warnings);
     const Plate plate =
         load_plate({.path = file.path, .unit_mm = arguments.placement.unit_mm()}, file, execution);
     const IndexedMesh mesh = weld(joined(plate, execution), execution);
@@ -180,7 +180,7 @@ Json layers_json(const std::string& path, const LayerFile& file, const Figures& 
 }
 
 int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context) {
-    context.messages.warn_of(file.path, file.warnings);
+    context.messages.warn_of(input_name(file.path), file.warnings);
     if (arguments.placement.given())
         throw Error(ErrorKind::usage,
                     fmt::format("{}: --unit is for meshes; a slice file knows its unit", file.path));

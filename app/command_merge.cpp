@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "page_notes.hpp"
 #include "shard_stamp.hpp"
 #include "standard_streams.hpp"
 
@@ -27,13 +28,13 @@ struct MergeArguments {
 int run_merge(const MergeArguments& arguments, const Context& context) {
     check_outputs(context.command);
     const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
-    const LayerWriteOptions options = arguments.writing.write_options(format);
+    LayerWriteOptions options = arguments.writing.write_options(format);
+    options.page.title = title_of(arguments.output);
     const Execution execution = arguments.run.execution(context);
     check_stamps(arguments.shards, execution);
     const MergeResult result = merge_layer_files(arguments.shards, arguments.output, format.name, options,
                                                  arguments.limits.of_layers(), execution);
-    for (const std::string& warning : result.warnings)
-        context.messages.warn(fmt::format("{}: {}", output_name(arguments.output), warning));
+    context.messages.warn_of(output_name(arguments.output), result.warnings);
     const std::string text =
         fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(output_name(arguments.output)),
                     counted(result.layers, "layer"), height(result.bottom), height(result.top),

@@ -123,15 +123,8 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         check_writable(arguments.stats);
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
-    if (arguments.strict)
-        check_warnings(file);
-    context.messages.warn_of(file.path, file.warnings);
-    for (const std::string& loss : losses(file)) {
-        const std::string lost = fmt::format("{}: {}", file.path, loss);
-        if (arguments.strict)
-            throw Error(ErrorKind::defect, lost);
-        context.messages.warn(lost);
-    }
+    for (const std::vector<std::string>& warnings : {file.warnings, losses(file)})
+        tell(file, warnings, arguments.strict, context.messages);
     const LayerFileInfo info = info_of(file);
     std::vector<LayerStack> stacks;
     for (const LayerPart& part : file.parts)
@@ -140,8 +133,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         scan_layers(arguments.output, format, stacks, file.rounding, info, strategy, options, execution);
     if (result.thin.rings > 0)
         context.messages.warn(fmt::format("{}: {}", file.path, result.thin.text()));
-    for (const std::string& warning : result.warnings)
-        context.messages.warn(fmt::format("{}: {}", one_line(output_name(arguments.output)), warning));
+    context.messages.warn_of(output_name(arguments.output), result.warnings);
     if (!arguments.stats.empty()) {
         const std::string text =
             json_text(stats_of(context.command, arguments.input, file, strategy, result));

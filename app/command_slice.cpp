@@ -17,6 +17,7 @@
 #include "options.hpp"
 #include "page_notes.hpp"
 #include "repair_options.hpp"
+#include "run_warnings.hpp"
 #include "scan_figures.hpp"
 #include "scan_options.hpp"
 #include "shard_stamp.hpp"
@@ -30,6 +31,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -231,11 +233,25 @@ void check_shard(const SliceArguments& arguments) {
             fmt::format("--shard goes with files that lamella merge can read; {} is none", format.name));
 }
 
+/// Such a folder is made anew, and nothing may be in it.
+void check_folder(const SliceArguments& arguments) {
+    if (arguments.output.empty() || !layer_format(arguments.writing.format, arguments.output).directory)
+        return;
+    const std::filesystem::path folder = place_of(arguments.output);
+    for (const auto& [name, path] :
+         {std::pair("--stats", arguments.stats), std::pair("--report", arguments.report)})
+        for (std::filesystem::path place = place_of(path); !path.empty() && place != place.parent_path();
+             place = place.parent_path())
+            check_conflict(place.parent_path() == folder, true, fmt::format("--output and {}", name),
+                           fmt::format("{} would lie in the folder that is made", path));
+}
+
 FileJob make_job(const SliceArguments& arguments) {
     if (arguments.output.empty() && arguments.stats.empty() && arguments.report.empty())
         throw Error(ErrorKind::usage,
                     "where should the result go? Say -o part.cli (or --stats - for figures only)");
     check_shard(arguments);
+    check_folder(arguments);
 
     FileJob job;
     job.inputs = arguments.inputs;
@@ -268,17 +284,12 @@ FileJob make_job(const SliceArguments& arguments) {
     return job;
 }
 
-/// Where to look for more: not where the mesh came from standard input, which cannot be read again.
-std::string ask_info(const std::string& path) {
-    return path == "-" ? "" : fmt::format("; see lamella info {}", path);
-}
-
 std::string summary(const FileJob& job, const FileResult& result) {
     const std::size_t parts = result.parts.size();
     std::string text = fmt::format(
         "read     {}{}: {}, {}\n", one_line(input_name(job.inputs.front().path)),
         job.inputs.size() == 1 ? "" : fmt::format(" and {} more", counted(job.inputs.size() - 1, "file")),
-        counted(result.triangles, "triangle"), size_text(result.box));
+        counted(triangles_read(result), "triangle"), size_text(result.box));
     if (parts > 1)
         text += fmt::format("plate    {}: {}\n", counted(parts, "part"), labels_text(result.parts));
     text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}{}\n",
@@ -314,38 +325,6 @@ std::string summary(const FileJob& job, const FileResult& result) {
     if (!job.report.path.empty())
         text += fmt::format("report   {}: open it with a browser\n", one_line(job.report.path));
     return text;
-}
-
-/// What the layers say about the mesh, and what of them the format has no place for.
-std::vector<std::string> layer_warnings(const FileJob& job, const FileResult& result) {
-    const std::string name = input_name(job.inputs.front().path);
-    const std::string hint = ask_info(job.inputs.front().path);
-    std::vector<std::string> warnings;
-    for (const std::string& doubt : result.doubts.texts())
-        warnings.push_back(fmt::format("{}: {}{}", name, doubt, hint));
-    if (!job.shard && result.changes && result.changes->changed_layers > 0 && result.report.contours == 0)
-        warnings.push_back(fmt::format("{}: no contour is left in any of {}: --offset, --min-area and other "
-                                       "options of what is made of the layers took those of {}",
-                                       name, counted(result.report.layers, "layer"),
-                                       grouped(result.changes->changed_layers)));
-    if (result.thin.rings > 0)
-        warnings.push_back(fmt::format("{}: {}", name, result.thin.text()));
-    for (const std::string& warning : result.warnings)
-        warnings.push_back(fmt::format("{}: {}", one_line(output_name(job.output)), warning));
-    for (const std::string& warning : result.report_warnings)
-        warnings.push_back(fmt::format("{}: {}", one_line(output_name(job.report.path)), warning));
-    return warnings;
-}
-
-/// What the files and their layers say.
-std::vector<std::string> all_warnings(const FileJob& job, const FileResult& result) {
-    std::vector<std::string> warnings;
-    for (const PlateFile& file : result.files)
-        for (const std::string& warning : file.warnings)
-            warnings.push_back(fmt::format("{}: {}", input_name(file.path), warning));
-    for (std::string& warning : layer_warnings(job, result))
-        warnings.push_back(std::move(warning));
-    return warnings;
 }
 
 /// The extension of a batch's outputs where `pattern` does not have it. "" for formats of folders.
@@ -387,9 +366,10 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
         FileJob job = model;
         job.inputs.front().path = item.input;
         job.output = item.output;
+        job.write.page.title = title_of(item.input);
         Deadline deadline(arguments.timeout, one_line(item.input), unheard, given);
         BatchResult result{deadline.run([&](const Execution& run) { return slice_file(job, run); }), {}, {}};
-        result.warnings = all_warnings(job, result.file);
+        result.warnings = run_warnings(job, result.file);
         if (!item.stats.empty())
             result.stats = json_text(stats_json(context.command, job, result.file));
         return result;
@@ -484,7 +464,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     const FileResult& result = *outcome;
     if (processes.process() != 0)
         return 0;
-    for (const std::string& warning : all_warnings(job, result))
+    for (const std::string& warning : run_warnings(job, result))
         context.messages.warn(warning);
     if (!arguments.stats.empty()) {
         Json stats = stats_json(context.command, job, result);

@@ -9,6 +9,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "scan_options.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 
@@ -158,7 +159,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
-    context.messages.warn_of(file.path, file.warnings);
+    context.messages.warn_of(input_name(file.path), file.warnings);
     std::optional<ScanStrategy> strategy;
     if (arguments.scan || arguments.scanning.given())
         strategy = arguments.scanning.strategy();
@@ -173,7 +174,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         const std::array inputs{
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
         const Plate plate = load_plate(inputs, arguments.limits.of_meshes(), execution);
-        context.messages.warn_of(arguments.mesh, plate.files.front().warnings);
+        context.messages.warn_of(input_name(arguments.mesh), plate.files.front().warnings);
         mesh = joined(plate, execution);
     }
 

@@ -13,6 +13,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
+#include "run_warnings.hpp"
 #include "standard_streams.hpp"
 
 #include <fmt/format.h>
@@ -39,11 +40,6 @@ struct ViewArguments {
     RunOptions run;
 };
 
-struct Written {
-    std::uint64_t layers = 0;
-    std::vector<std::string> warnings;
-};
-
 PlateInput input_of(const ViewArguments& arguments) {
     PlateInput input{.path = arguments.input};
     input.unit_mm = arguments.placement.unit_mm();
@@ -57,8 +53,9 @@ Diagnosis diagnosis_of(const Plate& plate, const Execution& execution) {
     return diagnose(weld(joined(plate, execution), execution), options, execution);
 }
 
-Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::string& output,
-                  const Execution& execution) {
+/// The number of layers.
+std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::string& output,
+                        Messages& messages, const Execution& execution) {
     Plate plate = load_plate(input_of(arguments), std::move(mesh), execution);
     const Diagnosis diagnosis = diagnosis_of(plate, execution);
     FileJob job;
@@ -78,28 +75,26 @@ Written view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::stri
             return notes;
         }};
     const FileResult result = slice_file(job, std::move(plate), execution);
-    Written written{.layers = result.report.layers, .warnings = result.report_warnings};
-    for (const PlateFile& file : result.files)
-        written.warnings.insert(written.warnings.end(), file.warnings.begin(), file.warnings.end());
-    return written;
+    for (const std::string& warning : run_warnings(job, result))
+        messages.warn(warning);
+    return result.report.layers;
 }
 
-Written view_layers(const ViewArguments& arguments, LayerFile file, const std::string& output,
-                    const Execution& execution) {
+/// The number of layers.
+std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const std::string& output,
+                          Messages& messages, const Execution& execution) {
     if (arguments.placement.given() || arguments.layer_height || !arguments.slice_at.empty())
         throw Error(ErrorKind::usage,
                     fmt::format("{}: holds layers, and these stay where they are; options of "
                                 "where a part stands and how it is cut are for meshes",
                                 file.path));
-    check_no_vectors(file, arguments.making.steps());
+    tell(file, file.warnings, false, messages);
     PageNotes notes = file_notes(file);
-    const std::vector<LayerChanges> planes = take_steps(arguments.making.steps(), file, execution);
-    LayerChanges all;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-        all += planes[i];
+    const std::vector<LayerChanges> planes =
+        take_steps(arguments.making.steps(), file, false, messages, execution).planes;
+    for (std::size_t i = 0; i < planes.size(); ++i)
         if (planes[i].changed_layers > 0)
             notes.changes.push_back({file.parts.front().layers[i].index, planes[i]});
-    }
     const LayerFileInfo info = info_of(file);
     const auto page = open_layer_page(output, info, page_options(arguments.input));
     const auto parts_of = [&](std::size_t i) {
@@ -111,10 +106,8 @@ Written view_layers(const ViewArguments& arguments, LayerFile file, const std::s
     write_planes(*page, info.layers, parts_of, execution);
     page->tell(std::move(notes));
     page->finish();
-    Written written{.layers = info.layers, .warnings = page->warnings()};
-    if (const std::string lost = lost_hatches(file, all); !lost.empty())
-        written.warnings.push_back(lost);
-    return written;
+    messages.warn_of(output_name(output), page->warnings());
+    return info.layers;
 }
 
 /// Beside the reader, not beside the file: "parts/rook.stl" makes rook.html here.
@@ -129,18 +122,20 @@ std::string output_of(const ViewArguments& arguments) {
 
 int run_view(const ViewArguments& arguments, const Context& context) {
     const std::string output = output_of(arguments);
-    check_distinct(arguments.input, output);
+    if (arguments.output.empty())
+        check_outputs(context.command, {{"the page", output}});
+    else
+        check_outputs(context.command);
     const Execution execution = arguments.run.execution(context);
     auto read = read_any(arguments.input, arguments.limits.of_meshes(), execution);
-    auto* const layers = std::get_if<LayerFile>(&read);
-    const Written written =
-        layers != nullptr ? view_layers(arguments, std::move(*layers), output, execution)
-                          : view_mesh(arguments, std::move(std::get<MeshFile>(read)), output, execution);
-    for (const std::string& warning : written.warnings)
-        context.messages.warn(warning);
+    auto* const file = std::get_if<LayerFile>(&read);
+    const std::uint64_t layers =
+        file != nullptr
+            ? view_layers(arguments, std::move(*file), output, context.messages, execution)
+            : view_mesh(arguments, std::move(std::get<MeshFile>(read)), output, context.messages, execution);
     const std::string text =
         fmt::format("{}: {} of {}; open it with a browser\n", one_line(output_name(output)),
-                    counted(written.layers, "layer"), one_line(input_name(arguments.input)));
+                    counted(layers, "layer"), one_line(input_name(arguments.input)));
     context.messages.written(text, output);
     return 0;
 }

@@ -210,10 +210,14 @@ std::string config_text(const Command& command) {
 }
 
 Json options_in_effect(const Command& command) {
+    const bool of_many =
+        std::any_of(command.operands.begin(), command.operands.end(),
+                    [](const Operand& one) { return one.own_options && one.given.size() > 1; });
     Json object = Json::object();
     for (const OptionGroup& group : command.groups) {
         for (const Option& option : group.options) {
-            const std::string text = option.given.value_or(option.preset);
+            const std::string text = (of_many && option.of_each_file ? option.given_for_all : option.given)
+                                         .value_or(option.preset);
             if (!option.configurable || text.empty())
                 continue;
             if (option.kind == ValueKind::flag)

@@ -36,7 +36,7 @@ struct Configuration {
 /// can have options of their own.
 [[nodiscard]] std::string config_text(const Command& command);
 
-/// The options in effect as an object: given ones and presets.
+/// The options in effect as an object: given ones and presets. Of several files, those for all of them.
 [[nodiscard]] Json options_in_effect(const Command& command);
 
 } // namespace lamella::app

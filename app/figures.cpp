@@ -16,6 +16,7 @@
 #include <cassert>
 #include <cctype>
 #include <fstream>
+#include <numeric>
 #include <utility>
 
 namespace lamella::app {
@@ -216,11 +217,17 @@ Figures layer_figures(std::uint64_t layers, const LayerMeasure& all, double volu
             {"volume_mm3", volume_mm3, "volume", fmt::format("{} mm3", brief(volume_mm3))}};
 }
 
+std::uint64_t triangles_read(const FileResult& result) {
+    return std::accumulate(
+        result.files.begin(), result.files.end(), std::uint64_t{0},
+        [](std::uint64_t sum, const PlateFile& file) { return sum + file.stored_triangles; });
+}
+
 Figures run_figures(const FileResult& result) {
     const SliceReport& report = result.report;
     const FileResult::Seconds& seconds = result.seconds;
     Figures figures{
-        count("triangles", result.triangles, "triangles"),
+        count("triangles", triangles_read(result), "triangles"),
         {"parts", {}, "parts", result.parts.size() > 1 ? grouped(result.parts.size()) : ""},
         {"bbox", box_json(result.box), "size", size_text(result.box)},
         {"engine", result.engine, "engine", result.engine},
@@ -325,7 +332,7 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
                   {"options", std::move(options)},
                   {"input",
                    {{"path", first.path},
-                    {"triangles", result.files.size() == 1 ? first.stored_triangles : result.triangles},
+                    {"triangles", triangles_read(result)},
                     {"vertices", inspected ? Json(result.inspection->vertices) : Json()},
                     {"bbox", box_json(result.box)},
                     {"unit", unit_name(first.unit_mm)},

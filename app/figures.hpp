@@ -31,6 +31,8 @@ using Figures = std::vector<Figure>;
 [[nodiscard]] Figures defect_figures(const Inspection& found);
 [[nodiscard]] Figures meeting_figures(const SelfIntersections& found);
 [[nodiscard]] Figures layer_figures(std::uint64_t layers, const LayerMeasure& all, double volume_mm3);
+/// Of all files, usable or not.
+[[nodiscard]] std::uint64_t triangles_read(const FileResult& result);
 [[nodiscard]] Figures run_figures(const FileResult& result);
 
 /// Those with these keys, in the order of the keys.

@@ -2,11 +2,14 @@
 
 #include "lamella/core/error.hpp"
 
-#include "messages.hpp"
 #include "numbers.hpp"
+#include "options.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace lamella::app {
@@ -39,12 +42,14 @@ LayerFileInfo info_of(const LayerFile& file) {
     return info;
 }
 
-void check_warnings(const LayerFile& file) {
-    if (!file.warnings.empty())
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", file.path, file.warnings.front()));
+void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool strict, Messages& messages) {
+    if (strict && !warnings.empty())
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", file.path, warnings.front()));
+    messages.warn_of(input_name(file.path), warnings);
 }
 
-void check_no_vectors(const LayerFile& file, const LayerSteps& steps) {
+StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
+                       const Execution& execution) {
     for (const LayerPart& part : file.parts)
         if (part.exposure && steps.any())
             throw Error(ErrorKind::usage,
@@ -52,24 +57,28 @@ void check_no_vectors(const LayerFile& file, const LayerSteps& steps) {
                                     "--min-area and --simplify are for contours: take these steps before "
                                     "lamella scan",
                                     file.path, one_line(part.label)));
-}
-
-std::vector<LayerChanges> take_steps(const LayerSteps& steps, LayerFile& file, const Execution& execution) {
     std::vector<LayerStack> parts;
     for (LayerPart& part : file.parts)
         parts.push_back(std::move(part.layers));
-    std::vector<LayerChanges> planes;
-    parts = take_steps(steps, std::move(parts), planes, execution);
-    for (std::size_t i = 0; i < parts.size(); ++i)
+    StepChanges changes;
+    parts = lamella::take_steps(steps, std::move(parts), changes.planes, execution);
+    std::uint64_t contours = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        for (const Layer& layer : parts[i])
+            contours += layer.contours();
         file.parts[i].layers = std::move(parts[i]);
-    return planes;
-}
-
-std::string lost_hatches(const LayerFile& file, const LayerChanges& changes) {
-    if (changes.hatches_dropped == 0)
-        return "";
-    return fmt::format("{}: {} left out: the contours that they fill were changed", file.path,
-                       counted(changes.hatches_dropped, "hatch line"));
+    }
+    for (const LayerChanges& plane : changes.planes)
+        changes.all += plane;
+    if (changes.all.hatches_dropped > 0)
+        tell(file,
+             {fmt::format("{} left out: the contours that they fill were changed",
+                          counted(changes.all.hatches_dropped, "hatch line"))},
+             strict, messages);
+    if (const std::string nothing = nothing_left(changes.planes.size(), contours, changes.all);
+        !nothing.empty())
+        tell(file, {nothing}, strict, messages);
+    return changes;
 }
 
 } // namespace lamella::app

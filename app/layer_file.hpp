@@ -6,6 +6,8 @@
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "messages.hpp"
+
 #include <string>
 #include <vector>
 
@@ -15,18 +17,19 @@ namespace lamella::app {
 /// layer to the top of the last. Throws Error{input} for a file without layers.
 [[nodiscard]] LayerFileInfo info_of(const LayerFile& file);
 
-/// For --strict: throws Error{defect} with the first warning of the file, if it has any.
-void check_warnings(const LayerFile& file);
+/// Tells what is odd about the file, or lost of it. For --strict: throws Error{defect} with the first of it.
+void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool strict, Messages& messages);
 
-/// Throws Error{usage} for steps on scan vectors: hatches are other parts than their contours, which would be
-/// moved alone.
-void check_no_vectors(const LayerFile& file, const LayerSteps& steps);
+/// What steps changed.
+struct StepChanges {
+    std::vector<LayerChanges> planes;
+    LayerChanges all;
+};
 
-/// Takes the steps; the changes of each plane.
-[[nodiscard]] std::vector<LayerChanges> take_steps(const LayerSteps& steps, LayerFile& file,
-                                                   const Execution& execution);
-
-/// A warning about hatch lines that the steps left out; "" where there are none.
-[[nodiscard]] std::string lost_hatches(const LayerFile& file, const LayerChanges& changes);
+/// Takes the steps, and tells as above of hatch lines that are left out with the contours that they fill, and
+/// where no contour is left. Throws Error{usage} for steps on scan vectors: hatches are other parts than
+/// their contours, which would be moved alone.
+StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
+                       const Execution& execution);
 
 } // namespace lamella::app

@@ -114,7 +114,13 @@ OptionGroup layering_options(LayeringOptions& target) {
              [&target](const std::string& text) { target.heights = parse_height_ranges(text); }),
          row("adaptive", ValueKind::text, "MIN:MAX",
              "layers as high as the slopes of the surface allow, between these heights",
-             [&target](const std::string& text) { target.adaptive = parse_range(text); }),
+             [&target](const std::string& text) {
+                 if (text.starts_with(':') || text.ends_with(':'))
+                     throw Error(
+                         ErrorKind::usage,
+                         fmt::format("\"{}\" names one height; both are needed, such as 0.05:0.3", text));
+                 target.adaptive = parse_range(text);
+             }),
          std::move(cusp)}};
 }
 

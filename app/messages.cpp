@@ -77,9 +77,9 @@ void Messages::result(std::string_view text) {
     print(text);
 }
 
-void Messages::warn_of(const std::string& path, const std::vector<std::string>& warnings) {
+void Messages::warn_of(const std::string& name, const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings)
-        warn(input_name(path) + ": " + warning);
+        warn(name + ": " + warning);
 }
 
 void Messages::warn(const std::string& text) {

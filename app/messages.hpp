@@ -53,8 +53,8 @@ class Messages {
     void result(std::string_view text);
     /// "lamella: warning: ...", on one line.
     void warn(const std::string& text);
-    /// Those of a file: each names it.
-    void warn_of(const std::string& path, const std::vector<std::string>& warnings);
+    /// Those of a file: each names it, as input_name or output_name does.
+    void warn_of(const std::string& name, const std::vector<std::string>& warnings);
     /// "lamella: error: ...", on one line.
     void error(const std::string& text, int exit_code);
     /// What is no result here because standard output carries data. Programs are spared it.

@@ -356,6 +356,15 @@ std::string changes_text(const LayerChanges& changes, std::string_view than) {
     return text;
 }
 
+std::string nothing_left(std::uint64_t layers, std::uint64_t contours, const LayerChanges& changes) {
+    if (contours > 0 || changes.changed_layers == 0)
+        return {};
+    return fmt::format(
+        "no contour is left in any of {}: --offset, --min-area and other options of what is made of "
+        "the layers took those of {}",
+        counted(layers, "layer"), grouped(changes.changed_layers));
+}
+
 const std::vector<std::string>& slice_at_names() {
     static const std::vector<std::string> names{"bottom", "middle", "top"};
     return names;
@@ -380,18 +389,13 @@ void check_outputs(const Command& command, const std::vector<NamedFile>& more) {
                                         outputs[k].name, output.name,
                                         output.path == "-" ? "standard output" : "the same file"));
         for (const NamedFile& input : inputs)
-            check_distinct(input.path, output.path);
+            if (input.path != "-" && output.path != "-" && are_same(input.path, output.path))
+                throw Error(ErrorKind::usage,
+                            fmt::format("{}: the output would overwrite the input; choose another name",
+                                        output.path));
         if (output.path == "-" && output_is_closed())
             throw Error(ErrorKind::output, "standard output: cannot be written: it is closed");
     }
-}
-
-void check_distinct(const std::string& input, const std::string& output) {
-    if (input == "-" || output == "-")
-        return;
-    if (are_same(input, output))
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: the output would overwrite the input; choose another name", output));
 }
 
 } // namespace lamella::app

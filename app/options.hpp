@@ -124,6 +124,9 @@ struct LayerStepOptions {
 [[nodiscard]] OptionGroup layer_step_options(LayerStepOptions& target);
 /// "3 layers other than sliced: 2 rings united, ..."; `than` says what the layers were before.
 [[nodiscard]] std::string changes_text(const LayerChanges& changes, std::string_view than);
+/// A warning where steps left no contour of those that there were; else "".
+[[nodiscard]] std::string nothing_left(std::uint64_t layers, std::uint64_t contours,
+                                       const LayerChanges& changes);
 
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
 
@@ -133,7 +136,5 @@ void check_conflict(bool first, bool second, std::string_view names, std::string
 /// Throws Error{usage} when a result would overwrite a file that it is made from, or another result. `more`
 /// are results that no option names.
 void check_outputs(const Command& command, const std::vector<NamedFile>& more = {});
-/// The same of one result that is called otherwise than an option says.
-void check_distinct(const std::string& input, const std::string& output);
 
 } // namespace lamella::app

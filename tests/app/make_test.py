@@ -7,6 +7,11 @@ class Make(ProgramTest):
     def info(self, name):
         return self.succeed("info", name, "--json").json()
 
+    def test_a_configuration_is_not_overwritten(self):
+        self.write("box.stl", "size = 3\n")
+        for output in [[], ["-o", "./box.stl"]]:
+            self.fail_with(2, "box.stl: the output would overwrite the input", "make", "box", "--config", "box.stl", *output)
+
     def test_every_body_is_sound(self):
         for body in ["sheet", "rook", "dodecahedra", "calibration", "head", "sole", "box", "sphere", "torus", "cylinder"]:
             with self.subTest(body):

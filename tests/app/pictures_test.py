@@ -20,6 +20,12 @@ class Pictures(ProgramTest):
         self.assertEqual(lines, sorted(lines))
         return dict(line.split(" = ", 1) if " = " in line else (line.rstrip(" ="), "") for line in lines)
 
+    def test_nothing_else_may_lie_in_a_folder_that_is_made(self):
+        self.box()
+        for option in ["--stats", "--report"]:
+            self.fail_with(2, f"--output and {option} contradict each other: ./out/x.json would lie in the folder", "slice",
+                           "box.stl", "-o", "out", "--format", "png", option, "./out/x.json")
+
     def test_a_job_needs_no_options(self):
         self.succeed("slice", self.box(), "-o", "part.sl1")
         archive = self.archive("part.sl1")

@@ -2,7 +2,7 @@
 
 import re
 
-from program import ProgramTest, main
+from program import ProgramTest, binary_stl, box_triangles, main
 
 
 class Plate(ProgramTest):
@@ -53,6 +53,17 @@ class Plate(ProgramTest):
         self.assertEqual(boxes[2][0][:2], [x, y + 22.5])
         self.assertEqual(len({part["points"] for part in stats["parts"]}), 1)
         self.assertAlmostEqual(stats["volume_mm3"], 3 * self.stats("box.stl")["volume_mm3"], places=6)
+
+    def test_triangles_and_options_are_told_as_they_were_given(self):
+        self.write("twice.stl", binary_stl(2 * box_triangles(1, 2, 3)))
+        result = self.succeed("slice", "twice.stl", "--drop-duplicates", "--copies", "3", "-o", "boxes.cli")
+        self.assertIn("twice.stl: 24 triangles", result.text)
+        stats = self.stats("box.stl", "--translate", "5,0,0", "ball.stl", "--rotate-z", "90")
+        self.assertEqual(stats["input"]["triangles"], sum(one["triangles"] for one in stats["inputs"]))
+        self.assertNotIn("translate", stats["options"])
+        self.assertNotIn("rotate-z", stats["options"])
+        self.assertEqual(self.stats("--translate", "5,0,0", "box.stl", "ball.stl")["options"]["translate"], [5, 0, 0])
+        self.assertEqual(self.stats("box.stl", "--translate", "5,0,0")["options"]["translate"], [5, 0, 0])
 
     def test_the_result_does_not_depend_on_threads(self):
         for name in ["a.cli", "a.svg"]:

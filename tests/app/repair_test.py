@@ -98,7 +98,7 @@ class Repair(ProgramTest):
         for option, value in [("--weld-tolerance", "0"), ("--weld-tolerance", "-1"), ("--close-gaps", "0"),
                               ("--close-gaps", "nan"), ("--heights", "0:5"), ("--heights", "5:0=0.1"),
                               ("--heights", "0:5=0.1,3:6=0.2"), ("--heights", ""), ("--adaptive", "0.2:0.1"),
-                              ("--adaptive", "x"), ("--cusp", "0")]:
+                              ("--adaptive", "x"), ("--adaptive", "0.1:"), ("--adaptive", ":0.1"), ("--cusp", "0")]:
             with self.subTest(option=option, value=value):
                 self.fail_with(2, "error", "slice", "box.stl", option, value, "-o", "x.cli")
         self.fail_with(2, "contradict", "slice", "box.stl", "--heights", "0:5=0.1", "--adaptive", "0.1:0.2", "-o", "x.cli")

@@ -75,6 +75,28 @@ class View(ProgramTest):
         self.assertRegex(told, r"warning: hatched\.json: 2 hatch lines left out: the contours that they fill were changed")
         self.assertEqual(self.succeed("view", "hatched.json", "-o", "page.html").err, "")
 
+    def test_what_is_odd_or_lost_is_told(self):
+        self.need_viewer()
+        self.write("cut.stl", binary_stl(box_triangles(10, 20, 30))[:-7])
+        self.assertIn("warning: cut.stl: ", self.succeed("view", "cut.stl").err)
+        self.write("odd.json", """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}], "layers": [
+            {"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 4, 0, 0, 4], [1, 1, 2, 2]]}]}]}""")
+        self.assertIn("warning: odd.json: 1 contour had too few", self.succeed("view", "odd.json").err)
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        for arguments in [["convert", "box.cli", "none.cli"], ["view", "box.cli"], ["view", "box.stl"]]:
+            self.assertRegex(self.succeed(*arguments, "--offset", "-50").err,
+                             r"box.(cli|stl): no contour is left in any of 100 layers: --offset")
+        self.fail_with(4, "no contour is left in any of 100 layers", "convert", "box.cli", "none.cli", "--offset", "-50", "--strict")
+
+    def test_the_pages_of_a_batch_have_the_names_of_their_files(self):
+        self.need_viewer()
+        self.path("parts").mkdir()
+        for name in ["a.stl", "b.stl"]:
+            self.write(f"parts/{name}", self.bytes_of("box.stl"))
+        self.succeed("slice", "--batch", "parts", "-o", "pages", "--format", "html")
+        for name in ["a", "b"]:
+            self.assertEqual(element(self.page(f"pages/{name}.html"), "head")["title"], f"{name}.stl")
+
     def test_threads_do_not_change_a_page(self):
         self.need_viewer()
         self.succeed("make", "rook", "-o", "rook.stl")
@@ -187,6 +209,10 @@ class View(ProgramTest):
         self.fail_with(2, "give one with --output", "view", "-")
         self.fail_with(2, "overwrite|same file", "view", "box.stl", "-o", "box.stl")
         self.fail_with(3, "missing.stl", "view", "missing.stl")
+        for name in ["look.toml", "box.html"]:
+            self.write(name, "threads = 1\n")
+            self.fail_with(2, f"{name}: the output would overwrite the input", "view", "box.stl", "--config", name,
+                           *(["-o", name] if name == "look.toml" else []))
         self.succeed("slice", "box.stl", "-o", "box.cli")
         self.fail_with(2, "are for meshes", "view", "box.cli", "--layer-height", "0.2")
         self.fail_with(2, "are for meshes", "view", "box.cli", "--slice-at", "middle")
