@@ -24,7 +24,9 @@ constexpr std::string_view path_key = "path";
 /// Throws when the command has no such option or it has no place in a file.
 Option& option_of(Command& command, const std::string& place, std::string_view key) {
     Option* const option = find_option(command, key);
-    if (option == nullptr || !option->configurable)
+    if (option != nullptr && !option->configurable)
+        refuse_toml(place, fmt::format("--{} goes on the command line only", key));
+    if (option == nullptr)
         refuse_toml(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, key,
                                        option_suggestion(command, key, "")));
     return *option;

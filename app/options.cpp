@@ -154,7 +154,7 @@ OptionGroup placement_options(PlacementOptions& target) {
     group.options.insert(group.options.begin(), unit_option(target.unit));
     group.options.push_back(triple("direction", "X,Y,Z",
                                    "slice along this direction instead of z: the part is turned so that it "
-                                   "points up; the matrix is kept in the statistics",
+                                   "points up",
                                    target.direction));
     return group;
 }

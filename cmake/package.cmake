@@ -1,8 +1,10 @@
 # The Debian package that `cpack` makes (tools/dist.sh): the program with its man page and completions.
 
 # Debian has these two in places of its own, where `cmake --install` does not put them.
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT debian
-        EXCLUDE_FROM_ALL)
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE own_licence)
+file(READ ${PROJECT_SOURCE_DIR}/LICENSES-third-party.txt other_licences)
+file(CONFIGURE OUTPUT copyright CONTENT "@own_licence@\n@other_licences@" @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT debian EXCLUDE_FROM_ALL)
 install(FILES ${PROJECT_BINARY_DIR}/app/_lamella DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
         COMPONENT debian EXCLUDE_FROM_ALL)
 

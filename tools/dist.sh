@@ -41,4 +41,5 @@ mv "$work"/debian/*.deb "$dist/"
 
 # Debian's packages belong to Debian's interpreter, whichever comes first in the path. A compiler cache may have the objects of
 # these sources in another folder.
+export CMAKE_ARGS="${CMAKE_ARGS:-} -D CMAKE_UNITY_BUILD=ON -D CMAKE_MODULE_LINKER_FLAGS=-s"
 CCACHE_BASEDIR=$work/$name /usr/bin/python3 -m pip --quiet wheel "$work/$name" --no-build-isolation --no-deps --no-index --wheel-dir "$dist"

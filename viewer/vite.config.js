@@ -1,4 +1,9 @@
+import { readFileSync } from 'node:fs';
+
 import { defineConfig } from 'vite';
+
+// What it asks for: its notice goes wherever it goes.
+const licence = readFileSync(new URL('./node_modules/three/LICENSE', import.meta.url), 'utf8').trim();
 
 // The page must be one file that asks for nothing: its scripts and styles move into it.
 function oneFile() {
@@ -19,6 +24,7 @@ function oneFile() {
       // Functions as replacements: the code is full of dollar signs.
       page.source = page.source
         .replace(/\s*<(script|link)[^>]*\/assets\/[^>]*>(<\/script>)?/g, () => '')
+        .replace('<head>', () => `<!-- Of three.js, which is in this page:\n\n${licence}\n-->\n  <head>`)
         .replace('</head>', () => `  <style>${styles.trim()}</style>\n  </head>`)
         .replace('</body>', () => `  <script type="module">${inScript(scripts)}</script>\n  </body>`);
     },

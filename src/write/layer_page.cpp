@@ -51,11 +51,14 @@ struct Picture {
     double tolerance_mm = 0;
 };
 
+/// Crossings of a plane whose places are told.
+constexpr std::size_t most_marks = 1000;
+
 /// Fills in the figures of a plane and what is wrong with it, and appends the places of the first crossings.
 void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, PlaneFacts& facts,
              std::vector<Point2>& places) {
     const auto look_for_crossings = [&](const Layer& layer) {
-        const Crossings crossings = find_crossings(layer);
+        const Crossings crossings = find_crossings(layer, most_marks - places.size());
         facts.crossings += crossings.count;
         for (const Crossing& crossing : crossings.first)
             places.push_back(crossing.at);
@@ -355,10 +358,10 @@ class PageWriter final : public LayerPageWriter {
         };
         return fmt::format(
             R"({{"kind":"layers","version":1,"title":{},"layers":{},"step_mm":{},"origin":[{},{}],)"
-            R"("box":{},"bottom":{},"budget_bytes":{},"layer_points":{},"parts":{}}})",
+            R"("box":{},"bottom":{},"budget_bytes":{},"layer_points":{},"most_marks":{},"parts":{}}})",
             page_quoted(options.title), info.layers, page_number(grid_.step_mm), grid_.origin.x,
             grid_.origin.y, page_box(info.box), page_number(info.bottom), options.budget_bytes,
-            options.layer_points, json_list(info.parts, part_json));
+            options.layer_points, most_marks, json_list(info.parts, part_json));
     }
 
     void write(const PlaneFacts& facts, const std::vector<Picture>& pictures) {

@@ -203,6 +203,8 @@ class Batch(ProgramTest):
         self.boxes("parts", 1)
         self.write("machine.toml", "layer-height = 0.5\njobs = 2\nformat = \"svg\"\n")
         self.assertEqual(self.batch(0, "parts", "-o", "out", "--config", "machine.toml")[0]["layers"], 6)
+        self.write("batch.toml", 'batch = "parts"\n')
+        self.fail_with(2, "batch.toml:1: --batch goes on the command line only", "slice", "--config", "batch.toml", "-o", "out")
 
     def test_what_makes_no_sense(self):
         self.boxes("parts", 1)

@@ -57,7 +57,9 @@ class Dist(unittest.TestCase):
         run(program, "slice", "box.stl", "-o", "box.cli", cwd=self.folder)
         run(program, "verify", "box.cli", "--mesh", "box.stl", cwd=self.folder)
         run(program, "view", "box.cli", cwd=self.folder)
-        self.assertIn('<script type="application/json" id="table">', (self.folder / "box.html").read_text(encoding="utf-8"))
+        page = (self.folder / "box.html").read_text(encoding="utf-8")
+        self.assertIn('<script type="application/json" id="table">', page)
+        self.assertRegex(page, "three.js authors\n\nPermission is hereby granted")
 
     def test_the_archive_has_the_tracked_files_and_the_page_and_no_trace_of_its_making(self):
         archive = self.made("lamella-*.tar.gz")
@@ -113,6 +115,8 @@ class Dist(unittest.TestCase):
             "usr/share/man/man1/lamella.1",
             "usr/share/zsh/vendor-completions/_lamella",
         })
+        for notice in ["The Lamella authors", "Niels Lohmann", "Yann Collet", "three.js authors"]:
+            self.assertIn(notice, (root / "usr/share/doc/lamella/copyright").read_text(encoding="utf-8"))
         version = run("dpkg-query", f"--admindir={database}", "--show", "--showformat=${Version}", "lamella")
         self.assertEqual(run(root / "usr/bin/lamella", "--version").split()[1], version)
         self.slice_and_view(root / "usr/bin/lamella")
@@ -127,6 +131,8 @@ class Dist(unittest.TestCase):
         path, layers = run(python, "-B", "-c", code, cwd=self.folder).split()
         self.assertTrue(Path(path).is_relative_to(environment), path)
         self.assertEqual(layers, "531")
+        notices = {path.name for path in Path(path).parent.parent.glob("lamella-*.dist-info/**/LICENSE*")}
+        self.assertEqual(notices, {"LICENSE", "LICENSES-third-party.txt"})
         modules = {path.name for path in (ROOT / "python/lamella").iterdir() if path.is_file()}
         self.assertLessEqual(modules, {path.name for path in Path(path).parent.iterdir()})
 

@@ -156,7 +156,7 @@ export class LayerView {
   #listen() {
     const { canvas } = this;
     new ResizeObserver(() => {
-      if (this.order) this.#camera.top = this.tools.offsetTop + this.tools.offsetHeight; // a legend hides more than some tools
+      this.#camera.top = this.tools.offsetTop + this.tools.offsetHeight;
       this.#camera.resize(canvas.clientWidth, canvas.clientHeight);
       this.#executed.count = Infinity;
       this.draw();

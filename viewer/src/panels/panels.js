@@ -65,7 +65,8 @@ function layerCard(page, store) {
   store.on(['layer'], ({ layer }) => {
     node.firstChild.textContent = `Layer ${layerNumber(table, layer)}`;
     rows.forEach(([, tell], k) => (values[k].textContent = tell(layer)));
-    const text = faultText(table, layer);
+    const marked = table.crossings[layer] > head.most_marks ? `; of the crossings the first ${count(head.most_marks)} are marked` : '';
+    const text = faultText(table, layer) + marked;
     fault.className = `fault ${text === '' ? 'good' : 'bad'}`;
     fault.textContent = text === '' ? 'No faults in this layer' : text;
   });

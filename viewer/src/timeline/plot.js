@@ -12,7 +12,7 @@ export class LayerAxis {
   /** Pixels from the left. */
   at(layer) {
     const inset = LayerAxis.thumb / 2;
-    return inset + (this.count < 2 ? 0.5 : layer / (this.count - 1)) * (this.width - 2 * inset);
+    return inset + (this.count < 2 ? 0 : layer / (this.count - 1)) * (this.width - 2 * inset);
   }
 
   /** The layer nearest to a pixel. */
@@ -45,6 +45,7 @@ export function columnsOf(values, axis) {
 /** Draws one quantity over the layers. */
 export function drawPlot(ctx, values, axis, height, { line, fill }) {
   const columns = columnsOf(values, axis);
+  if (columns.length === 1) columns.push({ ...columns[0], x: columns[0].x + 2 }); // so that there is something to see
   const top = Math.max(largest(values), 0);
   const low = Math.min(least(values), 0);
   const margin = 3;

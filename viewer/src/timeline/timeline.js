@@ -12,6 +12,8 @@ const rowsOfMaterial = [
   { column: 'contours', name: 'Contours', unit: '', tell: count },
   { column: 'points', name: 'Points', unit: '', tell: count },
   { column: 'open_chains', name: 'Open', unit: '', tell: count, fault: true },
+  { column: 'crossings', name: 'Crossings', unit: '', tell: count, fault: true, extra: true },
+  { column: 'misoriented', name: 'Inside out', unit: '', tell: count, fault: true, extra: true },
   { column: 'longest_gap_mm', name: 'Gap', unit: 'mm', tell: brief, fault: true, extra: true },
   { column: 'rings_dropped', name: 'Dropped', unit: '', tell: count, extra: true },
 ];
