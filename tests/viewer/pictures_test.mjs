@@ -26,16 +26,16 @@ const scaleOf = (page) =>
   page.locator('.scale').evaluate((node) => node.lastChild.getBoundingClientRect().width / parseFloat(node.textContent));
 
 /**
- * Compares which pixels of the drawing have a colour closer to the material's than to the paper's and its grid's with a picture of the raster, whose middle is in
- * the middle of the drawing.
+ * Compares which pixels of the drawing have a colour closer to the material's than to the paper's and its grid's with a picture of the raster, whose middle is
+ * so many pixels below that of the drawing.
  * @returns {Promise<{filled: number, different: number, wrong: number}>} pixels with material; those where the two are
  *     not of one mind; and such of these as no edge passes nearby, which nothing excuses
  */
-async function compare(page, picture, pitch, scale) {
+async function compare(page, picture, pitch, scale, below) {
   const colours = await Promise.all(['--fill-0', '--paper', '--grid', '--grid-strong'].map((name) => colourOf(page, name)));
   const png = readFileSync(picture).toString('base64');
   return page.locator('canvas[data-layer]').evaluate(
-    async (canvas, [colours, png, scale, pitch]) => {
+    async (canvas, [colours, png, scale, pitch, below]) => {
       const pixels = (source) => {
         const ctx = new OffscreenCanvas(source.width, source.height).getContext('2d', { willReadFrequently: true });
         ctx.drawImage(source, 0, 0);
@@ -55,7 +55,7 @@ async function compare(page, picture, pitch, scale) {
       for (let row = 0; row < canvas.height; ++row)
         for (let column = 0; column < canvas.width; ++column) {
           const at = 4 * (row * canvas.width + column);
-          const [x, y] = [column + 0.5 - canvas.width / 2, row + 0.5 - canvas.height / 2];
+          const [x, y] = [column + 0.5 - canvas.width / 2, row + 0.5 - below - canvas.height / 2];
           const [fill, ...others] = colours.map((colour) => [0, 1, 2].reduce((sum, k) => sum + Math.abs(drawing[at + k] - colour[k]), 0));
           const filled = fill < Math.min(...others);
           found.filled += filled;
@@ -66,7 +66,7 @@ async function compare(page, picture, pitch, scale) {
         }
       return found;
     },
-    [colours, png, scale, pitch],
+    [colours, png, scale, pitch, below],
   );
 }
 
@@ -76,6 +76,8 @@ for (const colorScheme of ['light', 'dark'])
       const { page } = await open(`${part}.html`, { colorScheme });
       await shown(page);
       for (const name of ['Contours', 'Direction']) await page.getByRole('button', { name, exact: true }).click();
+      const fitted = await scaleOf(page);
+      const tools = await page.locator('.pane:has(canvas[data-layer]) .tools').evaluate((node) => node.offsetTop + node.offsetHeight);
       const layers = Number(await page.locator('#layer').getAttribute('max')) + 1;
       for (const [layer, zoomed] of [[0, false], [Math.floor(layers / 2), false], [layers - 1, false], [layers - 1, true]]) {
         await page.locator('#layer').fill(String(layer));
@@ -83,7 +85,7 @@ for (const colorScheme of ['light', 'dark'])
         if (zoomed) await page.getByRole('button', { name: 'Zoom in' }).first().click();
         await redrawn();
         const picture = file(`${part}/${String(layer).padStart(5, '0')}.png`);
-        const { filled, different, wrong } = await compare(page, picture, pitch, await scaleOf(page));
+        const { filled, different, wrong } = await compare(page, picture, pitch, await scaleOf(page), ((tools / 2) * (await scaleOf(page))) / fitted);
         const where = `${part}, layer ${layer}${zoomed ? ', zoomed in' : ''}: ${different} of ${filled} pixels`;
         assert.ok(filled > 5000, where);
         assert.equal(wrong, 0, where);
