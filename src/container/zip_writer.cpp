@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace lamella {
@@ -67,12 +68,20 @@ void put_common(const ZipEntry& entry, std::uint64_t packed_size, std::uint64_t 
     to.u32(entry.crc).u32(packed_size).u32(size).u16(entry.name.size()).u16(extra.view().size());
 }
 
-// In front of an entry. A large one has its sizes in 64 bits.
-std::string head_of(const ZipEntry& entry, bool large) {
+bool is_large(const ZipEntry& entry) {
+    return entry.size >= full32 || entry.packed_size >= full32;
+}
+
+// In front of an entry. A large one has its sizes in 64 bits; `room` is for those of one that is not known
+// yet, and is a growth hint of Open Packaging (0xA220) where they are not needed.
+std::string head_of(const ZipEntry& entry, bool room = false) {
+    const bool large = is_large(entry);
     Record sizes;
     if (large)
         sizes.u64(entry.size).u64(entry.packed_size);
-    const Record extra = zip64_extra(sizes);
+    Record extra = zip64_extra(sizes);
+    if (room && !large)
+        extra.u16(0xA220).u16(16).u16(0xA028).u16(0).u64(0).u32(0);
     Record head;
     head.u32(zip_entry_mark).u16(large ? version_zip64 : version_plain);
     put_common(entry, large ? full32 : entry.packed_size, large ? full32 : entry.size, extra, head);
@@ -111,15 +120,16 @@ void ZipWriter::add_ready(std::string_view name, ZipMethod method, const ZipPiec
     entry.size = content.size;
     entry.packed_size = content.bytes.size();
     entry.crc = content.crc;
-    file_.append(head_of(entry, entry.size >= full32 || entry.packed_size >= full32));
+    file_.append(head_of(entry));
     file_.append(content.bytes);
 }
 
-void ZipWriter::begin(std::string_view name, ZipMethod method, bool may_be_large) {
-    const ZipEntry& entry = add_entry(name, method, true);
+void ZipWriter::begin(std::string_view name, ZipMethod method, std::size_t head_size) {
+    const bool stored = method == ZipMethod::stored;
+    const ZipEntry& entry = add_entry(name, method, !stored);
     open_ = true;
-    open_is_large_ = may_be_large; // what is behind has 64 bits, then
-    file_.append(head_of(entry, may_be_large));
+    file_.append(head_of(entry, stored));
+    file_.append(std::string(head_size, '\0'));
 }
 
 void ZipWriter::append(const ZipPiece& piece) {
@@ -134,36 +144,26 @@ void ZipWriter::append_stored(std::string_view content) {
     append({content, content.size(), crc32_of(content)});
 }
 
-void ZipWriter::end() {
+void ZipWriter::end(std::string_view head) {
     open_ = false;
     ZipEntry& entry = entries_.back();
-    if (entry.method == ZipMethod::deflated) {
-        file_.append(deflate_end);
-        entry.packed_size += deflate_end.size();
+    if (entry.method == ZipMethod::stored) {
+        entry.crc = crc32_joined(crc32_of(head), entry.crc, entry.size);
+        entry.size += head.size();
+        entry.packed_size = entry.size;
+        file_.overwrite(entry.place, head_of(entry, true) + std::string(head));
+        return;
     }
+    assert(head.empty());
+    file_.append(deflate_end);
+    entry.packed_size += deflate_end.size();
     Record descriptor;
     descriptor.u32(0x08074b50).u32(entry.crc);
-    if (open_is_large_ || entry.size >= full32 || entry.packed_size >= full32)
+    if (is_large(entry))
         descriptor.u64(entry.packed_size).u64(entry.size);
     else
         descriptor.u32(entry.packed_size).u32(entry.size);
     file_.append(descriptor.view());
-}
-
-void ZipWriter::begin_headed(std::string_view name, std::size_t head_size) {
-    const ZipEntry& entry = add_entry(name, ZipMethod::stored, false);
-    open_ = true;
-    file_.append(head_of(entry, true));
-    file_.append(std::string(head_size, '\0'));
-}
-
-void ZipWriter::end_headed(std::string_view head) {
-    open_ = false;
-    ZipEntry& entry = entries_.back();
-    entry.crc = crc32_joined(crc32_of(head), entry.crc, entry.size);
-    entry.size += head.size();
-    entry.packed_size = entry.size;
-    file_.overwrite(entry.place, head_of(entry, true) + std::string(head));
 }
 
 void ZipWriter::append_directory() {

@@ -19,17 +19,19 @@ struct ZipPiece {
     std::uint32_t crc = 0;  ///< of those (`crc32_of`)
 };
 
-/// A zip archive that appears whole or not at all, as AtomicFile. Nothing is written twice, so that standard
-/// output and pipes will do. Equal contents give equal bytes: all entries have the time 1980-01-01 00:00.
+/// A zip archive that appears whole or not at all, as AtomicFile. Equal contents give equal bytes: all
+/// entries have the time 1980-01-01 00:00.
 ///
 /// Entries follow one another in the order of the calls; their names are unique, relative and have `/`
-/// between folders, which the caller sees to. Entries whose content is known when they begin have their sizes
-/// in front; what is written piece by piece has them behind it (a data descriptor). The 64-bit forms of sizes
-/// and places (zip64) are used where the 32-bit ones do not suffice, and nowhere else.
+/// between folders, which the caller sees to. Sizes stand in front of entries, but behind those that are
+/// deflated piece by piece (a data descriptor): of stored ones nobody who reads from front to back could tell
+/// where they end. The 64-bit forms of sizes and places (zip64) are used where the 32-bit ones do not
+/// suffice, and nowhere else.
 ///
 /// For one thread at a time, but for `bytes`. Failures are Error{output}.
 class ZipWriter {
   public:
+    /// Without Overwriting::yes nothing is written twice: the bytes can go to a pipe as they come.
     explicit ZipWriter(std::string path, Overwriting overwriting = Overwriting::no);
 
     /// One entry, whole. Deflating happens here.
@@ -37,17 +39,12 @@ class ZipWriter {
     /// One entry, whole, made ready beforehand. When deflated, `bytes` is a stream with its end.
     void add_ready(std::string_view name, ZipMethod method, const ZipPiece& content);
 
-    /// Begins an entry that comes piece by piece. One that may hold 4 GiB or more should say so: most readers
-    /// do without the word, but those that read from a pipe look for it.
-    void begin(std::string_view name, ZipMethod method, bool may_be_large = false);
+    /// Begins an entry that comes piece by piece, and ends it. A stored one goes with Overwriting::yes; its
+    /// first `head_size` bytes may be known at its end only.
+    void begin(std::string_view name, ZipMethod method, std::size_t head_size = 0);
     void append(const ZipPiece& piece);
     void append_stored(std::string_view content);
-    void end();
-
-    /// Begins a stored entry of which the first `head_size` bytes are only known at its end, and gives those.
-    /// Sizes stand in front of it, in the form for large ones. With Overwriting::yes.
-    void begin_headed(std::string_view name, std::size_t head_size);
-    void end_headed(std::string_view head);
+    void end(std::string_view head = {});
 
     /// Writes the directory and gives the file its name. To be called once, after the last entry.
     void finish();
@@ -62,7 +59,6 @@ class ZipWriter {
     AtomicFile file_;
     std::vector<ZipEntry> entries_;
     bool open_ = false; ///< an entry has begun and not ended
-    bool open_is_large_ = false;
 };
 
 } // namespace lamella

@@ -118,7 +118,7 @@ class IltWriter final : public OrderedWriter {
                                .parameters = true,
                                .kept = kept_in_list,
                                .not_kept = "jump speeds, delays and spots"}),
-          zip_(path), sections_(sections_of(info.parts)), entries_(sections_.size()) {
+          zip_(path, Overwriting::yes), sections_(sections_of(info.parts)), entries_(sections_.size()) {
         zip_.add(ilt_parameters, parameters_text(sections_));
         zip_.begin(sections_.front().name, ZipMethod::stored);
         for (std::size_t i = 0; i < sections_.size(); ++i)

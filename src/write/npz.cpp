@@ -70,7 +70,7 @@ class NpzWriter final : public OrderedWriter {
     NpzWriter(const std::string& path, const LayerFileInfo& info)
         : OrderedWriter(info, {.hatches = true, .written_label = printable_label}), labels_(info.parts),
           rule_(info.rule), zip_(path, Overwriting::yes) {
-        zip_.begin_headed("points.npy", head_size);
+        zip_.begin("points.npy", ZipMethod::stored, head_size);
     }
 
     std::uint64_t bytes() const noexcept override { return zip_.bytes() + waiting_; }
@@ -98,7 +98,7 @@ class NpzWriter final : public OrderedWriter {
 
     void end_file() override {
         waiting_ = 0;
-        zip_.end_headed(npy_head("<f8", fmt::format("{}, 2", points_), head_size));
+        zip_.end(npy_head("<f8", fmt::format("{}, 2", points_), head_size));
         add_numbers<std::int64_t>("offsets", "<i8", offsets_);
         add_contour_numbers<char>("closed", "|b1", [](const Contour& c) -> char { return c.closed ? 1 : 0; });
         add_contour_numbers<std::int64_t>("layer", "<i8", [](const Contour& c) { return c.layer; });
@@ -130,11 +130,9 @@ class NpzWriter final : public OrderedWriter {
     /// An array of a known size, written some thousand elements at a time.
     class Array {
       public:
-        Array(ZipWriter& zip, std::string_view name, std::string_view type, const std::string& shape,
-              std::uint64_t bytes)
+        Array(ZipWriter& zip, std::string_view name, std::string_view type, const std::string& shape)
             : zip_(zip) {
-            constexpr std::uint64_t large = 0xFFFF0000;
-            zip_.begin(fmt::format("{}.npy", name), ZipMethod::stored, bytes >= large);
+            zip_.begin(fmt::format("{}.npy", name), ZipMethod::stored);
             waiting_ = npy_head(type, shape, head_size);
         }
 
@@ -160,7 +158,7 @@ class NpzWriter final : public OrderedWriter {
 
     template <class T>
     void add_numbers(std::string_view name, std::string_view type, std::span<const T> values) {
-        Array array(zip_, name, type, fmt::format("{},", values.size()), values.size_bytes());
+        Array array(zip_, name, type, fmt::format("{},", values.size()));
         array.add(bytes_in(values));
         array.end();
     }
@@ -176,7 +174,7 @@ class NpzWriter final : public OrderedWriter {
     template <class T, class Value>
     void add_contour_numbers(std::string_view name, std::string_view type, const Value& value) {
         const std::size_t contours = offsets_.size() - 1;
-        Array array(zip_, name, type, fmt::format("{},", contours), contours * sizeof(T));
+        Array array(zip_, name, type, fmt::format("{},", contours));
         for (std::size_t i = 0; i < counts_.size(); ++i) {
             for (std::uint64_t k = 0; k < counts_[i].contours; ++k) {
                 const T number = value({layer_of(i), part_of(i), k < counts_[i].rings});
@@ -198,7 +196,7 @@ class NpzWriter final : public OrderedWriter {
         for (const std::u32string& text : texts)
             longest = std::max(longest, text.size());
         const std::string type = fmt::format("<U{}", longest);
-        Array array(zip_, name, type, fmt::format("{},", texts.size()), 0);
+        Array array(zip_, name, type, fmt::format("{},", texts.size()));
         for (std::u32string& text : texts) {
             text.resize(longest, U'\0');
             array.add(bytes_in(std::span<const char32_t>(text)));
@@ -211,7 +209,7 @@ class NpzWriter final : public OrderedWriter {
         const std::uint64_t lines = hatches_.size() / bytes_of_line;
         if (lines == 0)
             return;
-        Array array(zip_, "hatches", "<f8", fmt::format("{}, 2, 2", lines), hatches_.size());
+        Array array(zip_, "hatches", "<f8", fmt::format("{}, 2, 2", lines));
         std::string piece;
         for (std::uint64_t at = 0; at < hatches_.size(); at += piece.size()) {
             piece.resize(std::min<std::uint64_t>(std::size_t{1} << 18, hatches_.size() - at));
@@ -225,7 +223,7 @@ class NpzWriter final : public OrderedWriter {
 
     template <class Value>
     void add_hatch_numbers(std::string_view name, std::uint64_t lines, const Value& value) {
-        Array array(zip_, name, "<i8", fmt::format("{},", lines), lines * sizeof(std::int64_t));
+        Array array(zip_, name, "<i8", fmt::format("{},", lines));
         for (std::size_t i = 0; i < counts_.size(); ++i) {
             const std::int64_t number = value(i);
             for (std::uint64_t k = 0; k < counts_[i].hatches; ++k)

@@ -95,7 +95,7 @@ TEST(ZipReader, ReadsWhatOurWriterWrites) {
         ZipWriter zip(path);
         zip.add("stored", "content");
         zip.add("d\xc3\xa9j\xc3\xa0", long_text, ZipMethod::deflated);
-        zip.begin("stream", ZipMethod::deflated, true);
+        zip.begin("stream", ZipMethod::deflated);
         const std::string packed = [] {
             std::string piece;
             Deflater().append_piece(long_text, piece);
