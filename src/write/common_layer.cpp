@@ -129,10 +129,11 @@ std::string position_text(double z, double units) {
 
 class CommonLayerWriter : public SequentialWriter {
   protected:
-    // `precision`: that of heights.
+    // `precision`: that of heights, and what 1 of them stands for.
     CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
-                      std::string precision)
-        : SequentialWriter(path, info, head, holds), heights_(std::move(precision)) {
+                      std::string precision, double height_mm)
+        : SequentialWriter(path, info, head, holds),
+          heights_(std::move(precision), height_mm, rounding_loss()) {
         for (const PartInfo& part : info.parts)
             sequences_.push_back(part.exposure ? Sequence::kept : Sequence::nesting);
     }
@@ -182,7 +183,8 @@ class AsciiWriter final : public CommonLayerWriter {
         : CommonLayerWriter(path, info,
                             header("ASCII", info, options.units_mm) + "\n$$GEOMETRYSTART\n$$LAYER/" +
                                 position_text(info.bottom, options.units_mm) + '\n',
-                            fmt::format("millionths of a unit of {} mm", options.units_mm)),
+                            fmt::format("millionths of a unit of {} mm", options.units_mm),
+                            1e-6 * options.units_mm),
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
@@ -254,7 +256,7 @@ class LongWriter final : public CommonLayerWriter {
         : CommonLayerWriter(path, info,
                             header("BINARY", info, options.units_mm) +
                                 layer_start(height_of(info.bottom, options.units_mm)),
-                            "single precision"),
+                            "single precision", options.units_mm),
           units_(options.units_mm), floats_(1 / options.units_mm, &rounding_loss()) {}
 
   private:
@@ -320,7 +322,8 @@ class ShortWriter final : public CommonLayerWriter {
     ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : CommonLayerWriter(
               path, info, checked_head(info, options.units_mm),
-              fmt::format("units of {} mm; use smaller ones or the long form", options.units_mm)),
+              fmt::format("units of {} mm; use smaller ones or the long form", options.units_mm),
+              options.units_mm),
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:

@@ -300,7 +300,7 @@ class OvfWriter final : public OrderedWriter {
     AtomicFile file_;
     FloatContours floats_{1, &rounding_loss()};
     std::vector<std::uint64_t> planes_; ///< where they begin
-    WrittenHeights heights_{"single precision"};
+    WrittenHeights heights_{"single precision", 1, rounding_loss()};
     double layer_thickness_ = 0;
 };
 

@@ -29,18 +29,38 @@ void RoundingLoss::add(const RoundedContour& contour, std::uint64_t layer) {
     lost_lines_ += contour.lost_lines;
 }
 
+void RoundingLoss::add_height(double moved_mm, std::uint64_t layer) {
+    if (!(moved_mm > unnoticed_mm))
+        return;
+    const std::lock_guard lock(mutex_);
+    first_moved_height_ = std::min(first_moved_height_.value_or(layer), layer);
+    moved_heights_mm_ = std::max(moved_heights_mm_, moved_mm);
+}
+
 std::vector<std::string> RoundingLoss::warnings() const {
     const std::lock_guard lock(mutex_);
-    if (!first_layer_)
-        return {};
-    const std::string moved =
-        moved_mm_ > unnoticed_mm
-            ? fmt::format("moved points by up to {:.3g} mm, merged {} of them with the one before and ",
-                          moved_mm_, merged_)
-            : std::string();
-    return {fmt::format("rounding {}left out {}, first in layer {}; a part nearer to the origin, or smaller "
-                        "units where the format has units, lose less",
-                        moved, lost_text(lost_, lost_lines_), *first_layer_)};
+    std::vector<std::string> lines;
+    if (first_layer_)
+        lines.push_back(contours_text());
+    if (first_moved_height_)
+        lines.push_back(
+            fmt::format("rounding moved heights of layers by up to {:.3g} mm, first in layer {}; smaller "
+                        "units lose less",
+                        moved_heights_mm_, *first_moved_height_));
+    return lines;
+}
+
+std::string RoundingLoss::contours_text() const {
+    std::string text;
+    if (moved_mm_ > unnoticed_mm)
+        text = fmt::format("moved points by up to {:.3g} mm, merged {} of them with the one before",
+                           moved_mm_, merged_);
+    if (lost_ + lost_lines_ > 0)
+        text += fmt::format("{}left out {}", text.empty() ? "" : " and ", lost_text(lost_, lost_lines_));
+    return fmt::format(
+        "rounding {}, first in layer {}; a part nearer to the origin, or smaller units where the format "
+        "has units, lose less",
+        text, *first_layer_);
 }
 
 } // namespace lamella

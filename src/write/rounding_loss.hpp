@@ -43,16 +43,21 @@ class RoundingLoss {
 
     /// From any threads, layers in any order.
     void add(const RoundedContour& contour, std::uint64_t layer);
-    /// One line, or none.
+    void add_height(double moved_mm, std::uint64_t layer);
+    /// One line for contours, one for heights, or none.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
   private:
+    [[nodiscard]] std::string contours_text() const;
+
     mutable std::mutex mutex_;
     double moved_mm_ = 0;
     std::uint64_t merged_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t lost_lines_ = 0;
     std::optional<std::uint64_t> first_layer_; ///< where anything was lost
+    double moved_heights_mm_ = 0;
+    std::optional<std::uint64_t> first_moved_height_;
 };
 
 } // namespace lamella

@@ -108,7 +108,7 @@ class SlcWriter final : public SequentialWriter {
     FloatContours floats_{1.0, &rounding_loss()};
     double bottom_;
     PlanePlace last_;
-    WrittenHeights heights_{"single precision"};
+    WrittenHeights heights_{"single precision", 1, rounding_loss()};
 };
 
 } // namespace

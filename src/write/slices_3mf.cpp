@@ -171,7 +171,7 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     /// The stacks of all parts but the first, which wait for the end of the first one.
     std::vector<std::vector<Later>> later_;
     std::uint64_t waiting_ = 0; ///< bytes of these
-    WrittenHeights heights_{"billionths of a millimetre"};
+    WrittenHeights heights_{"billionths of a millimetre", 1e-9, rounding_loss()};
 };
 
 } // namespace

@@ -97,7 +97,8 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
                         "<Default Extension=\"xml\" ContentType=\"application/xml\"/>"),
           info_(info), keys_(info.parts), units_(options.units_mm), grid_(options.units_mm, &rounding_loss()),
           bottom_(whole_height(info.bottom)),
-          heights_(fmt::format("units of {} mm; use smaller ones", options.units_mm)) {
+          heights_(fmt::format("units of {} mm; use smaller ones", options.units_mm), options.units_mm,
+                   rounding_loss()) {
         heights_.add(static_cast<double>(bottom_), info.bottom, "bottom", 0);
         uuid_ = uuid_of("toolpath " + head_text(info));
         for (std::size_t part = 0; part < keys_.parts.size(); ++part)

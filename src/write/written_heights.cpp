@@ -18,6 +18,7 @@ void WrittenHeights::add(double height, double mm, std::string_view end, std::ui
                                 "no thickness there, in {}",
                                 layer, end, mm, precision_));
     last_ = height;
+    loss_.add_height(std::abs(height * unit_mm_ - mm), layer);
 }
 
 } // namespace lamella

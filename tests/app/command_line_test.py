@@ -154,7 +154,7 @@ class CommandLine(ProgramTest):
     def test_wrong_configurations_are_refused_with_their_line(self):
         for content, pattern in [("layer-hight = 1\n", r'job\.toml:1:.*"layer-hight"; did you mean layer-height'),
                                  ("strict = true\nlayer-height = 'thin'\n", r"job\.toml:2: layer-height: \"thin\""),
-                                 ("layer-height = \n", r"job\.toml:1"), ("config = 'a.toml'\n", "no option"),
+                                 ("layer-height = \n", r"job\.toml:1"), ("config = 'a.toml'\n", "goes on the command line only"),
                                  ("[part]\nlayer-height = 1\n", "no option"), ("rotate = [1, 'a', 3]\n", "rotate"),
                                  ("layer-height = { a = 1 }\n", "no value for an option")]:
             with self.subTest(content):

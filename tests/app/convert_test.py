@@ -86,6 +86,17 @@ class Convert(ProgramTest):
         self.write("open.json", self.HATCHED.replace('"hatches"', '"chains": [[5, 5, 6, 6]], "hatches"'))
         return "open.json"
 
+    def test_heights_that_rounding_moves_are_told(self):
+        self.box()
+        coarse = ["--translate", "1,1,0", "--short", "--units-mm", "0.05", "--layer-height"]
+        moved = r"rounding moved heights of layers by up to 0\.02 mm, first in layer 0"
+        self.assertRegex(self.succeed("slice", "box.stl", "-o", "box.cli", *coarse, "0.17").err, f"warning: box.cli: {moved}")
+        self.fail_with(4, "rounding moved", "slice", "box.stl", "-o", "no.cli", *coarse, "0.17", "--strict")
+        self.assertNotIn("heights", self.succeed("slice", "box.stl", "-o", "box.cli", *coarse, "0.2").err)
+        told = self.succeed("slice", "box.stl", "--scan", "-o", "box.ilt", *coarse, "0.17").err
+        self.assertEqual(told.count("moved heights"), 1)
+        self.assertIn("(and in 1 more of its files)", told)
+
     def test_what_is_made_of_the_layers_is_told(self):
         self.write("two.json", """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}, {"label": "b"}],
             "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [
