@@ -65,20 +65,4 @@ Layer LayerBuilder::finish_as_added(std::uint64_t index, double z, double bottom
     return layer;
 }
 
-Layer merged(std::span<const Layer> layers) {
-    if (layers.empty())
-        return {};
-    LayerBuilder builder;
-    std::vector<Point2> hatches;
-    for (const Layer& layer : layers) {
-        for (std::size_t i = 0; i < layer.contours(); ++i)
-            builder.add_contour(layer.contour(i), layer.closed(i));
-        hatches.insert(hatches.end(), layer.hatches.begin(), layer.hatches.end());
-    }
-    const Layer& first = layers.front();
-    Layer all = builder.finish(first.index, first.z, first.bottom, first.top);
-    all.hatches = PointArray(std::move(hatches));
-    return all;
-}
-
 } // namespace lamella

@@ -63,11 +63,6 @@ std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::si
     return i;
 }
 
-struct Placement {
-    std::size_t contour;
-    std::size_t start;
-};
-
 // The points of a contour from its start on, as the normal form has them, without moving them.
 class Rotated {
   public:
@@ -97,6 +92,48 @@ bool before(const Contour& a, const Contour& b) {
     }
     return a.size() < b.size();
 }
+
+// Contours of layers that stay where they are until all are copied to their places.
+class ContourSet {
+  public:
+    void add(const Layer& layer) {
+        for (std::size_t i = 0; i < layer.contours(); ++i) {
+            const std::span<const Point2> contour = layer.contour(i);
+            if (layer.closed(i))
+                rings_.emplace_back(contour, smallest_rotation(contour));
+            else
+                chains_.emplace_back(contour, 0);
+        }
+    }
+
+    // In normal form; index, z, bottom and top as of `head`, no hatches.
+    Layer laid_out(const Layer& head) && {
+        std::size_t size = 0;
+        for (std::vector<Rotated>* const group : {&rings_, &chains_}) {
+            std::sort(group->begin(), group->end(), before<Rotated>);
+            for (const Rotated& contour : *group)
+                size += contour.size();
+        }
+        const auto points = std::make_shared<const PageArray<Point2>>(size);
+        Layer layer{.index = head.index, .z = head.z, .bottom = head.bottom, .top = head.top};
+        layer.rings = rings_.size();
+        layer.offsets.reserve(rings_.size() + chains_.size() + 1);
+        Point2* end = points->data();
+        for (const std::vector<Rotated>* const group : {&rings_, &chains_})
+            for (const Rotated& contour : *group) {
+                end = contour.copy_to(end);
+                layer.offsets.push_back(static_cast<std::uint64_t>(end - points->data()));
+            }
+        assert(layer.offsets.back() == size); // every point has its place
+        layer.points = PointArray(points, points->data(), size);
+        assert(in_normal_form(layer));
+        return layer;
+    }
+
+  private:
+    std::vector<Rotated> rings_;
+    std::vector<Rotated> chains_;
+};
 
 } // namespace
 
@@ -135,33 +172,25 @@ Layer normal_form(Layer layer) {
     if (in_normal_form(layer))
         return layer;
 
-    std::vector<Placement> order(layer.contours());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = {i, layer.closed(i) ? smallest_rotation(layer.contour(i)) : 0};
-    const auto rotated = [&](const Placement& p) {
-        return Rotated(layer.contour(p.contour), p.start);
-    };
-    const auto ordered = [&](const Placement& a, const Placement& b) {
-        return before(rotated(a), rotated(b));
-    };
-    const auto chains = order.begin() + static_cast<std::ptrdiff_t>(layer.rings);
-    std::sort(order.begin(), chains, ordered);
-    std::sort(chains, order.end(), ordered);
+    ContourSet contours;
+    contours.add(layer);
+    Layer result = std::move(contours).laid_out(layer);
+    result.hatches = std::move(layer.hatches);
+    return result;
+}
 
-    const auto points = std::make_shared<const PageArray<Point2>>(layer.points.size());
-    std::vector<std::uint64_t> offsets;
-    offsets.reserve(layer.offsets.size());
-    offsets.push_back(0);
-    Point2* end = points->data();
-    for (const Placement& p : order) {
-        end = rotated(p).copy_to(end);
-        offsets.push_back(static_cast<std::uint64_t>(end - points->data()));
+Layer merged(std::span<const Layer> layers) {
+    if (layers.empty())
+        return {};
+    ContourSet contours;
+    std::vector<Point2> hatches;
+    for (const Layer& layer : layers) {
+        contours.add(layer);
+        hatches.insert(hatches.end(), layer.hatches.begin(), layer.hatches.end());
     }
-    assert(offsets.back() == layer.points.size()); // every point has its place
-    layer.points = PointArray(points, points->data(), offsets.back());
-    layer.offsets = std::move(offsets);
-    assert(in_normal_form(layer));
-    return layer;
+    Layer all = std::move(contours).laid_out(layers.front());
+    all.hatches = PointArray(std::move(hatches));
+    return all;
 }
 
 bool same_contours(const Layer& a, const Layer& b) noexcept {

@@ -245,9 +245,13 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
         done.inspection = inspect_plate(plate, engine.welds, job.strict, execution);
     if (indexed || inspected)
         done.seconds = welding.seconds();
-    if (job.layer_statistics)
+    if (job.layer_statistics) {
+        std::vector<double> volumes;
+        for (const PlateShape& shape : plate.shapes)
+            volumes.push_back(volume(shape.mesh, execution));
         for (const PlatePart& part : plate.parts)
-            done.volume_mm3 += volume(plate.shapes[part.shape].mesh, execution);
+            done.volume_mm3 += volumes[part.shape];
+    }
     if (job.repair.change_the_mesh()) {
         const Stopwatch repairing;
         for (PlateShape& shape : plate.shapes) {
