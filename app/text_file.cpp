@@ -58,6 +58,8 @@ std::size_t read_some(int descriptor, std::span<char> room, const Refuse& refuse
 std::string read_text_file(const std::string& path) {
     const std::string name = input_name(path);
     const auto refuse = [&](int error) {
+        if (error == ENOENT)
+            throw Error(ErrorKind::input, fmt::format("{}: there is no such file", name));
         throw Error(ErrorKind::input, fmt::format("{}: cannot be read: {}", name, reason(error)));
     };
     // By its descriptor: what is at the other end, such as a socket, need not be there to be opened again.
