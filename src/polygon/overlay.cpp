@@ -1,5 +1,6 @@
 #include "polygon/overlay.hpp"
 
+#include "lamella/contour/measure.hpp"
 #include "lamella/polygon/crossings.hpp"
 
 #include "polygon/arrangement.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -112,7 +114,13 @@ class Filler {
         ++result_.groups_united;
         result_.rings_united += group.size();
         for (Ring& ring : boundary(arrangement, material_, *grid_))
-            united_.push_back(std::move(ring));
+            if (!is_sliver(ring))
+                united_.push_back(std::move(ring));
+    }
+
+    /// Whether a ring is so thin that places on the grid may have turned it over, or made a line of it.
+    [[nodiscard]] bool is_sliver(const Ring& ring) const {
+        return std::abs(ring_area(ring)) <= grid_->unit() * contour_length(ring, true);
     }
 
     /// As if all rings were one group in contact.

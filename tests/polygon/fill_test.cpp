@@ -343,5 +343,29 @@ TEST(Fill, OfAnEmptyLayerIsEmpty) {
     EXPECT_EQ(fill(layer_of({{}, {{1, 1}}}), FillRule::nonzero).layer.contours(), 0U);
 }
 
+TEST(Fill, LeavesNoSliversThatAreTurnedOver) {
+    Random random(23);
+    for (int round = 0; round < 20'000; ++round) {
+        // Far from the origin, turned bodies with sides on one another that rounding moves a little.
+        const double angle = random.real(0, 2 * std::numbers::pi);
+        const auto turned = [&](double x, double y) {
+            return Point2{std::cos(angle) * x - std::sin(angle) * y,
+                          std::sin(angle) * x + std::cos(angle) * y};
+        };
+        std::vector<Contour> rings;
+        for (int i = 0; i < 3; ++i) {
+            const auto x = static_cast<double>(random.integer(0, 3));
+            const auto y = static_cast<double>(random.integer(0, 3));
+            const auto w = static_cast<double>(random.integer(1, 3));
+            const auto h = static_cast<double>(random.integer(1, 3));
+            rings.push_back({turned(x, y), turned(x + w, y), turned(x + w, y + h), turned(x, y + h)});
+        }
+        for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd, FillRule::positive}) {
+            const Layer once = fill(normal_layer(rings), rule).layer;
+            ASSERT_TRUE(same_contours(fill(once, rule).layer, once)) << round;
+        }
+    }
+}
+
 } // namespace
 } // namespace lamella

@@ -41,7 +41,8 @@ struct Filled {
 /// touching them are kept, dropped or reversed as they are. Only groups of rings that cross, or touch and
 /// overlap, are united on a grid of integers whose unit is at most 2^-36 of the layer's extent (1.5e-9 mm for
 /// a layer of 100 mm): their corners keep their coordinates, the points where they cross are off by about a
-/// unit. Overlaps of the size of rounding errors count as touching. Doing it again changes nothing.
+/// unit. Overlaps of the size of rounding errors count as touching, and of what is united, rings thinner than
+/// a unit are left out. Doing it again changes nothing, unless rings of the given layer were as thin as that.
 ///
 /// Open chains stay as they are. Flat rings, which bound nothing, are dropped.
 ///
