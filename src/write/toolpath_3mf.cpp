@@ -120,6 +120,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
             heights_.add(static_cast<double>(height), place.top, "top", place.index);
             const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", place.position + 1);
             zip().add_ready(name, ZipMethod::deflated, piece->in_zip());
+            content_ += fmt::format(" {:08x}", piece->crc);
             layers_ += fmt::format("<tp:toolpathlayer ztop=\"{}\" path=\"/{}\"/>\n", height, name);
             relations_ += fmt::format("<Relationship Id=\"layer{}\" Target=\"/{}\" Type=\"{}\"/>\n",
                                       place.position + 1, name, toolpath_3mf::layer_type);
@@ -237,6 +238,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
     [[nodiscard]] std::string model() const {
+        const std::string toolpath_uuid = uuid_of("content" + content_ + ' ' + uuid_);
         const std::vector<Box3> boxes = boxes_of_parts();
         std::string objects;
         std::string items;
@@ -257,8 +259,9 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
             "<tp:toolpathprofiles>\n{}</tp:toolpathprofiles>\n"
             "<tp:toolpathlayers zbottom=\"{}\">\n{}</tp:toolpathlayers>\n</tp:toolpathresource>\n"
             "{}</resources>\n<build p:UUID=\"{}\" tp:toolpathid=\"1\">\n{}</build>\n</model>\n",
-            xml_begin, toolpath_3mf::space, toolpath_3mf::own_space, uuid_, exact_decimal_text(units_),
-            profiles(), bottom_, layers_, objects, uuid_of("build " + uuid_), items);
+            xml_begin, toolpath_3mf::space, toolpath_3mf::own_space, toolpath_uuid,
+            exact_decimal_text(units_), profiles(), bottom_, layers_, objects,
+            uuid_of("build " + toolpath_uuid), items);
     }
 
     [[nodiscard]] std::vector<Box3> boxes_of_parts() const {
@@ -272,7 +275,8 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     ExposureKeys keys_;
     double units_;
     WriterGrid grid_;
-    std::string uuid_;
+    std::string uuid_;                       ///< of what is known before any layer is
+    std::string content_;                    ///< checksums of the layers, for the identifier of the whole
     std::vector<std::string> item_uuids_;    ///< of the parts of keys_
     std::vector<std::string> profile_uuids_; ///< of its exposures, then of what has no parameters
     std::string layers_;                     ///< of the model

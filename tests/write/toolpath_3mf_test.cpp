@@ -77,6 +77,28 @@ TEST(Toolpath3mf, JobsOfOtherParametersHaveOtherIdentifiers) {
     EXPECT_NE(some[1], others[1]);
 }
 
+TEST(Toolpath3mf, JobsOfOtherContoursHaveOtherIdentifiers) {
+    const TemporaryFolder folder;
+    const auto identifier_of = [&](double corner) {
+        LayerStack stack = square_with_hole();
+        for (Layer& layer : stack) {
+            LayerBuilder builder;
+            add_contour(builder, {{0, 0}, {10, 0}, {10, 10}, {corner, 10}});
+            layer = builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+        }
+        LayerFileInfo info = info_of(stack);
+        info.box = {{0, 0, 0}, {10, 10, 1}};
+        write_layers(folder.file("out"), layer_format("3mf-toolpath", ""), std::vector<LayerStack>{stack},
+                     info);
+        const ZipReader zip(open_bytes(folder.file("out")), 0);
+        const std::string model(zip.read(*zip.find("3D/3dmodel.model")).text());
+        constexpr std::string_view before = "toolpathresource id=\"1\" uuid=\"";
+        return model.substr(model.find(before) + before.size(), 36);
+    };
+    EXPECT_EQ(identifier_of(0), identifier_of(0));
+    EXPECT_NE(identifier_of(0), identifier_of(1));
+}
+
 TEST(Toolpath3mf, LayersListTheirPartsOnly) {
     const TemporaryFolder folder;
     const LayerStack both = square_with_hole();
