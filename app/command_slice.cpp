@@ -240,10 +240,14 @@ void check_folder(const SliceArguments& arguments) {
     const std::filesystem::path folder = place_of(arguments.output);
     for (const auto& [name, path] :
          {std::pair("--stats", arguments.stats), std::pair("--report", arguments.report)})
-        for (std::filesystem::path place = place_of(path); !path.empty() && place != place.parent_path();
+        for (std::filesystem::path place = place_of(path); !path.empty() && place.has_relative_path();
              place = place.parent_path())
-            check_conflict(place.parent_path() == folder, true, fmt::format("--output and {}", name),
-                           fmt::format("{} would lie in the folder that is made", path));
+            if (place.parent_path() == folder)
+                throw Error(
+                    ErrorKind::usage,
+                    fmt::format("--output and {} contradict each other: {} would lie in the folder that "
+                                "is made",
+                                name, path));
 }
 
 FileJob make_job(const SliceArguments& arguments) {
