@@ -1,5 +1,7 @@
 #include "core/byte_amount.hpp"
 
+#include "core/counted.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -12,7 +14,7 @@ std::string byte_amount(std::uint64_t bytes) {
     // What is rounded to 1000.0 is told in the next unit.
     constexpr double next = 999.95;
     if (bytes < 1000)
-        return fmt::format("{} byte{}", bytes, bytes == 1 ? "" : "s");
+        return counted(bytes, "byte");
     double amount = static_cast<double>(bytes) / 1000;
     std::size_t unit = 0;
     for (; amount >= next && unit + 1 < units.size(); ++unit)

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/counted.hpp"
 #include "core/stopwatch.hpp"
 #include "pipeline/plane_scan.hpp"
 #include "write/ordered_writer.hpp"
@@ -24,10 +25,10 @@ void ThinRings::add(std::uint64_t count, double z) noexcept {
 }
 
 std::string ThinRings::text() const {
-    return fmt::format("{} ring{} on {} layer{}, the lowest at z = {:.6g} mm, {} thinner than the beam's "
-                       "offsets: {} no vectors",
-                       rings, rings == 1 ? "" : "s", layers, layers == 1 ? "" : "s", first_z,
-                       rings == 1 ? "is" : "are", rings == 1 ? "it has" : "they have");
+    return fmt::format("{} on {}, the lowest at z = {:.6g} mm, {} no vectors", counted(rings, "ring"),
+                       counted(layers, "layer"), first_z,
+                       rings == 1 ? "is thinner than the beam's offsets: it has"
+                                  : "are thinner than the beam's offsets: they have");
 }
 
 LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy) {

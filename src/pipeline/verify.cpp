@@ -21,10 +21,6 @@ namespace lamella {
 
 namespace {
 
-const char* plural(std::uint64_t n) {
-    return n == 1 ? "" : "s";
-}
-
 std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
     OpenGaps all;
     const Verification::OpenLayer* worst = &layers.front();
@@ -34,9 +30,9 @@ std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
             worst = &layer;
     }
     return fmt::format(
-        "{:.4g} mm are missing between their ends, in {} layer{}; the longest gap, of {:.4g} mm, is in "
+        "{:.4g} mm are missing between their ends, in {}; the longest gap, of {:.4g} mm, is in "
         "layer {} (z {:.7g} mm) from ({:.7g}, {:.7g}) to ({:.7g}, {:.7g})",
-        all.total_mm, layers.size(), plural(layers.size()), worst->gaps.longest_mm, worst->index, worst->z,
+        all.total_mm, counted(layers.size(), "layer"), worst->gaps.longest_mm, worst->index, worst->z,
         worst->gaps.from.x, worst->gaps.from.y, worst->gaps.to.x, worst->gaps.to.y);
 }
 
@@ -133,15 +129,15 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     if (compared > 0)
         result.max_area_error_mm2 = largest_error;
     if (compared < layers.size())
-        result.findings.push_back(fmt::format("{} layer{} with open contours {} not compared with the mesh",
-                                              layers.size() - compared, plural(layers.size() - compared),
-                                              layers.size() - compared == 1 ? "was" : "were"));
+        result.findings.push_back(counted(layers.size() - compared,
+                                          "layer with open contours was not compared with the mesh",
+                                          "layers with open contours were not compared with the mesh"));
     if (differing > 0) {
         result.areas_agree = false;
         result.findings.push_back(
-            fmt::format("{} layer{} of another area than the mesh's section, the first "
+            fmt::format("{} of another area than the mesh's section, the first "
                         "is {}: {:.7g} mm2 instead of {:.7g} mm2, {:.2g} mm2 off",
-                        differing, differing == 1 ? " is" : "s are", where(layers[first]),
+                        counted(differing, "layer is", "layers are"), where(layers[first]),
                         checks[first].measure.area_mm2, sections[first].front().area_mm2,
                         std::abs(checks[first].measure.area_mm2 - sections[first].front().area_mm2)));
     }
@@ -155,11 +151,11 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
             return fmt::format("({:.7g}, {:.7g})", to_nanometres(origin.x + section.x_mm3 / section.area_mm2),
                                to_nanometres(origin.y + section.y_mm3 / section.area_mm2));
         };
-        result.findings.push_back(fmt::format(
-            "{} layer{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
-            "instead of {}",
-            result.displaced, result.displaced == 1 ? " lies" : "s lie", where(layers[first_displaced]),
-            centre(own[first_displaced].moments), centre(sections[first_displaced].front())));
+        result.findings.push_back(
+            fmt::format("{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
+                        "instead of {}",
+                        counted(result.displaced, "layer lies", "layers lie"), where(layers[first_displaced]),
+                        centre(own[first_displaced].moments), centre(sections[first_displaced].front())));
     }
 }
 

@@ -5,6 +5,7 @@
 #include "lamella/polygon/offset.hpp"
 
 #include "contour/distance.hpp"
+#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "pipeline/layer_check.hpp"
 #include "pipeline/layer_heights.hpp"
@@ -509,8 +510,8 @@ std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
 void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
     const auto tell_of = [&](const Finding& finding, const char* what) {
         if (finding.total > 0)
-            findings.push_back(fmt::format("contour {} {} on {} layer{}, the first is {}", number, what,
-                                           finding.total, finding.total == 1 ? "" : "s", finding.place));
+            findings.push_back(fmt::format("contour {} {} on {}, the first is {}", number, what,
+                                           counted(finding.total, "layer"), finding.place));
     };
     tell_of(row.missing, "is missing");
     tell_of(row.elsewhere, "encloses another area than the material has at its depth");
@@ -601,9 +602,9 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         result.heights =
             covered_heights(planes, *options.mesh, options.granted(), execution, result.findings);
     if (result.unbounded > 0)
-        result.findings.push_back(fmt::format(
-            "of {} vector{} nothing tells where the material is: no closed contour is around them",
-            result.unbounded, result.unbounded == 1 ? "" : "s"));
+        result.findings.push_back(
+            fmt::format("of {} nothing tells where the material is: no closed contour is around them",
+                        counted(result.unbounded, "vector")));
     return result;
 }
 

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "core/counted.hpp"
 #include "core/let_go.hpp"
 
 #include <fmt/format.h>
@@ -50,10 +51,10 @@ void tell_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
         if (!is_in_order(raw, file) && changed++ == 0)
             lowest = raw.z;
     if (changed != 0)
-        file.warnings.push_back(fmt::format(
-            "vectors of {} layer{}, the lowest at z = {:.6g} mm, are executed in another order in "
-            "the file; they were put into that of the parts",
-            changed, changed == 1 ? "" : "s", lowest));
+        file.warnings.push_back(
+            fmt::format("vectors of {}, the lowest at z = {:.6g} mm, are executed in another order in "
+                        "the file; they were put into that of the parts",
+                        counted(changed, "layer"), lowest));
 }
 
 } // namespace

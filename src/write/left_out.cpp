@@ -1,6 +1,7 @@
 #include "write/left_out.hpp"
 
 #include "container/text_place.hpp"
+#include "core/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -94,10 +95,10 @@ std::vector<std::string> LeftOut::warnings() const {
                         "place for such",
                         holds_.not_kept, parts_in_words(changed_parts_)));
     if (holds_.parameters && unknown_ != 0)
-        lines.push_back(
-            fmt::format("{} no parameters of scan vectors, such as power and speed, and {} written without",
-                        unknown_ == 1 ? "1 part has" : fmt::format("{} parts have", unknown_),
-                        unknown_ == 1 ? "was" : "were"));
+        lines.push_back(counted(
+            unknown_,
+            "part has no parameters of scan vectors, such as power and speed, and was written without",
+            "parts have no parameters of scan vectors, such as power and speed, and were written without"));
     return lines;
 }
 

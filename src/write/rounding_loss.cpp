@@ -1,5 +1,7 @@
 #include "write/rounding_loss.hpp"
 
+#include "core/counted.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +11,10 @@ namespace lamella {
 namespace {
 
 std::string lost_text(std::uint64_t contours, std::uint64_t lines) {
-    const std::string text =
-        contours != 0 || lines == 0 ? fmt::format("{} contour{}", contours, contours == 1 ? "" : "s") : "";
-    if (lines == 0)
-        return text;
-    return fmt::format("{}{}{} hatch line{}", text, text.empty() ? "" : " and ", lines,
-                       lines == 1 ? "" : "s");
+    std::string text = contours != 0 ? counted(contours, "contour") : "";
+    if (lines != 0)
+        text += (text.empty() ? "" : " and ") + counted(lines, "hatch line");
+    return text;
 }
 
 } // namespace
