@@ -31,4 +31,17 @@ namespace lamella {
     return std::sqrt(dx * dx + dy * dy);
 }
 
+/// The square of how far p is from the nearest place between a and b.
+[[nodiscard]] inline double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexcept {
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    const double px = p.x - a.x;
+    const double py = p.y - a.y;
+    const double square = dx * dx + dy * dy;
+    const double t = square > 0 ? std::clamp((px * dx + py * dy) / square, 0.0, 1.0) : 0.0;
+    const double ex = px - t * dx;
+    const double ey = py - t * dy;
+    return ex * ex + ey * ey;
+}
+
 } // namespace lamella

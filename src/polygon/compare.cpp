@@ -4,6 +4,7 @@
 #include "lamella/core/error.hpp"
 
 #include "contour/area_moments.hpp"
+#include "contour/distance.hpp"
 #include "contour/same_height.hpp"
 #include "core/executor.hpp"
 #include "polygon/box2.hpp"

@@ -1,5 +1,7 @@
 #include "polygon/edge_tree.hpp"
 
+#include "contour/distance.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -27,15 +29,6 @@ double apart_squared(const Box2& a, const Box2& b) noexcept {
 }
 
 } // namespace
-
-double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexcept {
-    const double dx = b.x - a.x;
-    const double dy = b.y - a.y;
-    const double length = squared(dx, dy);
-    const double along = length > 0 ? ((p.x - a.x) * dx + (p.y - a.y) * dy) / length : 0;
-    const double t = std::clamp(along, 0.0, 1.0);
-    return squared(p.x - (a.x + t * dx), p.y - (a.y + t * dy));
-}
 
 EdgeTree::EdgeTree(const Layer& layer) {
     edges_.reserve(layer.points.size());

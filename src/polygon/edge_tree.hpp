@@ -61,7 +61,4 @@ class EdgeTree {
     std::vector<Node> nodes_;
 };
 
-/// The square of the distance of p from the segment from a to b.
-[[nodiscard]] double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexcept;
-
 } // namespace lamella

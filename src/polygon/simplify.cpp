@@ -6,6 +6,7 @@
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
 
+#include "contour/distance.hpp"
 #include "polygon/orientation.hpp"
 
 #include <algorithm>
@@ -18,18 +19,6 @@
 namespace lamella {
 
 namespace {
-
-double squared_distance(const Point2& p, const Point2& a, const Point2& b) noexcept {
-    const double dx = b.x - a.x;
-    const double dy = b.y - a.y;
-    const double px = p.x - a.x;
-    const double py = p.y - a.y;
-    const double square = dx * dx + dy * dy;
-    const double t = square > 0 ? std::clamp((px * dx + py * dy) / square, 0.0, 1.0) : 0.0;
-    const double ex = px - t * dx;
-    const double ey = py - t * dy;
-    return ex * ex + ey * ey;
-}
 
 /// Which points of a layer are kept, and how to put more of them back.
 class Thinned {
@@ -101,7 +90,7 @@ class Thinned {
         std::uint64_t farthest = begin + (end - begin) / 2;
         double most = 0;
         for (std::uint64_t i = begin + 1; i < end; ++i) {
-            const double square = squared_distance(layer_.points[wrapped(contour, i)], a, b);
+            const double square = distance_squared(layer_.points[wrapped(contour, i)], a, b);
             if (square > most) {
                 most = square;
                 farthest = i;
