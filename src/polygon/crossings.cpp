@@ -16,7 +16,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -85,9 +84,12 @@ class CrossingSearch {
             return std::nextafter(x, std::numeric_limits<double>::infinity());
         };
         search({0, 0, beyond(frame_.corner.x), beyond(frame_.corner.y)}, ids_);
+        keep_first();
         assert(first_.size() == std::min<std::uint64_t>(keep_, count_));
+        std::sort(first_.begin(), first_.end());
         Crossings result;
         result.count = count_;
+        result.first.reserve(first_.size());
         for (const Pair& pair : first_)
             result.first.push_back(described(pair));
         return result;
@@ -165,11 +167,17 @@ class CrossingSearch {
 
     void found(const Pair& pair) {
         ++count_;
-        if (keep_ == 0 || (first_.size() == keep_ && *first_.rbegin() < pair))
+        first_.push_back(pair);
+        if (first_.size() / 2 >= keep_)
+            keep_first();
+    }
+
+    void keep_first() {
+        if (first_.size() <= keep_)
             return;
-        first_.insert(pair);
-        if (first_.size() > keep_)
-            first_.erase(std::prev(first_.end()));
+        const auto end = first_.begin() + static_cast<std::ptrdiff_t>(keep_);
+        std::nth_element(first_.begin(), end, first_.end());
+        first_.erase(end, first_.end());
     }
 
     /// About where the two cross, in local coordinates: within some rounding errors of both segments. It is
@@ -302,7 +310,7 @@ class CrossingSearch {
     std::vector<Segment> segments_; // by the number of the first point; not all of them are there
     std::vector<SegmentId> ids_;    // of those that are
     std::uint64_t count_ = 0;
-    std::set<Pair> first_;
+    std::vector<Pair> first_; // and some more, until they are twice as many as to be kept
 };
 
 Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
