@@ -786,3 +786,18 @@ test('signs on buttons are drawn, so that they need no font', async () => {
     assert.equal(empty, 0);
   }
 });
+
+test('of more crossings than are marked it is told how many are', async () => {
+  const bars = Array.from({ length: 20 }, (_, i) => [
+    [i, -1, i + 0.5, -1, i + 0.5, 25, i, 25],
+    [-1, i, 25, i, 25, i + 0.5, -1, i + 0.5],
+  ]);
+  const layers = [{ z: 0.5, bottom: 0, top: 1, parts: [{ rings: bars.flat() }] }];
+  writeFileSync(file('bars.json'), JSON.stringify({ format: 'lamella layers', version: 1, parts: [{ label: 'bars' }], layers }));
+  lamella('view', 'bars.json');
+  const { page } = await open('bars.html', { width: 800 });
+  await shown(page);
+  assert.equal(await page.locator('p.fault').textContent(), '1,600 crossings; of the crossings the first 1,000 are marked');
+  assert.match(await page.locator('.row.fault', { hasText: 'Crossings' }).textContent(), /1,600/);
+  assert.equal(await page.locator('#verdict').isVisible(), true, 'on a small screen, too');
+});
