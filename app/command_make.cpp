@@ -251,10 +251,8 @@ int run_make(const MakeArguments& arguments, const Context& context) {
     const Transform pose = arguments.pose.pose();
     const std::string output = arguments.output.empty() ? arguments.body + ".stl" : arguments.output;
 
-    if (arguments.output.empty())
-        check_outputs(context.command, {{"the body", output}});
-    else
-        check_outputs(context.command);
+    check_outputs(context.command, arguments.output.empty() ? std::vector<NamedFile>{{"the body", output}}
+                                                            : std::vector<NamedFile>{});
     check_extension(output);
     const Made made = can_stream(output, arguments) ? stream_lattice(output, arguments, pose)
                                                     : make_whole(output, arguments, body, pose);

@@ -401,10 +401,10 @@ void check_files_of_team(const Command& command) {
 void check_job_of_team(const Command& command, const FileJob& job, Communicator& processes) {
     const std::vector<std::string> all = processes.gather(job_parameters(command, job).dump());
     for (const std::string& other : all)
-        if (other != all.front())
+        if (const std::string difference = first_difference(Json::parse(all.front()), Json::parse(other));
+            !difference.empty())
             throw Error(ErrorKind::usage,
-                        fmt::format("the processes were not given one job: {}",
-                                    first_difference(Json::parse(all.front()), Json::parse(other))));
+                        fmt::format("the processes were not given one job: {}", difference));
 }
 
 /// The statistics and the stamp are written when all else is done, so nobody shall slice for hours what

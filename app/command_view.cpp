@@ -122,10 +122,8 @@ std::string output_of(const ViewArguments& arguments) {
 
 int run_view(const ViewArguments& arguments, const Context& context) {
     const std::string output = output_of(arguments);
-    if (arguments.output.empty())
-        check_outputs(context.command, {{"the page", output}});
-    else
-        check_outputs(context.command);
+    check_outputs(context.command, arguments.output.empty() ? std::vector<NamedFile>{{"the page", output}}
+                                                            : std::vector<NamedFile>{});
     const Execution execution = arguments.run.execution(context);
     auto read = read_any(arguments.input, arguments.limits.of_meshes(), execution);
     auto* const file = std::get_if<LayerFile>(&read);

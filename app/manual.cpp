@@ -83,10 +83,11 @@ std::string manual_page(std::span<const Command> commands) {
     text += ".SH EXIT STATUS\n";
     for (const ExitCode& code : exit_codes())
         text += tagged(std::to_string(code.code), code.meaning);
-    text += ".SH ENVIRONMENT\n" +
-            tagged("TMPDIR", "the folder of temporary files, of meshes and outputs that do not fit into memory; "
-                             "/var/tmp unless set") +
-            tagged("SOURCE_DATE_EPOCH", "seconds since 1970 that files tell as the time when they were made");
+    text +=
+        ".SH ENVIRONMENT\n" +
+        tagged("TMPDIR", "the folder of temporary files, of meshes and outputs that do not fit into memory; "
+                         "/var/tmp unless set") +
+        tagged("SOURCE_DATE_EPOCH", "seconds since 1970 that files tell as the time when they were made");
     return text;
 }
 

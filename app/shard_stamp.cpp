@@ -106,9 +106,9 @@ Stamped stamped(const std::string& path, const Execution& execution) {
 void check_origins(const Stamped& a, const Stamped& b) {
     const Json& of_a = a.stamp["origin"];
     const Json& of_b = b.stamp["origin"];
-    if (of_a != of_b)
+    if (const std::string difference = first_difference(of_a, of_b); !difference.empty())
         throw Error(ErrorKind::input, fmt::format("{} and {} are not shards of one job: by their stamps {}",
-                                                  a.path, b.path, first_difference(of_a, of_b)));
+                                                  a.path, b.path, difference));
 }
 
 } // namespace
@@ -118,7 +118,10 @@ std::string stamp_path(const std::string& output) {
 }
 
 std::string first_difference(const Json& one, const Json& other) {
-    const Json::json_pointer first(Json::diff(one, other).at(0).at("path").get<std::string>());
+    const Json changes = Json::diff(one, other); // in whatever order keys are
+    if (changes.empty())
+        return {};
+    const Json::json_pointer first(changes[0]["path"].get<std::string>());
     const auto told = [&](const Json& object) {
         return object.contains(first) ? object[first].dump() : "nothing";
     };
@@ -134,10 +137,7 @@ Json job_parameters(const Command& command, const FileJob& job) {
         for (const Option& option : group.options)
             if (option.of_each_file)
                 options.erase(option.name);
-    // Given or not, they stand in one place: the order counts.
-    for (const std::string_view name : {"units-mm", "short"})
-        options.erase(std::string(name));
-    options["units-mm"] = job.write.units_mm;
+    options["units-mm"] = job.write.units_mm; // given or not
     options["short"] = job.write.short_form;
     if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
         options["z-list"] = listed->z;
@@ -173,7 +173,7 @@ bool is_finished_shard(const FileJob& job, const std::string& stats, const Json&
         const Json file = file_json(path, execution);
         return !file.is_null() && stamp.value(key, Json()) == file;
     };
-    return stamp.is_object() && stamp.value("origin", Json()) == origin &&
+    return stamp.is_object() && first_difference(stamp.value("origin", Json()), origin).empty() &&
            stamp.value("shard", Json()) == Json(job.shard->number) && has("output", job.output) &&
            has("stats", stats) && has("report", job.report.path);
 }

@@ -23,7 +23,7 @@ namespace lamella::app {
 
 /// What decides the bytes of a job's output, but for the content of its inputs: version, format, options.
 [[nodiscard]] Json job_parameters(const Command& command, const FileJob& job);
-/// What two such objects, or two origins, that are not the same differ in first, and how.
+/// What two such objects, or two origins, differ in first, and how; "" where they say the same.
 [[nodiscard]] std::string first_difference(const Json& one, const Json& other);
 
 /// What decides the bytes of the shard: the same, and the content of all inputs. Reads the inputs once.

@@ -61,8 +61,12 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     const Point2 origin =
         box.empty() ? Point2{} : Point2{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
     LayerSteps steps = steps_to_repeat(options.steps);
-    const auto sections_by_steps = [&] {
-        return at_moved_cuts(layers, options.granted(), options.rule, [&](const Plan& plan) {
+    std::vector<std::vector<AreaMoments>> sections(layers.size());
+    const double limit = steps.offset_corners.mitre_limit;
+    const bool has_mitres = steps.offset_mm != 0 && steps.offset_corners.shape == OffsetCorner::mitre;
+    for (const double tried : has_mitres ? limits_of_mitres(limit, options.granted()) : std::vector{limit}) {
+        steps.offset_corners.mitre_limit = tried;
+        const auto found = at_moved_cuts(layers, options.granted(), options.rule, [&](const Plan& plan) {
             if (!steps.any())
                 return section_moments(*options.mesh, plan, origin, execution);
             std::vector<AreaMoments> made;
@@ -70,18 +74,9 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
                 made.push_back(area_moments(layer, origin));
             return made;
         });
-    };
-    auto sections = sections_by_steps();
-    if (steps.offset_mm != 0 && steps.offset_corners.shape == OffsetCorner::mitre)
-        for (const double limit :
-             limits_of_mitres(options.steps.offset_corners.mitre_limit, options.granted())) {
-            if (limit == options.steps.offset_corners.mitre_limit)
-                continue;
-            steps.offset_corners.mitre_limit = limit;
-            const auto others = sections_by_steps();
-            for (std::size_t i = 0; i < layers.size(); ++i)
-                sections[i].insert(sections[i].end(), others[i].begin(), others[i].end());
-        }
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            sections[i].insert(sections[i].end(), found[i].begin(), found[i].end());
+    }
     struct Own {
         AreaMoments moments;
         double tolerance = 0; // of the area

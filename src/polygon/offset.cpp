@@ -66,17 +66,11 @@ class Boundaries {
     // Bodies that fit in one another are united first: of each ring other points may be straight.
     explicit Boundaries(const Layer& layer) {
         const Overlay overlay(layer);
-        const auto set = [this](const Layer& material, const Nesting& nest) {
-            layer_ = without_straight_points(material, ClippingGrid(material.points.span()).unit());
-            polygons_ = polygons(nest);
-        };
-        if (overlay.clean()) {
-            set(layer, overlay.nest());
-        } else {
-            const Layer material =
-                overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
-            set(material, nesting(material));
-        }
+        const Layer material =
+            overlay.clean() ? layer
+                            : overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
+        layer_ = without_straight_points(material, ClippingGrid(material.points.span()).unit());
+        polygons_ = polygons(overlay.clean() ? overlay.nest() : nesting(material));
     }
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }

@@ -57,7 +57,7 @@ struct ScanMemory::Insets {
     Insets(Layer of, std::vector<double> by)
         : layer(std::move(of)), distances(std::move(by)), moved(offsets(layer, distances, {}, &thin_rings)) {
         for (std::size_t i = 0; i < distances.size(); ++i)
-            if (distances[i] == 0) // not looked at
+            if (distances[i] == 0) // not looked at, and without its straight points rings may meet again
                 moved[i] = united(layer);
     }
 

@@ -129,20 +129,14 @@ class IltWriter final : public OrderedWriter {
 
     std::vector<std::string> warnings() const override {
         std::vector<std::string> lines = OrderedWriter::warnings();
-        std::vector<std::pair<std::string, std::size_t>>
-            told; // and so many sections after the first that say it
+        std::map<std::string, std::vector<std::string_view>> told; // and by which sections
         for (std::size_t i = 0; i < sections_.size(); ++i)
-            for (const std::string& line : entries_[i].writer->warnings()) {
-                const auto same = std::find_if(told.begin(), told.end(), [&](const auto& one) {
-                    return std::string_view(one.first).ends_with(": " + line);
-                });
-                if (same != told.end())
-                    ++same->second;
-                else
-                    told.emplace_back(fmt::format("{}: {}", sections_[i].name, line), 0);
-            }
-        for (const auto& [line, more] : told)
-            lines.push_back(more == 0 ? line : fmt::format("{} (and in {} more of its files)", line, more));
+            for (const std::string& line : entries_[i].writer->warnings())
+                told[line].push_back(sections_[i].name);
+        for (const auto& [line, by] : told)
+            lines.push_back(fmt::format(
+                "{}: {}{}", by.front(), line,
+                by.size() == 1 ? "" : fmt::format(" (and in {} more of its files)", by.size() - 1)));
         return lines;
     }
 

@@ -196,6 +196,10 @@ class Shard(ProgramTest):
         self.succeed("merge", "m.cli", "a.cli", "b.cli")
         self.succeed("slice", "part.stl", "-o", "whole.cli", "--translate", "1,2,3")
         self.assertEqual(self.bytes_of("m.cli"), self.bytes_of("whole.cli"))
+        self.write("usual.toml", self.succeed("strategy", "show").text)
+        self.succeed("slice", "part.stl", "--scan", "-o", "c.cli", "--shard", "1/2")
+        self.succeed("slice", "part.stl", "--scan", "--strategy", "usual.toml", "-o", "d.cli", "--shard", "2/2")
+        self.succeed("merge", "n.cli", "c.cli", "d.cli")
 
     def test_merge_obeys_options_of_the_output_also_where_files_could_be_joined(self):
         self.lattice()
