@@ -26,10 +26,10 @@ def walls(points, height):
         yield (ax, ay, 0), (bx, by, height), (ax, ay, height)
 
 
-def even_triangles(n):
-    """Of sides of some 8.7 mm, each turned a little more, side by side."""
+def even_triangles(n, angle=0.3, more=0.1):
+    """Of sides of some 8.7 mm, side by side, each turned by so much more."""
     for k in range(n):
-        angles = [0.3 + 0.1 * k + i * math.tau / 3 for i in range(3)]
+        angles = [angle + more * k + i * math.tau / 3 for i in range(3)]
         yield [(20 * k + 5 * math.cos(a), 5 * math.sin(a)) for a in angles]
 
 
@@ -72,15 +72,16 @@ class Vectors(ProgramTest):
                 self.verify("job.cli", "--mesh", "rook.stl", "--scan", *options)
 
     def test_holes_with_corners_of_60_degrees_that_were_rounded_are_right(self):
-        # At the limit of mitres the last digit decides whether a tip is cut off.
-        triangles = list(walls([(-10, -10), (240, -10), (240, 10), (-10, 10)], 1))
-        for hole in even_triangles(12):
-            triangles += walls(hole[::-1], 1)
-        self.write("plate.stl", binary_stl(triangles))
-        self.succeed("slice", "plate.stl", "-o", "plate.svg")
+        # At the limit of mitres the last digit decides whether a tip is cut off, alike in holes that are turned alike.
         options = ["--scan", "--contours", "3", "--contour-distance", "1"]
-        self.succeed("scan", "plate.svg", "-o", "job.cli", *options[1:])
-        self.verify("job.cli", "--mesh", "plate.stl", "--tolerance", "0.001", *options)
+        for angle in [0.6, 0.7, 0.9, 1.1]:
+            triangles = list(walls([(-10, -10), (240, -10), (240, 10), (-10, 10)], 1))
+            for hole in even_triangles(12, angle, 0):
+                triangles += walls(hole[::-1], 1)
+            self.write("plate.stl", binary_stl(triangles))
+            self.succeed("slice", "plate.stl", "-o", "plate.svg")
+            self.succeed("scan", "plate.svg", "-o", "job.cli", *options[1:])
+            self.verify("job.cli", "--mesh", "plate.stl", "--tolerance", "0.001", *options)
 
     def test_another_strategy_or_mesh_is_noticed(self):
         self.succeed("slice", "rook.stl", "--scan", *self.OPTIONS, "-o", "job.ilt")
