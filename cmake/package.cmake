@@ -3,6 +3,7 @@
 # Debian has these two in places of its own, where `cmake --install` does not put them.
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE own_licence)
 file(READ ${PROJECT_SOURCE_DIR}/LICENSES-third-party.txt other_licences)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS LICENSE LICENSES-third-party.txt)
 file(CONFIGURE OUTPUT copyright CONTENT "@own_licence@\n@other_licences@" @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT debian EXCLUDE_FROM_ALL)
 install(FILES ${PROJECT_BINARY_DIR}/app/_lamella DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions

@@ -101,7 +101,7 @@ class Dist(unittest.TestCase):
         architecture = run("dpkg", "--print-architecture").strip()
         depends = run("dpkg-deb", "--field", package, "Depends").strip()
         needed = [dependency.split()[0] for dependency in depends.split(", ")]
-        self.assertTrue({"libc6", "libexpat1", "libfmt9"} <= set(needed), depends)
+        self.assertEqual(needed, ["libc6"])  # all else is in the program
         there = [run("dpkg-query", "--status", f"{name}:{architecture}") for name in needed]
         (database / "status").write_text("\n".join(there), encoding="utf-8")
         environment = dict(os.environ, PATH=f"{os.environ['PATH']}:/usr/sbin:/sbin")
@@ -115,7 +115,8 @@ class Dist(unittest.TestCase):
             "usr/share/man/man1/lamella.1",
             "usr/share/zsh/vendor-completions/_lamella",
         })
-        for notice in ["The Lamella authors", "Niels Lohmann", "Yann Collet", "three.js authors"]:
+        for notice in ["The Lamella authors", "Niels Lohmann", "Yann Collet", "three.js authors", "Expat maintainers",
+                       "Eric Biggers", "Victor Zverovich"]:
             self.assertIn(notice, (root / "usr/share/doc/lamella/copyright").read_text(encoding="utf-8"))
         version = run("dpkg-query", f"--admindir={database}", "--show", "--showformat=${Version}", "lamella")
         self.assertEqual(run(root / "usr/bin/lamella", "--version").split()[1], version)
