@@ -174,11 +174,12 @@ Layer nest(int n) {
     return layer_of(rings);
 }
 
-/// Hooks above one another: all chains begin and end at the same x.
+/// Hooks above one another: all chains begin and end at the same x, and each ends closest to where the next
+/// one begins.
 Layer column_of_hooks(int n) {
     std::vector<Contour> chains;
     for (int i = 0; i < n / 3; ++i)
-        chains.push_back({{0, 1.0 * i}, {-1, i + 0.2}, {0, i + 0.4}});
+        chains.push_back({{0, 1.0 * i}, {-1, i + 0.3}, {0, i + 0.6}});
     return layer_of({}, chains);
 }
 
@@ -237,7 +238,7 @@ Timed compare_fins(int n) {
 Timed join_hooks(int n) {
     const Layer layer = column_of_hooks(n);
     const auto start = Clock::now();
-    const ClosedGaps closed = close_gaps(layer, 0.7);
+    const ClosedGaps closed = close_gaps(layer, 0.5);
     return {seconds_since(start), layer.points.size(),
             closed.layer.open_chains() == 1 && closed.refused == 0};
 }
