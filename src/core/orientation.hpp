@@ -58,7 +58,7 @@ namespace lamella {
 /// size is above 1e-200, and so is that of the outer product.
 class Plane {
   public:
-    Plane(const Point3& a, const Point3& b, const Point3& c) noexcept : origin_(a) {
+    Plane(const Point3& a, const Point3& b, const Point3& c) noexcept : a_(a), b_(b), c_(c) {
         const Point3 p{b.x - a.x, b.y - a.y, b.z - a.z};
         const Point3 q{c.x - a.x, c.y - a.y, c.z - a.z};
         normal_ = {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
@@ -69,7 +69,7 @@ class Plane {
     /// +1 or -1 where that is certain, as `orientation` of the three points and d; else 0.
     [[nodiscard]] int likely_side(const Point3& d) const noexcept {
         constexpr double u = 0x1p-53;
-        const Point3 r{d.x - origin_.x, d.y - origin_.y, d.z - origin_.z};
+        const Point3 r{d.x - a_.x, d.y - a_.y, d.z - a_.z};
         const double det = normal_.x * r.x + normal_.y * r.y + normal_.z * r.z;
         const double size = sizes_.x * std::abs(r.x) + sizes_.y * std::abs(r.y) + sizes_.z * std::abs(r.z);
         const double factor = std::max({std::abs(r.x), std::abs(r.y), std::abs(r.z)});
@@ -77,9 +77,23 @@ class Plane {
             return det > 0 ? 1 : -1;
         return 0;
     }
+    /// Certain always, and 0 in the plane.
+    [[nodiscard]] int side(const Point3& d) const noexcept {
+        const int likely = likely_side(d);
+        if (likely != 0)
+            return likely;
+        // Flat in a coordinate plane: the usual way to be coplanar.
+        const auto level = [&](double Point3::*k) {
+            return a_.*k == b_.*k && a_.*k == c_.*k && a_.*k == d.*k;
+        };
+        return level(&Point3::x) || level(&Point3::y) || level(&Point3::z) ? 0
+                                                                           : exact_orientation(a_, b_, c_, d);
+    }
 
   private:
-    Point3 origin_;
+    Point3 a_;
+    Point3 b_;
+    Point3 c_;
     Point3 normal_;
     Point3 sizes_; ///< what `normal_` would be if nothing cancelled
 };
@@ -90,14 +104,7 @@ class Plane {
 /// Exact for all finite coordinates.
 [[nodiscard]] inline int orientation(const Point3& a, const Point3& b, const Point3& c,
                                      const Point3& d) noexcept {
-    const int likely = Plane(a, b, c).likely_side(d);
-    if (likely != 0)
-        return likely;
-    // Flat in a coordinate plane: the usual way to be coplanar.
-    const auto level = [&](double Point3::*k) {
-        return a.*k == b.*k && a.*k == c.*k && a.*k == d.*k;
-    };
-    return level(&Point3::x) || level(&Point3::y) || level(&Point3::z) ? 0 : exact_orientation(a, b, c, d);
+    return Plane(a, b, c).side(d);
 }
 
 } // namespace lamella

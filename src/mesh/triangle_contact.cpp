@@ -167,33 +167,36 @@ bool flat(const Triangle3& t) noexcept {
     return true;
 }
 
-std::optional<MeetingKind> contact(const NamedTriangle& p, const NamedTriangle& q) noexcept {
-    const Shared shared = shared_corners(p, q);
+// Triangles in different planes follow Guigue and Devillers (2003): with the corner that is alone on its side
+// of the other's plane first, each triangle meets the line of both planes in an interval whose ends are
+// compared by the orientation of four corners.
+std::optional<MeetingKind> ContactSeeker::with_close_one(const NamedTriangle& other) const noexcept {
+    const Shared shared = shared_corners(triangle_, other);
     if (shared.count >= 3)
         return MeetingKind::overlapping;
-    const auto signs_by = [](const NamedTriangle& plane, const NamedTriangle& of) {
+    const auto signs_by = [](const NamedTriangle& of_plane, const Plane& plane, const NamedTriangle& of) {
         Signs signs{};
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t name = of.names[k];
             const bool shared_corner =
-                name == plane.names[0] || name == plane.names[1] || name == plane.names[2];
-            const Triangle3& t = plane.corners;
-            signs[k] = shared_corner ? 0 : orientation(t[0], t[1], t[2], of.corners[k]);
+                name == of_plane.names[0] || name == of_plane.names[1] || name == of_plane.names[2];
+            signs[k] = shared_corner ? 0 : plane.side(of.corners[k]);
         }
         return signs;
     };
-    const Signs q_signs = signs_by(p, q);
-    if (same(q_signs, 1) || same(q_signs, -1))
+    const Signs other_signs = signs_by(triangle_, plane_, other);
+    if (same(other_signs, 1) || same(other_signs, -1))
         return std::nullopt;
-    if (same(q_signs, 0))
-        return contact_in_a_plane(p.corners, q.corners, shared);
+    if (same(other_signs, 0))
+        return contact_in_a_plane(triangle_.corners, other.corners, shared);
     const bool share_a_corner = shared.count == 1;
-    if (shared.count == 2 || (share_a_corner && in_a_point(q_signs)))
+    if (shared.count == 2 || (share_a_corner && in_a_point(other_signs)))
         return std::nullopt;
-    const Signs p_signs = signs_by(q, p);
-    if (same(p_signs, 1) || same(p_signs, -1) || (share_a_corner && in_a_point(p_signs)))
+    const Plane other_plane(other.corners[0], other.corners[1], other.corners[2]);
+    const Signs signs = signs_by(other, other_plane, triangle_);
+    if (same(signs, 1) || same(signs, -1) || (share_a_corner && in_a_point(signs)))
         return std::nullopt;
-    return contact_in_a_line(p.corners, q.corners, p_signs, q_signs, share_a_corner);
+    return contact_in_a_line(triangle_.corners, other.corners, signs, other_signs, share_a_corner);
 }
 
 Point3 contact_place(const Triangle3& p, const Triangle3& q, MeetingKind kind) noexcept {

@@ -23,33 +23,33 @@ struct NamedTriangle {
 /// Its corners lie on a line (or in a point).
 [[nodiscard]] bool flat(const Triangle3& t) noexcept;
 
-/// None where they have nothing in common but vertices, or an edge. Neither triangle is flat. Symmetric, and
-/// the same whichever way round they run. Exact for all finite coordinates.
-///
-/// Triangles in different planes follow Guigue and Devillers (2003): with the corner that is alone on its
-/// side of the other's plane first, each triangle meets the line of both planes in an interval whose ends are
-/// compared by the orientation of four corners.
-[[nodiscard]] std::optional<MeetingKind> contact(const NamedTriangle& p, const NamedTriangle& q) noexcept;
-
-/// A triangle that is compared with many others.
+/// A triangle that is compared with others.
 class ContactSeeker {
   public:
     explicit ContactSeeker(const NamedTriangle& t) noexcept
         : triangle_(t), plane_(t.corners[0], t.corners[1], t.corners[2]) {}
 
-    /// contact(t, other), sooner: mostly all of `other` lies on one side.
+    /// None where they have nothing in common but vertices, or an edge. Neither triangle is flat. Symmetric,
+    /// and the same whichever way round they run. Exact for all finite coordinates.
     [[nodiscard]] std::optional<MeetingKind> with(const NamedTriangle& other) const noexcept {
         const int side = plane_.likely_side(other.corners[0]);
         if (side != 0 && side == plane_.likely_side(other.corners[1]) &&
             side == plane_.likely_side(other.corners[2]))
-            return std::nullopt;
-        return contact(triangle_, other);
+            return std::nullopt; // mostly
+        return with_close_one(other);
     }
 
   private:
+    [[nodiscard]] std::optional<MeetingKind> with_close_one(const NamedTriangle& other) const noexcept;
+
     NamedTriangle triangle_;
     Plane plane_;
 };
+
+[[nodiscard]] inline std::optional<MeetingKind> contact(const NamedTriangle& p,
+                                                        const NamedTriangle& q) noexcept {
+    return ContactSeeker(p).with(q);
+}
 
 /// About where: the middle of what triangles that cross have in common, or of the part of their boxes in
 /// common.
