@@ -47,6 +47,72 @@ struct Frame {
     }
 };
 
+/// About where two segments cross: within some rounding errors of both. It is computed along the shorter one,
+/// where an error of the parameter moves it least.
+Point2 place_of_crossing(Segment s, Segment t) noexcept {
+    const auto squared_length = [](const Segment& of) {
+        return (of.hi.x - of.lo.x) * (of.hi.x - of.lo.x) + (of.hi.y - of.lo.y) * (of.hi.y - of.lo.y);
+    };
+    if (squared_length(t) < squared_length(s))
+        std::swap(s, t);
+    const Point2 along{t.hi.x - t.lo.x, t.hi.y - t.lo.y};
+    const auto height = [&](const Point2& p) {
+        return along.x * (p.y - t.lo.y) - along.y * (p.x - t.lo.x);
+    };
+    double share = height(s.lo) / (height(s.lo) - height(s.hi));
+    share = share == share ? std::clamp(share, 0.0, 1.0) : 0.5; // it is not a number for 0 / 0
+    // Where the two are all but parallel the share means little, but then they are all but the same as far as
+    // they run side by side, which is as far as their boxes overlap.
+    const auto within = [](double value, double a, double b, double c, double d) {
+        const double first = std::max(std::min(a, b), std::min(c, d));
+        return std::max(first, std::min(value, std::min(std::max(a, b), std::max(c, d))));
+    };
+    return {within(s.lo.x + share * (s.hi.x - s.lo.x), s.lo.x, s.hi.x, t.lo.x, t.hi.x),
+            within(s.lo.y + share * (s.hi.y - s.lo.y), s.lo.y, s.hi.y, t.lo.y, t.hi.y)};
+}
+
+/// Some of the segments, of which every crossing has one: when two neighbours on the line of a sweep cross,
+/// both are set aside. They are at most twice as many as the fewest segments without which there would be no
+/// crossing, so that one stray segment through a thousand walls costs two rounds, not a thousand. None where
+/// nothing crosses.
+std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
+    SweepStatus status(segments);
+    std::vector<bool> set_aside(segments.size(), false);
+    bool any_set_aside = false;
+    // Tests two neighbours, and then those on both sides of the gap that they make.
+    const auto test_neighbours = [&](std::uint32_t lower, std::uint32_t upper) {
+        while (lower != SweepStatus::none && upper != SweepStatus::none &&
+               cross(segments[lower], segments[upper])) {
+            const std::uint32_t below = status.below(lower);
+            const std::uint32_t above = status.above(upper);
+            for (const std::uint32_t i : {lower, upper}) {
+                status.erase(i);
+                set_aside[i] = true;
+            }
+            any_set_aside = true;
+            lower = below;
+            upper = above;
+        }
+    };
+    for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::ends_first)) {
+        if (set_aside[i])
+            continue;
+        if (begins) {
+            status.insert(i);
+            test_neighbours(status.below(i), i);
+            if (!set_aside[i])
+                test_neighbours(i, status.above(i));
+        } else {
+            const std::uint32_t below = status.below(i);
+            const std::uint32_t above = status.above(i);
+            status.erase(i);
+            test_neighbours(below, above);
+        }
+    }
+    assert(status.empty());
+    return any_set_aside ? set_aside : std::vector<bool>();
+}
+
 /// All proper crossings of a layer. A grid divides the segments into cells with a few of them; cells with
 /// many are divided again. Where most segments are long for their cell no grid parts them (many walls side by
 /// side, aslant); there a sweep finds in O(m log m) that nothing crosses, or a few segments that have a part
@@ -150,6 +216,11 @@ class CrossingSearch {
         return {frame_.local(s.lo), frame_.local(s.hi)};
     }
 
+    /// In local coordinates.
+    [[nodiscard]] Point2 place(const Pair& pair) const noexcept {
+        return place_of_crossing(local(segments_[pair.a]), local(segments_[pair.b]));
+    }
+
     void search_all_pairs(const Box2& cell, std::span<const SegmentId> ids) {
         for (std::size_t i = 0; i < ids.size() && count_ < enough_; ++i)
             for (std::size_t j = i + 1; j < ids.size(); ++j)
@@ -180,75 +251,13 @@ class CrossingSearch {
         first_.erase(end, first_.end());
     }
 
-    /// About where the two cross, in local coordinates: within some rounding errors of both segments. It is
-    /// computed along the shorter one, where an error of the parameter moves it least.
-    [[nodiscard]] Point2 place(const Pair& pair) const noexcept {
-        const auto squared_length = [](const Segment& s) {
-            return (s.hi.x - s.lo.x) * (s.hi.x - s.lo.x) + (s.hi.y - s.lo.y) * (s.hi.y - s.lo.y);
-        };
-        Segment s = local(segments_[pair.a]);
-        Segment t = local(segments_[pair.b]);
-        if (squared_length(t) < squared_length(s))
-            std::swap(s, t);
-        const Point2 along{t.hi.x - t.lo.x, t.hi.y - t.lo.y};
-        const auto height = [&](const Point2& p) {
-            return along.x * (p.y - t.lo.y) - along.y * (p.x - t.lo.x);
-        };
-        double share = height(s.lo) / (height(s.lo) - height(s.hi));
-        share = share == share ? std::clamp(share, 0.0, 1.0) : 0.5; // it is not a number for 0 / 0
-        // Where the two are all but parallel the share means little, but then they are all but the same as
-        // far as they run side by side, which is as far as their boxes overlap.
-        const auto within = [](double value, double a, double b, double c, double d) {
-            const double first = std::max(std::min(a, b), std::min(c, d));
-            return std::max(first, std::min(value, std::min(std::max(a, b), std::max(c, d))));
-        };
-        return {within(s.lo.x + share * (s.hi.x - s.lo.x), s.lo.x, s.hi.x, t.lo.x, t.hi.x),
-                within(s.lo.y + share * (s.hi.y - s.lo.y), s.lo.y, s.hi.y, t.lo.y, t.hi.y)};
-    }
-
-    /// When two neighbours on the line of a sweep cross, both are set aside: every crossing has one of those
-    /// that were. They are at most twice as many as the fewest segments without which there would be no
-    /// crossing, so that one stray segment through a thousand walls costs two rounds, not a thousand.
     void search_by_sweep(const Box2& cell, std::span<const SegmentId> ids) {
         std::vector<Segment> segments;
         segments.reserve(ids.size());
         for (const SegmentId id : ids)
             segments.push_back(segments_[id]);
-        SweepStatus status(segments);
-        std::vector<bool> set_aside(ids.size(), false);
-        bool any_set_aside = false;
-        // Tests two neighbours, and then those on both sides of the gap that they make.
-        const auto test_neighbours = [&](std::uint32_t lower, std::uint32_t upper) {
-            while (lower != SweepStatus::none && upper != SweepStatus::none &&
-                   cross(segments[lower], segments[upper])) {
-                const std::uint32_t below = status.below(lower);
-                const std::uint32_t above = status.above(upper);
-                for (const std::uint32_t i : {lower, upper}) {
-                    status.erase(i);
-                    set_aside[i] = true;
-                }
-                any_set_aside = true;
-                lower = below;
-                upper = above;
-            }
-        };
-        for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::ends_first)) {
-            if (set_aside[i])
-                continue;
-            if (begins) {
-                status.insert(i);
-                test_neighbours(status.below(i), i);
-                if (!set_aside[i])
-                    test_neighbours(i, status.above(i));
-            } else {
-                const std::uint32_t below = status.below(i);
-                const std::uint32_t above = status.above(i);
-                status.erase(i);
-                test_neighbours(below, above);
-            }
-        }
-        assert(status.empty());
-        if (any_set_aside)
+        const std::vector<bool> set_aside = one_of_each_crossing(segments);
+        if (!set_aside.empty())
             search_side_by_side(cell, ids, set_aside);
     }
 

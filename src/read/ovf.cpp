@@ -190,15 +190,87 @@ class JobShell {
     double layer_thickness_ = 0;
 };
 
+/// Where the messages of a file lie, each of which may be read once.
+class OvfMessages {
+  public:
+    OvfMessages(std::string_view bytes, const std::string& name, ReadLimits& limits, ProgressMeter& progress)
+        : bytes_(bytes), name_(name), limits_(limits), progress_(progress) {}
+
+    [[noreturn]] void fail(std::uint64_t place, const std::string& found, const std::string& expected) const {
+        throw Error(ErrorKind::input,
+                    fmt::format("{}, byte {}: found {}; {}", name_, place, found, expected));
+    }
+
+    /// The number of 64 bits that says where something lies.
+    std::uint64_t position_at(std::uint64_t place) const {
+        std::int64_t position = 0;
+        if (place > bytes_.size() || bytes_.size() - place < sizeof position)
+            fail(place, "the end of the file", "the place of a table must stand here");
+        std::memcpy(&position, bytes_.data() + place, sizeof position);
+        if (position < 0 || static_cast<std::uint64_t>(position) >= bytes_.size())
+            fail(place, fmt::format("a table at byte {}", position),
+                 fmt::format("the file has {}", bytes_.size()));
+        return static_cast<std::uint64_t>(position);
+    }
+
+    /// The message at `place`. Any number of tables may name the same one: were it read again each time, a
+    /// small file would take long.
+    ProtobufReader at(std::uint64_t place) {
+        std::uint64_t end = place;
+        ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
+        progress_.add(end - place);
+        const auto next = taken_.upper_bound(place);
+        const auto last = next == taken_.begin() ? taken_.end() : std::prev(next);
+        if ((next != taken_.end() && next->first < end) || (last != taken_.end() && last->second > place))
+            fail(place, "a table, a head or a block once more", "work planes must share none");
+        if (last != taken_.end() && last->second == place) {
+            last->second = end;
+        } else {
+            limits_.add_bytes_at(node_bytes, at_byte(place));
+            taken_.emplace_hint(next, place, end);
+        }
+        return fields;
+    }
+
+    Table table_at(std::uint64_t place) {
+        Table table;
+        ProtobufReader fields = at(place);
+        while (fields.next()) {
+            const auto position = [&](std::int64_t value) {
+                if (value < 0 || static_cast<std::uint64_t>(value) >= bytes_.size())
+                    fields.fail(fmt::format("a message at byte {}", value),
+                                fmt::format("the file has {}", bytes_.size()));
+                return static_cast<std::uint64_t>(value);
+            };
+            if (fields.field() == ovf::table::shell)
+                table.shell = position(fields.integer());
+            else if (fields.field() == ovf::table::positions)
+                fields.integers([&](std::int64_t value) {
+                    limits_.make_room(table.positions, 1, at_byte(fields.place()));
+                    table.positions.push_back(position(value));
+                });
+        }
+        return table;
+    }
+
+  private:
+    std::string_view bytes_;
+    const std::string& name_;
+    ReadLimits& limits_;
+    ProgressMeter& progress_;
+    std::map<std::uint64_t, std::uint64_t> taken_; ///< from where to where
+};
+
 class OvfReader {
   public:
     OvfReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
               const Execution& execution)
         : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
-          progress_(execution, Stage::read, bytes.size()), job_(name, limits), parts_(limits) {}
+          progress_(execution, Stage::read, bytes.size()), messages_(bytes, name, limits, progress_),
+          job_(name, limits), parts_(limits) {}
 
     void read() {
-        const Table planes = read_table(position_at(ovf::magic.size()));
+        const Table planes = messages_.table_at(messages_.position_at(ovf::magic.size()));
         job_.read(bytes_, planes.shell);
         for (const std::uint64_t plane : planes.positions)
             read_plane(plane);
@@ -219,72 +291,15 @@ class OvfReader {
     }
 
   private:
-    [[noreturn]] void fail(std::uint64_t place, const std::string& found, const std::string& expected) const {
-        throw Error(ErrorKind::input,
-                    fmt::format("{}, byte {}: found {}; {}", name_, place, found, expected));
-    }
-
-    /// The number of 64 bits that says where something lies.
-    std::uint64_t position_at(std::uint64_t place) const {
-        std::int64_t position = 0;
-        if (place > bytes_.size() || bytes_.size() - place < sizeof position)
-            fail(place, "the end of the file", "the place of a table must stand here");
-        std::memcpy(&position, bytes_.data() + place, sizeof position);
-        if (position < 0 || static_cast<std::uint64_t>(position) >= bytes_.size())
-            fail(place, fmt::format("a table at byte {}", position),
-                 fmt::format("the file has {}", bytes_.size()));
-        return static_cast<std::uint64_t>(position);
-    }
-
-    /// The message at `place`. Any number of tables may name the same one: were it read again each time, a
-    /// small file would take long.
-    ProtobufReader message_at(std::uint64_t place) {
-        std::uint64_t end = place;
-        ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
-        progress_.add(end - place);
-        const auto next = taken_.upper_bound(place);
-        const auto last = next == taken_.begin() ? taken_.end() : std::prev(next);
-        if ((next != taken_.end() && next->first < end) || (last != taken_.end() && last->second > place))
-            fail(place, "a table, a head or a block once more", "work planes must share none");
-        if (last != taken_.end() && last->second == place) {
-            last->second = end;
-        } else {
-            limits_.add_bytes_at(node_bytes, at_byte(place));
-            taken_.emplace_hint(next, place, end);
-        }
-        return fields;
-    }
-
-    Table read_table(std::uint64_t place) {
-        Table table;
-        ProtobufReader fields = message_at(place);
-        while (fields.next()) {
-            const auto position = [&](std::int64_t value) {
-                if (value < 0 || static_cast<std::uint64_t>(value) >= bytes_.size())
-                    fields.fail(fmt::format("a message at byte {}", value),
-                                fmt::format("the file has {}", bytes_.size()));
-                return static_cast<std::uint64_t>(value);
-            };
-            if (fields.field() == ovf::table::shell)
-                table.shell = position(fields.integer());
-            else if (fields.field() == ovf::table::positions)
-                fields.integers([&](std::int64_t value) {
-                    limits_.make_room(table.positions, 1, at_byte(fields.place()));
-                    table.positions.push_back(position(value));
-                });
-        }
-        return table;
-    }
-
     void read_plane(std::uint64_t begin) {
         executor_.check_cancelled();
-        const Table table = read_table(position_at(begin));
+        const Table table = messages_.table_at(messages_.position_at(begin));
         limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
         raw.place = fmt::format("byte {}", begin);
         std::int64_t blocks = 0; // that the plane announces
         std::uint64_t number = 0;
-        ProtobufReader shell = message_at(table.shell);
+        ProtobufReader shell = messages_.at(table.shell);
         while (shell.next()) {
             if (shell.field() == ovf::work_plane::z)
                 raw.z = finite_real(shell);
@@ -311,7 +326,7 @@ class OvfReader {
     }
 
     void read_block(std::uint64_t begin, RawLayer& raw) {
-        ProtobufReader fields = message_at(begin);
+        ProtobufReader fields = messages_.at(begin);
         BlockKind kind;
         std::optional<ProtobufReader> lines;
         std::optional<ProtobufReader> hatches;
@@ -338,8 +353,8 @@ class OvfReader {
         }
         const bool has_parameters = job_.has_parameters(kind.parameters);
         if (!has_parameters && kind.parameters != 0)
-            fail(begin, fmt::format("a block with parameters of the key {}", kind.parameters),
-                 "the job must have them");
+            messages_.fail(begin, fmt::format("a block with parameters of the key {}", kind.parameters),
+                           "the job must have them");
         if (!has_parameters)
             kind = {.part = kind.part}; // all that it has are of one part
         else if (!says_kind && lines)
@@ -380,14 +395,14 @@ class OvfReader {
         }
         const std::size_t item = numbers * sizeof(float);
         if (list.size() % item != 0)
-            fail(begin, fmt::format("vectors of {} bytes", list.size()),
-                 fmt::format("each point or line has {}", item));
+            messages_.fail(begin, fmt::format("vectors of {} bytes", list.size()),
+                           fmt::format("each point or line has {}", item));
         limits_.make_room(to, list.size() / (2 * sizeof(float)), at_byte(begin));
         for (std::size_t at = 0; at < list.size(); at += 2 * sizeof(float)) {
             float p[2];
             std::memcpy(p, list.data() + at, sizeof p);
             if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
-                fail(begin, "a point that is not finite", "coordinates must be numbers");
+                messages_.fail(begin, "a point that is not finite", "coordinates must be numbers");
             to.push_back({static_cast<double>(p[0]) + 0.0, static_cast<double>(p[1]) + 0.0});
         }
     }
@@ -439,11 +454,11 @@ class OvfReader {
     ReadLimits& limits_;
     Executor executor_;
     ProgressMeter progress_;
+    OvfMessages messages_;
     JobShell job_;
     std::vector<RawLayer> layers_;
     PartNumbers<BlockKind> parts_;
-    std::map<std::uint64_t, std::uint64_t> taken_; ///< by messages: from where to where
-    std::uint64_t last_number_ = 0;                ///< of a work plane
+    std::uint64_t last_number_ = 0; ///< of a work plane
     Oddity other_blocks_{"work plane announces another number of blocks than the file has",
                          "work planes announce another number of blocks than the file has"};
     Oddity other_numbers_{
