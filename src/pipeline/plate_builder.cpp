@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/counted.hpp"
 #include "core/distinct_names.hpp"
 #include "core/farthest.hpp"
 
@@ -121,10 +122,9 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
         box.add(instances.back().box);
     }
     if (input.copies > most_parts || instances_.size() + input.copies * instances.size() > most_parts)
-        throw Error(ErrorKind::limit,
-                    fmt::format("{}: {} {} of {} {} are too many: a plate holds at most {} parts", input.path,
-                                input.copies, input.copies == 1 ? "copy" : "copies", instances.size(),
-                                instances.size() == 1 ? "part" : "parts", most_parts));
+        throw Error(ErrorKind::limit, fmt::format("{}: {} of {} are too many: a plate holds at most {} parts",
+                                                  input.path, counted(input.copies, "copy", "copies"),
+                                                  counted(instances.size(), "part"), most_parts));
     const auto columns = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(input.copies))));
     for (std::uint64_t copy = 0; copy < input.copies; ++copy) {
         const double dx = static_cast<double>(copy % columns) * (box.max.x - box.min.x + input.spacing_mm);

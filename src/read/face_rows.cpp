@@ -1,6 +1,7 @@
 #include "read/face_rows.hpp"
 
 #include "container/text_place.hpp"
+#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "read/coordinate_text.hpp"
 
@@ -309,9 +310,9 @@ class RowsReader {
         }
         const auto place = static_cast<std::size_t>(at - text_.data());
         if (const std::uint64_t count = count_rows(text_.substr(place), rows_.comment); count > 0)
-            remarks_.add(fmt::format("line {}: left out {} {} from here on, beyond the {} rows of {}",
-                                     line_of(source_, place), count, count == 1 ? "line" : "lines",
-                                     all_rows(), rows_.counted_where));
+            remarks_.add(fmt::format("line {}: left out {} from here on, beyond the {} rows of {}",
+                                     line_of(source_, place), counted(count, "line"), all_rows(),
+                                     rows_.counted_where));
     }
 
     /// A line that begins in a piece is a row of it.

@@ -71,13 +71,13 @@ void say(const DistinctNames& names, std::vector<std::string>& warnings) {
     if (const std::uint64_t changed = names.changed(); changed != 0)
         warnings.push_back(fmt::format("{} the name of another one; a number was put behind it, the first is "
                                        "now '{}'",
-                                       changed == 1 ? "1 part has" : fmt::format("{} parts have", changed),
+                                       counted(changed, "part has", "parts have"),
                                        printable(names.first_changed(), longest)));
 }
 
 void Oddity::say(std::vector<std::string>& warnings) const {
     if (count_ != 0)
-        warnings.push_back(fmt::format("{} {} (first at {})", count_, count_ == 1 ? one_ : many_, first_));
+        warnings.push_back(fmt::format("{} (first at {})", counted(count_, one_, many_), first_));
 }
 
 bool RawLayer::keep_contour(bool closed, std::uint32_t part) {

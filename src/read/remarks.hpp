@@ -79,8 +79,8 @@ inline void tell_nonfinite(Remarks& remarks, std::string_view place, std::uint64
 
 /// Tells that so many faces were left out, not 0, the first of them at `place`.
 inline void tell_thin_faces(Remarks& remarks, std::string_view place, std::uint64_t count) {
-    remarks.add(fmt::format("{}: left out {} {} of fewer than three corners (this is the first)", place,
-                            count, count == 1 ? "face" : "faces"));
+    remarks.add(fmt::format("{}: left out {} of fewer than three corners (this is the first)", place,
+                            counted(count, "face")));
 }
 
 } // namespace lamella

@@ -1,5 +1,7 @@
 #include "lamella/write/layer_page.hpp"
 
+#include "core/counted.hpp"
+
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -18,8 +20,8 @@ std::string size_text(const Box3& box) {
 }
 
 std::string loop_text(const BoundaryLoop& loop) {
-    return fmt::format("{} of {} {}, {:.4g} mm long: {}", loop.closed ? "rim" : "broken rim", loop.edges(),
-                       loop.edges() == 1 ? "edge" : "edges", loop.length_mm,
+    return fmt::format("{} of {}, {:.4g} mm long: {}", loop.closed ? "rim" : "broken rim",
+                       counted(loop.edges(), "edge"), loop.length_mm,
                        words_of(&Inspection::boundary_edges).meaning);
 }
 
@@ -59,8 +61,7 @@ std::vector<PagePlace> places_of(const Diagnosis& diagnosis) {
     for (const Shell& shell : diagnosis.shells)
         if (shell.kind == ShellKind::inverted)
             places.push_back({.kind = std::string(inverted.one),
-                              .text = fmt::format("{} {} in {}: {}", shell.triangles,
-                                                  shell.triangles == 1 ? "triangle" : "triangles",
+                              .text = fmt::format("{} in {}: {}", counted(shell.triangles, "triangle"),
                                                   size_text(shell.box), inverted.meaning),
                               .points = outline(shell.box),
                               .found = counts.inverted_shells});

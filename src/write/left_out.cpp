@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t longest_label = 60; ///< of those that warnings name
 
-std::string parts_in_words(std::uint64_t count) {
-    return count == 1 ? "1 part" : fmt::format("{} parts", count);
-}
-
 } // namespace
 
 LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
@@ -74,26 +70,25 @@ std::vector<std::string> LeftOut::warnings() const {
         lines.push_back(
             fmt::format("{} changed, the first from \"{}\" to \"{}\": the format has no place for "
                         "some of its characters, or for its length",
-                        changed_labels_ == 1 ? "1 label was" : fmt::format("{} labels were", changed_labels_),
+                        counted(changed_labels_, "label was", "labels were"),
                         printable(first_label_, longest_label), printable(first_written_, longest_label)));
     if (!holds_.labels && labelled_ != 0)
         lines.push_back(fmt::format("{} not written, the first \"{}\": the format has no place for labels",
-                                    labelled_ == 1 ? "1 label was" : fmt::format("{} labels were", labelled_),
+                                    counted(labelled_, "label was", "labels were"),
                                     printable(first_labelled_, longest_label)));
     if (!holds_.supports && supports_ != 0)
         lines.push_back(fmt::format("{}: the format has no place for that; 3mf has",
-                                    supports_ == 1 ? "1 part is a support"
-                                                   : fmt::format("{} parts are supports", supports_)));
+                                    counted(supports_, "part is a support", "parts are supports")));
     if (!holds_.parameters && known_ != 0)
         lines.push_back(fmt::format(
             "parameters of scan vectors, such as power and speed, were left out for {}: the format has no "
             "place for such; ilt, ovf and 3mf-toolpath have",
-            parts_in_words(known_)));
+            counted(known_, "part")));
     if (changed_parts_ != 0)
         lines.push_back(
             fmt::format("of the parameters of scan vectors, {} were left out for {}: the format has no "
                         "place for such",
-                        holds_.not_kept, parts_in_words(changed_parts_)));
+                        holds_.not_kept, counted(changed_parts_, "part")));
     if (holds_.parameters && unknown_ != 0)
         lines.push_back(counted(
             unknown_,
