@@ -41,8 +41,8 @@ struct ByteSource {
                                     std::uint64_t most_in_memory = ~std::uint64_t{0});
 
 /// Copies the bytes from `place` on into `to`, which they fill. Bytes of a file are read from it, where that
-/// can be: a page that is mapped costs more to touch for the first time than to copy. Any number of threads
-/// at once. Throws Error{input} when the file has become shorter.
+/// can be: then no signal tells that it has become shorter, and no page has to be mapped. Any number of
+/// threads at once. Throws Error{input} when the file has become shorter.
 void copy_out(const ByteSource& source, std::uint64_t place, std::span<std::byte> to);
 
 /// To be called by who has read the bytes. Throws Error{input} when their file has become shorter meanwhile:

@@ -1,7 +1,7 @@
 #pragma once
 
 // Binary STL: 80 bytes of header, a count, and records of 50 bytes. Nothing is parsed: the mesh is a view of
-// the file.
+// the records.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
