@@ -46,6 +46,7 @@ class ContactSeeker {
     Plane plane_;
 };
 
+/// Of two triangles alone: see ContactSeeker::with.
 [[nodiscard]] inline std::optional<MeetingKind> contact(const NamedTriangle& p,
                                                         const NamedTriangle& q) noexcept {
     return ContactSeeker(p).with(q);
