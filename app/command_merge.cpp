@@ -58,8 +58,7 @@ Command merge_command() {
             "ilt, ovf and 3mf-toolpath other parts, too. Files "
             "in the formats cli and cli-ascii become the file "
             "of a single run, byte for byte, unless other units or the short form are asked for; layers of "
-            "other "
-            "formats are read and written anew.",
+            "other formats are read and written anew.",
         .operands = {{.placeholder = "OUT",
                       .help = "the slice file to write; its extension says the format; - is standard output",
                       .written = true,

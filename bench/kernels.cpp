@@ -1,6 +1,8 @@
-// The kernels one by one (Google Benchmark): rank, weld, link, walk, run, format.
+// The kernels one by one (Google Benchmark): read, rank, weld, link, walk, run, format.
 
+#include "core/byte_source.hpp"
 #include "core/executor.hpp"
+#include "core/pages.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/cut_graph.hpp"
@@ -10,6 +12,9 @@
 #include <lamella/lamella.hpp>
 
 #include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <string>
 #include <vector>
 
 namespace lamella {
@@ -34,6 +39,28 @@ const TriangleSoup& sheet() {
 Execution on(const benchmark::State& state) {
     return {.threads = static_cast<unsigned>(state.range(0))};
 }
+
+/// The bytes of an STL file, looked at where it is mapped, or copied into memory of their own first, as
+/// meshes are read. Its pages are in the system's cache.
+void read_file(benchmark::State& state, bool copied) {
+    const std::string path = std::filesystem::temp_directory_path() / "lamella-kernels.stl";
+    write_stl(path, torus());
+    const auto sum = [](std::span<const std::byte> bytes) {
+        const auto* const words = reinterpret_cast<const std::uint64_t*>(bytes.data());
+        return std::accumulate(words, words + bytes.size() / sizeof *words, std::uint64_t{0});
+    };
+    for ([[maybe_unused]] const auto _ : state) {
+        const ByteSource source = open_bytes(path);
+        const PageArray<std::byte> memory(copied ? source.bytes.size() : 0);
+        if (copied)
+            copy_out(source, 0, memory.span());
+        benchmark::DoNotOptimize(sum(copied ? memory.span() : source.bytes));
+    }
+    state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(std::filesystem::file_size(path)));
+    std::filesystem::remove(path);
+}
+BENCHMARK_CAPTURE(read_file, copied, true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_file, mapped, false)->Unit(benchmark::kMillisecond);
 
 void rank(benchmark::State& state) {
     const Ranks ranks(planes_of(torus(), static_cast<double>(state.range(0))));
