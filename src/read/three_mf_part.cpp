@@ -156,8 +156,8 @@ ThreeMfObjectType ThreeMfElement::object_type() const {
     const ThreeMfValue type = (*this)["type"];
     if (!type.is_there)
         return ThreeMfObjectType::model;
-    for (const auto& [name, known] : types)
-        if (name == type.text)
+    for (const auto& [word, known] : types)
+        if (word == type.text)
             return known;
     fail(fmt::format("an object of type '{}'", printable(type.text, 40)),
          "model, solidsupport, support, surface or other");
