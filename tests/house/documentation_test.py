@@ -111,6 +111,18 @@ class Documentation(unittest.TestCase):
                 drawn = next(Path(folder).glob("**/*.svg")).read_text(encoding="utf-8")
                 self.assertEqual((ROOT / "docs/images" / name).read_text(encoding="utf-8"), drawn)
 
+    def test_the_bibliography_has_what_sources_and_pages_cite(self):
+        bibliography = (ROOT / "docs/bibliography.md").read_text(encoding="utf-8")
+        listed = {(names.split()[0], year) for names, year in re.findall(r"^- (.+?) \((\d{4})\):", bibliography, re.MULTILINE)}
+        files = [path for folder in ("include", "src", "parts", "docs") for path in (ROOT / folder).rglob("*")
+                 if path.suffix in (".cpp", ".hpp", ".md")]
+        # "Hobby 1999", "Zhang and Joshi (2015)", "Xu et al. (2016)", "Guigue and Devillers 2003", "Dowell, Jarratt 1971"
+        citation = re.compile(r"((?:[A-Z][a-z]+(?:, | and | et al\. ?| ))+)\(?((?:19|20)\d{2})\b")
+        cited = {(match[1].split()[0].rstrip(","), match[2]): path for path in files
+                 for match in citation.finditer(re.sub(r"\s+(?:///? )?", " ", path.read_text(encoding="utf-8")))}
+        self.assertGreater(len(cited), 5)
+        self.assertEqual({name: path for name, path in cited.items() if name not in listed}, {})
+
     def test_relative_links_lead_to_files(self):
         pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("bench/*.md")]
         self.assertGreater(len(pages), 4)
