@@ -119,7 +119,7 @@ class Documentation(unittest.TestCase):
         # "Hobby 1999", "Zhang and Joshi (2015)", "Xu et al. (2016)", "Guigue and Devillers 2003", "Dowell, Jarratt 1971"
         citation = re.compile(r"((?:[A-Z][a-z]+(?:, | and | et al\. ?| ))+)\(?((?:19|20)\d{2})\b")
         cited = {(match[1].split()[0].rstrip(","), match[2]): path for path in files
-                 for match in citation.finditer(re.sub(r"\s+(?:///? )?", " ", path.read_text(encoding="utf-8")))}
+                 for match in citation.finditer(re.sub(r"\n(?:///? )?(?!\n)", " ", path.read_text(encoding="utf-8")))}
         self.assertGreater(len(cited), 5)
         self.assertEqual({name: path for name, path in cited.items() if name not in listed}, {})
 
