@@ -281,10 +281,12 @@ FileJob make_job(const SliceArguments& arguments) {
     if (!job.output.empty())
         job.write = arguments.writing.write_options(layer_format(job.format, job.output));
     job.write.strict = job.strict;
-    job.write.page.title = title_of(job.inputs.front().path);
-    if (!arguments.report.empty())
+    job.write.page.title = title_of(job.inputs);
+    if (!arguments.report.empty()) {
         job.report = {
             .path = arguments.report, .page = page_options(job.inputs.front().path), .notes = run_notes};
+        job.report.page.title = title_of(job.inputs);
+    }
     return job;
 }
 

@@ -37,6 +37,11 @@ std::string title_of(const std::string& path) {
     return std::filesystem::path(input_name(path)).filename().string();
 }
 
+std::string title_of(const std::vector<PlateInput>& inputs) {
+    const std::string first = title_of(inputs.front().path);
+    return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
+}
+
 PageOptions page_options(const std::string& path) {
     return {.viewer = viewer_page(), .no_viewer = no_viewer(), .title = title_of(path)};
 }

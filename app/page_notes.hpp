@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace lamella::app {
 
@@ -20,6 +21,8 @@ inline constexpr std::size_t page_places = 500;
 
 /// The title of the page of a file: its name without its folder.
 [[nodiscard]] std::string title_of(const std::string& path);
+/// The title of the page of a plate: "rook.stl", "rook.stl and 2 more".
+[[nodiscard]] std::string title_of(const std::vector<PlateInput>& inputs);
 
 /// A page with this program's viewer and the title of the page of that file.
 [[nodiscard]] PageOptions page_options(const std::string& path);

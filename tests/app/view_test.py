@@ -97,6 +97,16 @@ class View(ProgramTest):
         for name in ["a", "b"]:
             self.assertEqual(element(self.page(f"pages/{name}.html"), "head")["title"], f"{name}.stl")
 
+    def test_the_page_of_a_plate_is_named_by_its_first_file_and_the_number_of_the_others(self):
+        self.need_viewer()
+        for name in ["one.stl", "two.stl", "three.stl"]:
+            self.write(name, self.bytes_of("box.stl"))
+        for files, title in [(["one.stl", "--copies", "2"], "one.stl"), (["one.stl", "--copies", "2", "two.stl", "--translate", "100,0,0"], "one.stl and 1 more"),
+                             (["one.stl", "two.stl", "--translate", "100,0,0", "three.stl", "--translate", "200,0,0"], "one.stl and 2 more")]:
+            self.succeed("slice", *files, "-o", "plate.html", "--report", "report.html")
+            for page in ["plate.html", "report.html"]:
+                self.assertEqual(element(self.page(page), "head")["title"], title)
+
     def test_threads_do_not_change_a_page(self):
         self.need_viewer()
         self.succeed("make", "rook", "-o", "rook.stl")
